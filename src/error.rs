@@ -1,0 +1,33 @@
+//! What can go wrong. Each message names the argument, its value and the rule it breaks.
+
+/// Why a problem was refused or could not be solved. The C ABI maps each kind to a negative status.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument breaks a rule (a size, a range, an unknown enumerator).
+    #[error("{0}")]
+    InvalidArgument(String),
+    /// A NaN, or an infinity where none is allowed.
+    #[error("{0}")]
+    NotFinite(String),
+    /// A valid request that this version does not carry out.
+    #[error("{0}")]
+    Unsupported(String),
+    /// The prescribed force cannot be carried.
+    #[error("{0}")]
+    Infeasible(String),
+    /// The influence coefficients are not those of a positive definite operator.
+    #[error("{0}")]
+    NotPositiveDefinite(String),
+    /// Memory for the operators or the workspace could not be had.
+    #[error("{0}")]
+    OutOfMemory(String),
+}
+
+/// Result with this crate's [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Shorthand for `Err(Error::InvalidArgument(..))`.
+pub(crate) fn invalid<T>(message: String) -> Result<T> {
+    Err(Error::InvalidArgument(message))
+}

@@ -1,0 +1,61 @@
+//! The potential contact area: `mx` by `my` rectangular elements of size `dx` by `dy`.
+
+use crate::error::{invalid, Result};
+
+/// A grid of `mx * my` elements of size `dx * dy`. Arrays on it are `[my][mx]`, x fastest: element `(ix, iy)`
+/// has index `iy * mx + ix` (the bytes of a Fortran array `a(mx, my)`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Elements in x.
+    pub mx: usize,
+    /// Elements in y.
+    pub my: usize,
+    /// Element size in x.
+    pub dx: f64,
+    /// Element size in y.
+    pub dy: f64,
+}
+
+/// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
+const MOST_ELEMENTS: usize = i32::MAX as usize;
+
+impl Grid {
+    /// A grid, after a check of its sizes.
+    pub fn new(mx: usize, my: usize, dx: f64, dy: f64) -> Result<Grid> {
+        for (name, m) in [("mx", mx), ("my", my)] {
+            if m == 0 {
+                return invalid(format!("{name} is 0; a grid has at least one element in each direction"));
+            }
+        }
+        match mx.checked_mul(my) {
+            Some(n) if n <= MOST_ELEMENTS => {}
+            _ => return invalid(format!("mx * my is {mx} * {my}; a grid has at most {MOST_ELEMENTS} elements")),
+        }
+        for (name, d) in [("dx", dx), ("dy", dy)] {
+            if !(d > 0.0 && d.is_finite()) {
+                return invalid(format!("{name} is {d}; an element size must be positive and finite"));
+            }
+        }
+        Ok(Grid { mx, my, dx, dy })
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.mx * self.my
+    }
+
+    /// Never: a grid has at least one element.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Area of one element.
+    pub fn element_area(&self) -> f64 {
+        self.dx * self.dy
+    }
+
+    /// Index of element `(ix, iy)`.
+    pub fn index(&self, ix: usize, iy: usize) -> usize {
+        iy * self.mx + ix
+    }
+}

@@ -1,0 +1,179 @@
+//! Boussinesq-Love coefficients of the elastic half-space.
+//!
+//! With `c = 1/(pi E*)`, `1/E* = sum over both bodies of (1 - nu)/(2 G)`, the coefficient at offset `(X, Y)` is
+//!
+//! ```text
+//! A(X, Y) = c * integral over |s| <= dx/2, |t| <= dy/2 of 1/sqrt((X - s)^2 + (Y - t)^2)
+//!         = c * [F(X+, Y+) - F(X+, Y-) - F(X-, Y+) + F(X-, Y-)],     X+- = X +- dx/2, Y+- = Y +- dy/2
+//! F(a, b) = a asinh(b/|a|) + b asinh(a/|b|)
+//! ```
+//!
+//! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form cancels: at offset `k` it loses a factor `k^2`.
+//! So it serves only the four coefficients next to the element, and
+//!
+//! * beyond six half-diagonals `d` the multipole series serves, with `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2`:
+//!   `A = c dx dy / r * sum_k z^k q_k(t)`; `z^k q_k` is the mean over the element of the Legendre term of degree `2k`;
+//! * between them the integral is exact in one direction, `asinh(X+/|y|) - asinh(X-/|y|)` written as one logarithm of
+//!   positive terms, and by Gauss-Legendre in the other, where `y = 0` is at least three half-widths away.
+
+use std::f64::consts::PI;
+
+/// Terms of the multipole series at most (degree `2 * 8 = 16`).
+const MOST_TERMS: usize = 8;
+
+/// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice; the first one left out is
+/// `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
+const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
+
+/// Nodes and weights of the 9-point Gauss-Legendre rule on [-1, 1], non-negative half (Abramowitz & Stegun 25.4).
+const GAUSS: [(f64, f64); 5] = [
+    (0.0, 0.330_239_355_001_259_76),
+    (0.324_253_423_403_808_93, 0.312_347_077_040_002_84),
+    (0.613_371_432_700_590_4, 0.260_610_696_402_935_46),
+    (0.836_031_107_326_635_8, 0.180_648_160_694_857_4),
+    (0.968_160_239_507_626_1, 0.081_274_388_361_574_41),
+];
+
+/// Coefficients of the half-space for one element size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HalfSpace {
+    dx: f64,
+    dy: f64,
+    /// `1/(pi E*)`.
+    compliance: f64,
+    /// `q_k(t) = sum_j series[k][j] t^j`.
+    series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
+}
+
+impl HalfSpace {
+    /// Coefficients for elements `dx` by `dy`; `compliance` is `1/E* = sum of (1 - nu)/(2 G)` over the bodies.
+    pub fn new(dx: f64, dy: f64, compliance: f64) -> HalfSpace {
+        HalfSpace { dx, dy, compliance: compliance / PI, series: multipole_series(dx, dy) }
+    }
+
+    /// The same bodies, another element size.
+    pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
+        HalfSpace { dx, dy, compliance: self.compliance, series: multipole_series(dx, dy) }
+    }
+
+    /// The coefficient at offset `(kx, ky)`.
+    pub fn at(&self, kx: i64, ky: i64) -> f64 {
+        let mut value = [0.0];
+        self.fill_row(kx.abs(), ky, &mut value);
+        value[0]
+    }
+
+    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0`.
+    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        debug_assert!(kx >= 0);
+        let y = ky.unsigned_abs() as f64 * self.dy;
+        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
+        // The distance grows along the row: one segment after the other, each with its own number of terms.
+        let first_beyond = |half_diagonals: f64| {
+            let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
+            let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx } else { 0 };
+            k.clamp(0, out.len() as i64) as usize
+        };
+        let starts = SERIES.map(|(distance, _)| first_beyond(distance));
+        let (near, far) = out.split_at_mut(starts[0]);
+        for (k, value) in near.iter_mut().enumerate() {
+            *value = self.compliance * self.near((kx + k as i64) as f64, ky.unsigned_abs() as f64);
+        }
+        let [s8, s6, s4, s2] = starts;
+        let (far8, rest) = far.split_at_mut(s6 - s8);
+        let (far6, rest) = rest.split_at_mut(s4 - s6);
+        let (far4, far2) = rest.split_at_mut(s2 - s4);
+        let at = |s: usize| (kx + s as i64) as f64;
+        self.fill_series::<8>(at(s8), y, far8);
+        self.fill_series::<6>(at(s6), y, far6);
+        self.fill_series::<4>(at(s4), y, far4);
+        self.fill_series::<2>(at(s2), y, far2);
+    }
+
+    fn fill_series<const K: usize>(&self, kx: f64, y: f64, out: &mut [f64]) {
+        let scale = self.compliance * self.dx * self.dy;
+        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
+        for (k, value) in out.iter_mut().enumerate() {
+            let x = (kx + k as f64) * self.dx;
+            let r2 = x * x + y * y;
+            let inverse_r2 = 1.0 / r2;
+            let (t, z) = (x * x * inverse_r2, half_diagonal2 * inverse_r2);
+            let mut sum = 0.0;
+            for term in (0..=K).rev() {
+                let mut q = self.series[term][term];
+                for j in (0..term).rev() {
+                    q = q * t + self.series[term][j];
+                }
+                sum = sum * z + q;
+            }
+            *value = scale * sum * inverse_r2.sqrt();
+        }
+    }
+
+    /// The integral of 1/rho at offset `(kx, ky) >= 0` nearer than the series reaches.
+    fn near(&self, kx: f64, ky: f64) -> f64 {
+        let (dx, dy) = (self.dx, self.dy);
+        if ky >= 2.0 {
+            gauss(ky * dy, dy, |y| line(kx, dx, y))
+        } else if kx >= 2.0 {
+            gauss(kx * dx, dx, |x| line(ky, dy, x))
+        } else {
+            let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
+            let f = |a: f64, b: f64| a * (b / a.abs()).asinh() + b * (a / b.abs()).asinh();
+            f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
+        }
+    }
+}
+
+/// `integral over |s| <= d/2 of 1/sqrt((k d - s)^2 + y^2) = asinh(X+/y) - asinh(X-/y)`, without cancellation.
+fn line(k: f64, d: f64, y: f64) -> f64 {
+    let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
+    if k == 0.0 {
+        return 2.0 * (plus / y).asinh();
+    }
+    let (rp, rm) = (plus.hypot(y), minus.hypot(y));
+    // (X+ + r+)/(X- + r-) - 1, with r+ - r- = (X+^2 - X-^2)/(r+ + r-)
+    ((d + (plus + minus) * d / (rp + rm)) / (minus + rm)).ln_1p()
+}
+
+/// Integral of `f` over an interval of length `d` about `centre`.
+fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let pairs: f64 = GAUSS[1..]
+        .iter()
+        .map(|&(node, weight)| weight * (f(centre + 0.5 * d * node) + f(centre - 0.5 * d * node)))
+        .sum();
+    0.5 * d * (pairs + GAUSS[0].1 * f(centre))
+}
+
+/// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.
+fn multipole_series(dx: f64, dy: f64) -> [[f64; MOST_TERMS + 1]; MOST_TERMS + 1] {
+    let diagonal = dx.hypot(dy);
+    let (hx, hy) = (dx / diagonal, dy / diagonal);
+    // mean of s^(2i) over |s| <= h
+    let moment = |h: f64, i: usize| h.powi(2 * i as i32) / (2 * i + 1) as f64;
+    let mut series = [[0.0; MOST_TERMS + 1]; MOST_TERMS + 1];
+    for (k, q) in series.iter_mut().enumerate() {
+        let n = 2 * k;
+        for l in 0..=k {
+            // P_n(x) = sum_l legendre(l) x^(n - 2l)
+            let legendre = (if l % 2 == 0 { 1.0 } else { -1.0 }) * binomial(n, l) * binomial(2 * n - 2 * l, n)
+                / 2f64.powi(n as i32);
+            let m = k - l; // (sx cx + sy cy)^(2m) (sx^2 + sy^2)^l, even powers only
+            for j in 0..=m {
+                let mean: f64 =
+                    (0..=l).map(|i| binomial(l, i) * moment(hx, j + i) * moment(hy, m - j + l - i)).sum();
+                let coefficient = legendre * binomial(2 * m, 2 * j) * mean;
+                // times t^j (1 - t)^(m - j)
+                for i in 0..=m - j {
+                    let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+                    q[j + i] += sign * coefficient * binomial(m - j, i);
+                }
+            }
+        }
+    }
+    series
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (1..=k).fold(1.0, |b, i| b * (n - k + i) as f64 / i as f64)
+}

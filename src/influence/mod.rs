@@ -1,0 +1,65 @@
+//! Influence coefficients: the displacement at the centre of element I by a unit pressure on element J.
+//!
+//! `A_IJ = c(ix - jx, iy - jy)` depends on the offset only: A is block Toeplitz. The coefficients come from the
+//! elastic half-space ([`HalfSpace`], even in both offsets) or from a table of the caller's own ([`Table`], of
+//! which nothing is assumed).
+
+mod half_space;
+mod table;
+
+pub use half_space::HalfSpace;
+pub use table::Table;
+
+use crate::grid::Grid;
+
+/// Where the coefficients of one grid come from.
+#[derive(Clone, Debug)]
+pub enum Influence {
+    /// Love's closed form for the elastic half-space.
+    HalfSpace(HalfSpace),
+    /// The caller's own coefficients.
+    Table(Table),
+}
+
+impl Influence {
+    /// The coefficient at offset `(kx, ky)`.
+    pub fn at(&self, kx: i64, ky: i64) -> f64 {
+        match self {
+            Influence::HalfSpace(half_space) => half_space.at(kx, ky),
+            Influence::Table(table) => table.at(kx, ky),
+        }
+    }
+
+    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
+    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        match self {
+            Influence::HalfSpace(half_space) => half_space.fill_row(kx, ky, out),
+            Influence::Table(table) => table.fill_row(kx, ky, out),
+        }
+    }
+
+    /// Whether `c(kx, ky) = c(-kx, ky) = c(kx, -ky)` for all offsets within `grid`.
+    pub fn is_even(&self, grid: &Grid) -> bool {
+        match self {
+            Influence::HalfSpace(_) => true,
+            Influence::Table(table) => table.is_even(grid),
+        }
+    }
+
+    /// Whether A is symmetric on `grid`, `c(kx, ky) = c(-kx, -ky)`, to within round-off of the table.
+    pub fn is_symmetric(&self, grid: &Grid) -> bool {
+        match self {
+            Influence::HalfSpace(_) => true,
+            Influence::Table(table) => table.is_symmetric(grid),
+        }
+    }
+
+    /// The coefficients on a grid coarsened from `fine` to `coarse`: for the half-space computed anew for the larger
+    /// element (the paper's direct coarse-grid operator), for a table summed from the fine coefficients.
+    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Influence {
+        match self {
+            Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.for_element(coarse.dx, coarse.dy)),
+            Influence::Table(table) => Influence::Table(table.coarsen(fine, coarse)),
+        }
+    }
+}

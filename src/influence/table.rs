@@ -1,0 +1,115 @@
+//! The caller's own influence coefficients: a table over offsets `-cx..cx-1` by `-cy..cy-1`.
+//!
+//! `A_IJ = c(ix - jx, iy - jy)`. Neither symmetric nor positive coefficients are assumed, and the table may be larger
+//! than the grid. Row `-cy` and column `-cx` never matter: no pair of elements has those offsets.
+//!
+//! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a
+//! unit pressure on those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y. Where an odd count
+//! asks for an offset just outside the table (the last coarse element sticks out), the outermost coefficient serves.
+
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+
+/// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
+const SYMMETRY: f64 = 1e-7;
+
+/// A table of coefficients, `values[ky + cy][kx + cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    cx: usize,
+    cy: usize,
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// A table of `2 cx` by `2 cy` coefficients that must cover `grid`.
+    pub fn new(cx: usize, cy: usize, values: &[f64], grid: &Grid) -> Result<Table> {
+        for (name, c, count, m) in [("cx", cx, "mx", grid.mx), ("cy", cy, "my", grid.my)] {
+            if c < m {
+                return invalid(format!("influence.{name} is {c}; the table must reach offsets of the grid, {count} = {m}"));
+            }
+        }
+        let expected = cx.checked_mul(cy).and_then(|n| n.checked_mul(4));
+        if expected != Some(values.len()) {
+            return invalid(format!("the influence table has {} values; it must have 2 cx by 2 cy", values.len()));
+        }
+        // Only the offsets of the grid matter, so only they are kept: the table may be far larger.
+        let (kept_x, kept_y) = (grid.mx, grid.my);
+        let mut kept = vec![0.0; 4 * kept_x * kept_y];
+        for ky in -(kept_y as i64) + 1..kept_y as i64 {
+            for kx in -(kept_x as i64) + 1..kept_x as i64 {
+                let value = values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
+                if !value.is_finite() {
+                    return Err(Error::NotFinite(format!(
+                        "influence.coefficients at offset ({kx}, {ky}) is {value}; coefficients must be finite"
+                    )));
+                }
+                kept[(ky + kept_y as i64) as usize * 2 * kept_x + (kx + kept_x as i64) as usize] = value;
+            }
+        }
+        let table = Table { cx: kept_x, cy: kept_y, values: kept };
+        if table.at(0, 0) <= 0.0 {
+            return Err(Error::NotPositiveDefinite(format!(
+                "influence.coefficients at offset (0, 0) is {}; a pressure must displace its own element inwards",
+                table.at(0, 0)
+            )));
+        }
+        Ok(table)
+    }
+
+    /// The coefficient at offset `(kx, ky)`, the outermost one where the table ends.
+    pub fn at(&self, kx: i64, ky: i64) -> f64 {
+        let clamp = |k: i64, c: usize| (k.clamp(1 - c as i64, c as i64 - 1) + c as i64) as usize;
+        self.values[clamp(ky, self.cy) * 2 * self.cx + clamp(kx, self.cx)]
+    }
+
+    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`.
+    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        for (k, value) in out.iter_mut().enumerate() {
+            *value = self.at(kx + k as i64, ky);
+        }
+    }
+
+    /// Whether the coefficients within `grid` are even in x and in y.
+    pub fn is_even(&self, grid: &Grid) -> bool {
+        self.offsets(grid).all(|(kx, ky)| {
+            let value = self.at(kx, ky);
+            value == self.at(-kx, ky) && value == self.at(kx, -ky)
+        })
+    }
+
+    /// Whether A is symmetric on `grid` to within round-off.
+    pub fn is_symmetric(&self, grid: &Grid) -> bool {
+        let largest = self.offsets(grid).fold(0.0, |m: f64, (kx, ky)| m.max(self.at(kx, ky).abs()));
+        self.offsets(grid).all(|(kx, ky)| (self.at(kx, ky) - self.at(-kx, -ky)).abs() <= SYMMETRY * largest)
+    }
+
+    /// The coefficients of the coarser grid, as means of the finer ones.
+    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Table {
+        let weights = |coarsened: bool| if coarsened { [(-1, 0.5), (0, 1.0), (1, 0.5)] } else { [(0, 1.0), (0, 0.0), (0, 0.0)] };
+        let (half_x, half_y) = (coarse.mx < fine.mx, coarse.my < fine.my);
+        let (wx, wy) = (weights(half_x), weights(half_y));
+        let (fx, fy) = (1 + half_x as i64, 1 + half_y as i64);
+        let (cx, cy) = (coarse.mx, coarse.my);
+        let mut values = Vec::with_capacity(4 * cx * cy);
+        for ky in -(cy as i64)..cy as i64 {
+            for kx in -(cx as i64)..cx as i64 {
+                let mut sum = 0.0;
+                for (sy, vy) in wy {
+                    for (sx, vx) in wx {
+                        if vx * vy != 0.0 {
+                            sum += vx * vy * self.at(fx * kx + sx, fy * ky + sy);
+                        }
+                    }
+                }
+                values.push(sum);
+            }
+        }
+        Table { cx, cy, values }
+    }
+
+    fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {
+        let (mx, my) = (grid.mx as i64, grid.my as i64);
+        (0..my).flat_map(move |ky| (1 - mx..mx).map(move |kx| (kx, ky)))
+    }
+}

@@ -1,0 +1,260 @@
+//! `u = A p` by FFT: A is block Toeplitz, so it is a part of a block circulant of period `px * py`.
+//!
+//! ```text
+//! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
+//! ```
+//!
+//! The period must keep the offsets `-(m-1)..m-1` apart: `2m - 1`, or `2m - 2` when the coefficients are even
+//! (offsets `m-1` and `-(m-1)` are then alike). The product is fused and pruned: real transforms of those rows only that
+//! hold pressures; per block of eight columns gather, transform, multiply, transform back, scatter; real transforms of
+//! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept.
+
+use std::ops::Range;
+
+use super::columns::{Columns, BLOCK};
+use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::influence::Influence;
+use crate::threads::Threads;
+
+/// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
+enum Spectrum<T> {
+    /// Even coefficients: real, `py/2 + 1` values a column.
+    Even(Vec<T>),
+    /// General coefficients: `py` complex values a column.
+    General(Vec<Complex<T>>),
+}
+
+/// The operator of one grid.
+pub struct Toeplitz<T: Real> {
+    mx: usize,
+    my: usize,
+    rows: RowTransform<T>,
+    columns: ColumnTransform<T>,
+    spectrum: Spectrum<T>,
+    threads: Threads,
+}
+
+/// Memory that a product needs, so that it allocates nothing.
+pub struct Workspace<T: Real> {
+    /// `[my][px/2 + 1]`: the rows, transformed in x.
+    bins: Vec<Complex<T>>,
+    pieces: Vec<Piece<T>>,
+}
+
+/// Scratch of one piece of the work.
+struct Piece<T: Real> {
+    row: Vec<T>,
+    columns: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+}
+
+pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> {
+    let mut v = Vec::new();
+    v.try_reserve_exact(n)
+        .map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    v.resize(n, A::default());
+    Ok(v)
+}
+
+impl<T: Real> Toeplitz<T> {
+    /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
+    pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
+        let even = influence.is_even(grid);
+        let period = |m: usize| good_length(if even { 2 * m - 2 } else { 2 * m - 1 });
+        let (px, py) = (period(grid.mx), period(grid.my));
+        let spectrum = if even {
+            even_spectrum(influence, grid, px, py, threads)?
+        } else {
+            general_spectrum(influence, grid, px, py, threads)?
+        };
+        Ok(Toeplitz {
+            mx: grid.mx,
+            my: grid.my,
+            rows: RowTransform::new(px),
+            columns: ColumnTransform::new(py),
+            spectrum,
+            threads: threads.clone(),
+        })
+    }
+
+    /// Memory for products by this operator, or by any of no more elements in either direction.
+    pub fn workspace(&self) -> Result<Workspace<T>> {
+        let mut pieces = Vec::new();
+        for _ in 0..self.threads.pieces() {
+            let mut scratch = self.rows.scratch();
+            scratch.resize(scratch.len().max(self.columns.scratch().len()), Complex::default());
+            let columns = vec![Complex::default(); (BLOCK * self.columns.length()).max(self.rows.bins())];
+            pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
+        }
+        Ok(Workspace { bins: zeros(self.my * self.rows.bins(), "the product's workspace")?, pieces })
+    }
+
+    /// Bytes held by the operator.
+    pub fn bytes(&self) -> usize {
+        match &self.spectrum {
+            Spectrum::Even(s) => std::mem::size_of_val(&s[..]),
+            Spectrum::General(s) => std::mem::size_of_val(&s[..]),
+        }
+    }
+
+    /// `u = A p`.
+    pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
+        self.apply_rows(p, u, 0..self.my, workspace);
+    }
+
+    /// `u = A p` in the grid's rows `wanted`; the other rows of `u` keep what they hold.
+    pub fn apply_rows(&self, p: &[T], u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
+        assert!(p.len() == self.mx * self.my && u.len() == p.len() && wanted.end <= self.my);
+        let given = rows_with_pressure(p, self.mx);
+        if given.is_empty() {
+            u[wanted.start * self.mx..wanted.end * self.mx].fill(T::zero());
+            return;
+        }
+        let nb = self.rows.bins();
+        let Workspace { bins, pieces } = workspace;
+        let bins = &mut bins[..self.my * nb];
+
+        let first = given.start;
+        self.threads.for_each_row(&mut bins[given.start * nb..given.end * nb], nb, pieces, |i, row_bins, piece| {
+            let row = &mut piece.row[..];
+            row[..self.mx].copy_from_slice(&p[(first + i) * self.mx..(first + i + 1) * self.mx]);
+            row[self.mx..].fill(T::zero());
+            self.rows.forward(row, row_bins, &mut piece.scratch);
+        });
+
+        let columns = Columns::new(bins, nb);
+        let blocks_per_piece = columns.blocks().div_ceil(pieces.len());
+        self.threads.for_each(pieces, |k, piece| {
+            for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(columns.blocks()) {
+                // SAFETY: each block belongs to one piece, and each piece is worked on by one thread.
+                unsafe { columns.gather(b, given.clone(), self.columns.length(), &mut piece.columns) };
+                let block = &mut piece.columns[..columns.columns(b) * self.columns.length()];
+                let scratch = &mut piece.scratch[..];
+                self.columns.forward(block, scratch);
+                self.multiply(b * BLOCK, block);
+                self.columns.inverse(block, scratch);
+                // SAFETY: as above.
+                unsafe { columns.scatter(b, wanted.clone(), self.columns.length(), block) };
+            }
+        });
+
+        // The rows are read and overwritten by the inverse transform: each goes through the piece's column scratch.
+        let first = wanted.start;
+        let bins = &bins[..];
+        let out = &mut u[wanted.start * self.mx..wanted.end * self.mx];
+        self.threads.for_each_row(out, self.mx, pieces, |i, u_row, piece| {
+            let from = &bins[(first + i) * nb..(first + i + 1) * nb];
+            let row_bins = &mut piece.columns[..nb];
+            row_bins.copy_from_slice(from);
+            self.rows.inverse(row_bins, &mut piece.row, &mut piece.scratch);
+            u_row.copy_from_slice(&piece.row[..self.mx]);
+        });
+    }
+
+    /// Multiplies the transformed columns of a block, the first of which has x bin `first`, by the spectrum.
+    fn multiply(&self, first: usize, block: &mut [Complex<T>]) {
+        let py = self.columns.length();
+        for (c, column) in block.chunks_exact_mut(py).enumerate() {
+            match &self.spectrum {
+                Spectrum::Even(s) => {
+                    let s = &s[(first + c) * (py / 2 + 1)..(first + c + 1) * (py / 2 + 1)];
+                    let (lower, upper) = column.split_at_mut(py / 2 + 1);
+                    for (value, &factor) in lower.iter_mut().zip(s) {
+                        *value = *value * factor;
+                    }
+                    for (value, &factor) in upper.iter_mut().rev().zip(&s[1..]) {
+                        *value = *value * factor;
+                    }
+                }
+                Spectrum::General(s) => {
+                    for (value, &factor) in column.iter_mut().zip(&s[(first + c) * py..]) {
+                        *value = *value * factor;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The run of rows outside of which `p` is zero.
+fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
+    let loaded = |row: &[T]| row.iter().any(|&value| value != T::zero());
+    let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
+    let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);
+    first..last + 1
+}
+
+/// Spectrum of even coefficients: both transforms are real; two columns share one complex transform, one as its real
+/// and one as its imaginary part.
+fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+    let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+    let nb = rows.bins();
+    let mut in_x: Vec<f64> = zeros(grid.my * nb, "the influence coefficients")?;
+    let mut pieces: Vec<_> = (0..threads.pieces())
+        .map(|_| (vec![0.0; px], vec![Complex::default(); nb.max(py)], rows.scratch(), columns.scratch()))
+        .collect();
+    threads.for_each_row(&mut in_x, nb, &mut pieces, |ky, out, (row, bins, scratch, _)| {
+        row.fill(0.0);
+        influence.fill_row(0, ky as i64, &mut row[..grid.mx]);
+        for kx in 1..grid.mx {
+            row[px - kx] = row[kx];
+        }
+        rows.forward(row, &mut bins[..nb], scratch);
+        out.iter_mut().zip(bins.iter()).for_each(|(value, bin)| *value = bin.re);
+    });
+
+    let scale = 1.0 / (px as f64 * py as f64);
+    let half = py / 2 + 1;
+    let mut spectrum: Vec<T> = zeros((nb + nb % 2) * half, "the operator's spectrum")?;
+    threads.for_each_row(&mut spectrum, 2 * half, &mut pieces, |pair, out, (_, column, _, scratch)| {
+        let column = &mut column[..py];
+        let second = (2 * pair + 1).min(nb - 1);
+        column.fill(Complex::default());
+        for ky in 0..grid.my {
+            let value = Complex::new(in_x[ky * nb + 2 * pair], in_x[ky * nb + second]);
+            column[ky] = value;
+            if ky > 0 {
+                column[py - ky] = value;
+            }
+        }
+        columns.forward(column, scratch);
+        for (ky, bin) in column[..half].iter().enumerate() {
+            out[ky] = T::of(scale * bin.re);
+            out[half + ky] = T::of(scale * bin.im);
+        }
+    });
+    Ok(Spectrum::Even(spectrum))
+}
+
+fn general_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+    let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+    let nb = rows.bins();
+    let (mx, my) = (grid.mx, grid.my);
+    let mut in_x: Vec<Complex<f64>> = zeros((2 * my - 1) * nb, "the influence coefficients")?;
+    let mut pieces: Vec<_> = (0..threads.pieces())
+        .map(|_| (vec![0.0; px], vec![Complex::default(); py], rows.scratch(), columns.scratch()))
+        .collect();
+    threads.for_each_row(&mut in_x, nb, &mut pieces, |i, out, (row, _, scratch, _)| {
+        row.fill(0.0);
+        let ky = i as i64 - (my as i64 - 1);
+        influence.fill_row(0, ky, &mut row[..mx]);
+        influence.fill_row(1 - mx as i64, ky, &mut row[px - (mx - 1)..]);
+        rows.forward(row, out, scratch);
+    });
+
+    let scale = 1.0 / (px as f64 * py as f64);
+    let mut spectrum: Vec<Complex<T>> = zeros(nb * py, "the operator's spectrum")?;
+    threads.for_each_row(&mut spectrum, py, &mut pieces, |kx, out, (_, column, _, scratch)| {
+        column.fill(Complex::default());
+        for i in 0..2 * my - 1 {
+            column[(i + py - (my - 1)) % py] = in_x[i * nb + kx];
+        }
+        columns.forward(column, scratch);
+        for (value, bin) in out.iter_mut().zip(column.iter()) {
+            *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    });
+    Ok(Spectrum::General(spectrum))
+}

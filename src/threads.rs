@@ -1,0 +1,115 @@
+//! The threads of one solve: none but the caller's own, or a pool of ours.
+//!
+//! Pools are made when first asked for and shared by all solves of a process. Each is stamped with the process id: after
+//! a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are not there.
+//! Work is cut into pieces whose results do not depend on who computes them, so that the answer has the same bits for
+//! any number of threads.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+use crate::error::{Error, Result};
+
+/// Who does the work.
+#[derive(Clone, Default)]
+pub enum Threads {
+    /// The calling thread.
+    #[default]
+    One,
+    /// A pool of our own with this many workers.
+    Pool(Arc<rayon::ThreadPool>),
+}
+
+struct Stamped {
+    process: u32,
+    count: usize,
+    pool: Arc<rayon::ThreadPool>,
+}
+
+static POOLS: Mutex<Vec<Stamped>> = Mutex::new(Vec::new());
+
+impl Threads {
+    /// `count` threads; 0: as many as the machine has cores.
+    pub fn new(count: usize) -> Result<Threads> {
+        let count = match count {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+            n => n,
+        };
+        if count == 1 {
+            return Ok(Threads::One);
+        }
+        let process = std::process::id();
+        let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = pools.iter().find(|known| known.process == process && known.count == count) {
+            return Ok(Threads::Pool(known.pool.clone()));
+        }
+        // Pools of a parent process have no workers here, and dropping one would wait for them: forget it.
+        pools.retain_mut(|known| {
+            let ours = known.process == process;
+            if !ours {
+                std::mem::forget(known.pool.clone());
+            }
+            ours
+        });
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .thread_name(|i| format!("contact-normal-{i}"))
+            .build()
+            .map_err(|e| Error::OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
+        let pool = Arc::new(pool);
+        pools.push(Stamped { process, count, pool: pool.clone() });
+        Ok(Threads::Pool(pool))
+    }
+
+    /// Number of threads.
+    pub fn count(&self) -> usize {
+        match self {
+            Threads::One => 1,
+            Threads::Pool(pool) => pool.current_num_threads(),
+        }
+    }
+
+    /// How many pieces work is cut into: some per thread, so that a thread held up by others leaves its share to them.
+    pub fn pieces(&self) -> usize {
+        match self.count() {
+            1 => 1,
+            count => 4 * count,
+        }
+    }
+
+    /// Runs `work(k, scratch)` on each of the pieces' scratch.
+    pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
+        match self {
+            Threads::One => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
+            Threads::Pool(pool) => {
+                pool.install(|| scratch.par_iter_mut().enumerate().for_each(|(k, s)| work(k, s)));
+            }
+        }
+    }
+
+    /// Runs `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
+    pub fn for_each_row<A: Send, S: Send>(
+        &self,
+        data: &mut [A],
+        row_length: usize,
+        scratch: &mut [S],
+        work: impl Fn(usize, &mut [A], &mut S) + Sync + Send,
+    ) {
+        let rows_per_piece = (data.len() / row_length).div_ceil(scratch.len()).max(1);
+        let piece = |k: usize, rows: &mut [A], s: &mut S| {
+            for (i, row) in rows.chunks_exact_mut(row_length).enumerate() {
+                work(k * rows_per_piece + i, row, s);
+            }
+        };
+        let length = rows_per_piece * row_length;
+        match self {
+            Threads::One => {
+                data.chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
+            }
+            Threads::Pool(pool) => pool.install(|| {
+                data.par_chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
+            }),
+        }
+    }
+}

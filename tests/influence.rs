@@ -1,0 +1,83 @@
+//! The influence coefficients are exact, near and far, for square and for very slender elements.
+
+use astro_float::{BigFloat, Consts, RoundingMode};
+use contact_normal::influence::HalfSpace;
+
+/// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 eats about 80 of them.
+const BITS: usize = 320;
+const RM: RoundingMode = RoundingMode::ToEven;
+
+fn big(x: f64) -> BigFloat {
+    BigFloat::from_f64(x, BITS)
+}
+
+/// a asinh(b/|a|) + b asinh(a/|b|) = a ln((b + r)/|a|) + b ln((a + r)/|b|), r = sqrt(a^2 + b^2)
+fn corner(a: &BigFloat, b: &BigFloat, consts: &mut Consts) -> BigFloat {
+    let r = a.mul(a, BITS, RM).add(&b.mul(b, BITS, RM), BITS, RM).sqrt(BITS, RM);
+    let mut term = |x: &BigFloat, y: &BigFloat| {
+        // asinh(y/|x|), odd in y: the logarithm of |y| first, so that nothing cancels
+        let log = y.abs().add(&r, BITS, RM).div(&x.abs(), BITS, RM).ln(BITS, RM, consts);
+        let signed = if y.is_negative() { log.neg() } else { log };
+        x.mul(&signed, BITS, RM)
+    };
+    let first = term(a, b);
+    let second = term(b, a);
+    first.add(&second, BITS, RM)
+}
+
+/// Love's closed form in 320 bits, for 1/E* = pi.
+fn reference(dx: f64, dy: f64, kx: i64, ky: i64, consts: &mut Consts) -> f64 {
+    let half = big(0.5);
+    let edge = |k: i64, d: f64, sign: i64| {
+        let k = big((2 * k + sign) as f64).mul(&half, BITS, RM);
+        k.mul(&big(d), BITS, RM)
+    };
+    let (xp, xm, yp, ym) = (edge(kx, dx, 1), edge(kx, dx, -1), edge(ky, dy, 1), edge(ky, dy, -1));
+    let pp = corner(&xp, &yp, consts);
+    let pm = corner(&xp, &ym, consts);
+    let mp = corner(&xm, &yp, consts);
+    let mm = corner(&xm, &ym, consts);
+    let sum = pp.sub(&pm, BITS, RM).sub(&mp, BITS, RM).add(&mm, BITS, RM);
+    format!("{sum}").parse().expect("a decimal number")
+}
+
+#[test]
+fn coefficients_have_twelve_digits_up_to_offset_16384_and_aspect_ratio_1000() {
+    let mut consts = Consts::new().expect("constants");
+    let offsets = [0, 1, 2, 3, 4, 5, 7, 8, 11, 12, 16, 23, 40, 64, 100, 250, 1000, 3000, 4096, 9999, 16384];
+    let mut worst: f64 = 0.0;
+    for (dx, dy) in [(1.0, 1.0), (0.15, 0.1), (1.0, 50.0), (1000.0, 1.0), (1e-3, 1.0), (30.0, 1.0), (1e-6, 1.0)] {
+        let half_space = HalfSpace::new(dx, dy, std::f64::consts::PI);
+        for kx in offsets {
+            for ky in offsets {
+                let exact = reference(dx, dy, kx, ky, &mut consts);
+                let error = ((half_space.at(kx, ky) - exact) / exact).abs();
+                assert!(error <= 1e-12, "offset ({kx}, {ky}) of {dx} x {dy}: {} for {exact}", half_space.at(kx, ky));
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("worst relative error {worst:.1e}");
+}
+
+#[test]
+fn a_row_of_coefficients_is_its_single_coefficients() {
+    for (dx, dy) in [(1.0, 1.0), (0.01, 3.0), (7.0, 0.2)] {
+        let half_space = HalfSpace::new(dx, dy, 1e-5);
+        for ky in [-5, 0, 3, 200] {
+            let mut row = vec![0.0; 900];
+            half_space.fill_row(0, ky, &mut row);
+            for (kx, value) in row.iter().enumerate() {
+                assert_eq!(value.to_bits(), half_space.at(-(kx as i64), -ky).to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
+    let (a, b) = (HalfSpace::new(0.3, 0.2, 2e-5), HalfSpace::new(0.3 / 1024.0, 0.2 / 1024.0, 2e-5));
+    for (kx, ky) in [(0, 0), (1, 0), (0, 1), (3, 2), (5, 40), (1000, 20)] {
+        assert_eq!(a.at(kx, ky).to_bits(), (1024.0 * b.at(kx, ky)).to_bits());
+    }
+}

@@ -1,0 +1,136 @@
+//! The product by FFT is the product by direct summation, and both are right.
+
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Influence, Table};
+use contact_normal::operator::{dense, Toeplitz};
+use contact_normal::threads::Threads;
+
+/// Reproducible numbers in [0, 1): Knuth's MMIX generator.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Sizes: one element, one row, one column, primes, ragged, powers of two and their neighbours.
+const SIZES: [(usize, usize); 15] = [
+    (1, 1), (1, 2), (2, 1), (1, 31), (37, 1), (2, 2), (3, 3), (4, 4), (7, 13), (17, 16), (31, 8), (33, 20), (5, 47),
+    (64, 9), (29, 53),
+];
+
+fn product(influence: &Influence, grid: &Grid, p: &[f64], threads: &Threads) -> Vec<f64> {
+    let operator = Toeplitz::new(influence, grid, threads).unwrap();
+    let mut u = vec![f64::NAN; grid.len()];
+    operator.apply(p, &mut u, &mut operator.workspace().unwrap());
+    u
+}
+
+/// The bound of the issue: 1e-13 of max |u|. FFT round-off is about eps log2(px py) = 3e-15.
+fn check(influence: &Influence, grid: &Grid, p: &[f64]) {
+    let u = product(influence, grid, p, &Threads::One);
+    let mut exact = vec![0.0; grid.len()];
+    dense::apply(influence, grid, p, &mut exact);
+    let difference = u.iter().zip(&exact).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+    assert!(difference <= 1e-13 * largest(&exact), "{grid:?}: {difference} of {}", largest(&exact));
+}
+
+#[test]
+fn fft_and_direct_summation_agree_for_the_half_space() {
+    let mut random = Random(1);
+    for (mx, my) in SIZES {
+        for (dx, dy) in [(1.0, 1.0), (0.02, 1.0), (4.0, 0.7)] {
+            let grid = Grid::new(mx, my, dx, dy).unwrap();
+            let influence = Influence::HalfSpace(HalfSpace::new(dx, dy, 1e-5));
+            // everywhere, and on a few rows in the middle only (the pruned path)
+            let full: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
+            check(&influence, &grid, &full);
+            let rows: Vec<f64> =
+                full.iter().enumerate().map(|(i, &v)| if i / mx == my / 2 { v } else { 0.0 }).collect();
+            check(&influence, &grid, &rows);
+        }
+    }
+}
+
+#[test]
+fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
+    let mut random = Random(2);
+    for (mx, my) in SIZES {
+        for (cx, cy) in [(mx, my), (mx + 3, 2 * my + 1)] {
+            let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
+            let mut values: Vec<f64> = (0..4 * cx * cy).map(|_| random.next() - 0.5).collect();
+            values[cy * 2 * cx + cx] = 3.0;
+            // the row -cy and the column -cx never matter, whatever stands there
+            values[..2 * cx].fill(f64::NAN);
+            values.iter_mut().step_by(2 * cx).for_each(|v| *v = f64::INFINITY);
+            let influence = Influence::Table(Table::new(cx, cy, &values, &grid).unwrap());
+            let p: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
+            check(&influence, &grid, &p);
+        }
+    }
+}
+
+#[test]
+fn direct_summation_gives_the_displacement_of_a_uniform_pressure() {
+    // Uniform pressure on a rectangle 2a x 2b: u at its centre is 4 [a asinh(b/a) + b asinh(a/b)]/(pi E*) (Love).
+    let (mx, my) = (7, 5);
+    let grid = Grid::new(mx, my, 0.3, 0.2).unwrap();
+    let influence = Influence::HalfSpace(HalfSpace::new(0.3, 0.2, std::f64::consts::PI));
+    let mut u = vec![0.0; grid.len()];
+    dense::apply(&influence, &grid, &vec![1.0; grid.len()], &mut u);
+    let (a, b): (f64, f64) = (0.5 * 0.3 * mx as f64, 0.5 * 0.2 * my as f64);
+    let exact = 4.0 * (a * (b / a).asinh() + b * (a / b).asinh());
+    assert!((u[grid.index(3, 2)] - exact).abs() < 1e-13 * exact);
+}
+
+#[test]
+fn a_product_has_the_same_bits_for_one_two_and_three_threads() {
+    let mut random = Random(3);
+    let grid = Grid::new(75, 52, 1.0, 0.5).unwrap();
+    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 0.5, 1.0));
+    let p: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
+    let bits = |threads: usize| -> Vec<u64> {
+        let u = product(&influence, &grid, &p, &Threads::new(threads).unwrap());
+        u.iter().map(|v| v.to_bits()).collect()
+    };
+    assert_eq!(bits(1), bits(2));
+    assert_eq!(bits(1), bits(3));
+}
+
+#[test]
+fn a_single_precision_product_has_single_precision() {
+    let mut random = Random(4);
+    let grid = Grid::new(48, 33, 1.0, 1.0).unwrap();
+    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
+    let p: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
+    let exact = product(&influence, &grid, &p, &Threads::One);
+    let single: Vec<f32> = p.iter().map(|&v| v as f32).collect();
+    let operator = Toeplitz::<f32>::new(&influence, &grid, &Threads::One).unwrap();
+    let mut u = vec![0f32; grid.len()];
+    operator.apply(&single, &mut u, &mut operator.workspace().unwrap());
+    // 16 rounding errors of 6e-8 along the transforms
+    for (a, b) in u.iter().zip(&exact) {
+        assert!((f64::from(*a) - b).abs() <= 1e-6 * largest(&exact));
+    }
+}
+
+#[test]
+fn only_the_rows_asked_for_are_written() {
+    let grid = Grid::new(12, 9, 1.0, 1.0).unwrap();
+    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
+    let operator = Toeplitz::new(&influence, &grid, &Threads::One).unwrap();
+    let mut workspace = operator.workspace().unwrap();
+    let p: Vec<f64> = (0..grid.len()).map(|i| i as f64).collect();
+    let (mut all, mut some) = (vec![0.0; grid.len()], vec![-7.0; grid.len()]);
+    operator.apply(&p, &mut all, &mut workspace);
+    operator.apply_rows(&p, &mut some, 3..5, &mut workspace);
+    for (i, (a, b)) in all.iter().zip(&some).enumerate() {
+        assert_eq!(*b, if (3..5).contains(&(i / 12)) { *a } else { -7.0 });
+    }
+}
