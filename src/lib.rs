@@ -1,7 +1,13 @@
 //! contact-normal
 #![warn(missing_docs)]
+pub mod active_set;
+pub mod analytic;
 pub mod error;
 pub mod grid;
 pub mod influence;
+pub mod multigrid;
+pub mod norm;
 pub mod operator;
+pub mod scene;
+pub mod solver;
 pub mod threads;

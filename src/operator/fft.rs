@@ -94,7 +94,7 @@ impl<T: Real> RowTransform<T> {
     pub fn forward(&self, row: &mut [T], bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         let scratch = &mut scratch[..self.forward.get_scratch_len()];
         let done = self.forward.process_with_scratch(row, bins, scratch);
-        debug_assert!(done.is_ok());
+        assert!(done.is_ok(), "a row transform of the wrong length");
     }
 
     /// Bins to real row; the bins are overwritten.
@@ -105,7 +105,7 @@ impl<T: Real> RowTransform<T> {
         bins[last].im = T::zero();
         let scratch = &mut scratch[..self.inverse.get_scratch_len()];
         let done = self.inverse.process_with_scratch(bins, row, scratch);
-        debug_assert!(done.is_ok());
+        assert!(done.is_ok(), "a row transform of the wrong length");
     }
 }
 

@@ -118,7 +118,7 @@ impl<T: Real> Toeplitz<T> {
 
         let first = given.start;
         self.threads.for_each_row(&mut bins[given.start * nb..given.end * nb], nb, pieces, |i, row_bins, piece| {
-            let row = &mut piece.row[..];
+            let row = &mut piece.row[..self.rows.length()];
             row[..self.mx].copy_from_slice(&p[(first + i) * self.mx..(first + i + 1) * self.mx]);
             row[self.mx..].fill(T::zero());
             self.rows.forward(row, row_bins, &mut piece.scratch);
@@ -148,7 +148,7 @@ impl<T: Real> Toeplitz<T> {
             let from = &bins[(first + i) * nb..(first + i + 1) * nb];
             let row_bins = &mut piece.columns[..nb];
             row_bins.copy_from_slice(from);
-            self.rows.inverse(row_bins, &mut piece.row, &mut piece.scratch);
+            self.rows.inverse(row_bins, &mut piece.row[..self.rows.length()], &mut piece.scratch);
             u_row.copy_from_slice(&piece.row[..self.mx]);
         });
     }

@@ -1,0 +1,63 @@
+//! The test problem of the paper (section 5.1) and the runs behind its tables.
+
+use contact_normal::grid::Grid;
+use contact_normal::multigrid::SmootherKind;
+use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
+
+/// Curvatures in 1/mm, approach in mm.
+pub const CURVATURE: (f64, f64) = (0.0016681, 0.0030671);
+pub const APPROACH: f64 = 0.1091;
+/// Steel, N/mm2.
+pub const SHEAR_MODULUS: f64 = 82000.0;
+pub const POISSON_RATIO: f64 = 0.28;
+
+/// `[-10, 10] x [-6, 6]` mm in m x m elements.
+pub fn grid(m: usize) -> Grid {
+    Grid::new(m, m, 20.0 / m as f64, 12.0 / m as f64).expect("a valid grid")
+}
+
+/// The undeformed distance at the element centres.
+pub fn undeformed_distance(m: usize) -> Vec<f64> {
+    let grid = grid(m);
+    let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
+    (0..grid.len())
+        .map(|i| {
+            let (x, y) = (centre(i % m, grid.dx), centre(i / m, grid.dy));
+            CURVATURE.0 * x * x + CURVATURE.1 * y * y
+        })
+        .collect()
+}
+
+/// The scene, approach prescribed.
+pub fn scene(m: usize, h: &[f64]) -> Scene<'_> {
+    Scene::new(grid(m), h, Bodies::same(SHEAR_MODULUS, POISSON_RATIO), Load::Approach(APPROACH))
+}
+
+/// Table 1: the system on `C^1 = {h <= approach}`; cycles or iterations, and the mean reduction factor of the residual.
+pub fn linear_system(m: usize, method: Method, smoother: SmootherKind, relaxation: f64, most: usize) -> (Stop, Report, f64) {
+    let h = undeformed_distance(m);
+    let scene = scene(m, &h);
+    let options = Options {
+        method,
+        smoother: Some(smoother),
+        relaxation,
+        active_set: ActiveSet::Fixed,
+        max_cycles: most,
+        ..Options::default()
+    };
+    let contact: Vec<bool> = h.iter().map(|&h| h <= APPROACH).collect();
+    let guess = Guess { pressure: &vec![0.0; h.len()], contact: &contact };
+    let mut solver = Solver::new(&scene, &options).expect("a valid scene");
+    let (stop, report) = solver.solve(&scene, &options, Some(guess), None).expect("a solvable scene");
+    let factor = report.measures.certificate.residual.powf(1.0 / report.cycles as f64);
+    (stop, report, factor)
+}
+
+/// Tables 2 and 3: the whole problem by one of the methods.
+pub fn whole_problem(m: usize, method: Method, pre_sweeps: usize, post_sweeps: usize) -> (Stop, Report) {
+    let h = undeformed_distance(m);
+    let options = Options { method, pre_sweeps, post_sweeps, ..Options::default() };
+    let (_, stop, report) = solve(&scene(m, &h), &options).expect("a solvable scene");
+    (stop, report)
+}

@@ -1,0 +1,11 @@
+//! The active set: which elements are in contact, steps 4.1 and 4.2 of the paper, and how well the conditions hold.
+
+mod certificate;
+mod exchange;
+mod guard;
+mod state;
+
+pub use certificate::{certify, norm_of_distance, residual_norm, Certificate};
+pub use exchange::{admit, starting_contact, truncate};
+pub use guard::ExchangeGuard;
+pub use state::State;

@@ -1,0 +1,89 @@
+//! The unknowns of one grid and what is known about them.
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::operator::zeros;
+use crate::scene::Load;
+
+use super::exchange::starting_contact;
+
+/// Pressures, displacements and contact area on one grid, with the undeformed distance that they belong to.
+pub struct State {
+    /// The grid.
+    pub grid: Grid,
+    /// h; `+infinity` where there is no surface.
+    pub h: Vec<f64>,
+    /// p: zero outside the contact area.
+    pub p: Vec<f64>,
+    /// u = A p.
+    pub u: Vec<f64>,
+    /// C.
+    pub contact: Vec<bool>,
+    /// The approach: given, or the current estimate when the force is prescribed.
+    pub approach: f64,
+    /// What is prescribed.
+    pub load: Load,
+}
+
+impl State {
+    /// No pressures, no contact. `estimate` is the approach to start from when the force is prescribed.
+    pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
+        let n = grid.len();
+        let approach = match load {
+            Load::Approach(approach) => approach,
+            Load::Force(_) => estimate,
+        };
+        Ok(State { grid, h, p: zeros(n, "pressures")?, u: zeros(n, "displacements")?, contact: zeros(n, "contact")?, approach, load })
+    }
+
+    /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.
+    pub fn start(&mut self, self_influence: f64) {
+        if let Load::Force(force) = self.load {
+            self.approach = super::exchange::estimate_approach(&self.grid, &self.h, force, self_influence);
+        }
+        starting_contact(&self.h, self.approach, &mut self.contact);
+    }
+
+    /// Elements in contact.
+    pub fn contact_count(&self) -> usize {
+        self.contact.iter().filter(|&&inside| inside).count()
+    }
+
+    /// `sum of p dx dy`.
+    pub fn force(&self) -> f64 {
+        self.p.iter().sum::<f64>() * self.grid.element_area()
+    }
+
+    /// `e = h - approach + u` of element i.
+    pub fn deformed_distance(&self, i: usize) -> f64 {
+        self.h[i] - self.approach + self.u[i]
+    }
+
+    /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed.
+    pub fn balance_force(&mut self) {
+        let Load::Force(force) = self.load else { return };
+        let carried = self.force();
+        let factor = force / carried;
+        // Pressures too small to be scaled (none yet, or all truncated) start again from a uniform pressure.
+        if carried > 0.0 && factor.is_finite() {
+            self.p.iter_mut().for_each(|p| *p *= factor);
+        } else {
+            let uniform = force / (self.grid.element_area() * self.contact_count().max(1) as f64);
+            self.p.iter_mut().zip(&self.contact).for_each(|(p, &inside)| *p = if inside { uniform } else { 0.0 });
+        }
+    }
+
+    /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.
+    pub fn fit_approach(&mut self) {
+        if let Load::Force(_) = self.load {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for ((h, u), _) in self.h.iter().zip(&self.u).zip(&self.contact).filter(|(_, &inside)| inside) {
+                sum += h + u;
+                count += 1.0;
+            }
+            if count > 0.0 {
+                self.approach = sum / count;
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! The exact Hertz solution: two smooth bodies, `h = A x^2 + B y^2 - approach` on half-spaces with `1/E*` in series.
+//!
+//! Contact is an ellipse with semi-axes `a`, `b` and pressures `p0 sqrt(1 - (x/a)^2 - (y/b)^2)` (Johnson, Contact
+//! Mechanics, section 4.2). With the shorter semi-axis in the direction of the larger curvature, `k = b/a < 1` say, `e^2 = 1 - k^2`
+//! and the complete elliptic integrals K(e), E(e):
+//!
+//! ```text
+//! u(0) = p0 b K / E*,    A = (p0 b / E* e^2 a^2) (K - E),    B = (p0 b / E* e^2 a^2) (E / k^2 - K)
+//! ```
+//!
+//! so `B/A` fixes k, then `approach = u(0)` fixes `a^2 = approach (K - E) / (A e^2 K)`, and `F = (2/3) pi a b p0`.
+
+use std::f64::consts::PI;
+
+use crate::error::{invalid, Result};
+
+/// The exact solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hertz {
+    /// Semi-axis of the contact ellipse in x.
+    pub semi_axis_x: f64,
+    /// Semi-axis in y.
+    pub semi_axis_y: f64,
+    /// Pressure at the centre.
+    pub max_pressure: f64,
+    /// Approach of the bodies.
+    pub approach: f64,
+    /// Normal force.
+    pub force: f64,
+    /// Area of the contact ellipse.
+    pub area: f64,
+}
+
+/// Hertz contact for `h = curvature_x x^2 + curvature_y y^2 - approach`; `compliance` is `1/E*`.
+pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Result<Hertz> {
+    let named = [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
+    for (name, value) in named {
+        if !(value > 0.0 && value.is_finite()) {
+            return invalid(format!("{name} is {value}; it must be positive and finite"));
+        }
+    }
+    // The long axis lies along the smaller curvature.
+    let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
+    let shape = Shape::of(large / small);
+    let long = (approach / (small * shape.small_over_approach)).sqrt();
+    let short = shape.k * long;
+    let max_pressure = approach / (compliance * short * shape.first);
+    let (semi_axis_x, semi_axis_y) = if curvature_x <= curvature_y { (long, short) } else { (short, long) };
+    let area = PI * long * short;
+    Ok(Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area })
+}
+
+/// The same with the force given: `F` grows with the approach to the power 3/2.
+pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
+    if !(force > 0.0 && force.is_finite()) {
+        return invalid(format!("force is {force}; it must be positive and finite"));
+    }
+    let unit = hertz(curvature_x, curvature_y, 1.0, compliance)?;
+    hertz(curvature_x, curvature_y, (force / unit.force).powf(2.0 / 3.0), compliance)
+}
+
+/// The ellipse of a ratio of curvatures.
+struct Shape {
+    /// Short over long semi-axis.
+    k: f64,
+    /// `K(e)`.
+    first: f64,
+    /// `small curvature * a^2 / approach`, inverted: `e^2 K / (K - E)`.
+    small_over_approach: f64,
+}
+
+impl Shape {
+    fn of(ratio: f64) -> Shape {
+        // B/A as a function of k falls from infinity at 0 to 1 at 1; bisection in log k to the last bit.
+        let curvature_ratio = |k: f64| {
+            let (_, d, b) = elliptic(k);
+            b / d / (k * k)
+        };
+        let (mut low, mut high) = (ratio.recip().min(1.0).ln() - 1.0, 0.0);
+        while high - low > f64::EPSILON * (1.0 - low) {
+            let middle = 0.5 * (low + high);
+            if curvature_ratio(middle.exp()) > ratio {
+                low = middle;
+            } else {
+                high = middle;
+            }
+            if middle == low && middle == high {
+                break;
+            }
+        }
+        let k = if ratio == 1.0 { 1.0 } else { (0.5 * (low + high)).exp() };
+        let (first, d, _) = elliptic(k);
+        Shape { k, first, small_over_approach: first / d }
+    }
+}
+
+/// `K`, `D = (K - E)/e^2` and `B = (E - k^2 K)/e^2` of the modulus with `e^2 = 1 - k^2`, by the arithmetic-geometric mean
+/// (Abramowitz & Stegun 17.6): with `c_0 = e`, `K - E = K sum of 2^(n-1) c_n^2`. `D + B = K`.
+fn elliptic(k: f64) -> (f64, f64, f64) {
+    let e2 = (1.0 - k) * (1.0 + k);
+    let (mut a, mut g) = (1.0, k);
+    // sum over n >= 1 of 2^(n-1) c_n^2 / e^2: c_1 = (1 - k)/2, and e^2 = (1 - k)(1 + k) divides out.
+    let (mut power, mut sum) = (1.0, 0.0);
+    let mut c2_over_e2 = 0.25 * (1.0 - k) / (1.0 + k);
+    for _ in 0..60 {
+        let mean = 0.5 * (a + g);
+        sum += power * c2_over_e2;
+        power *= 2.0;
+        g = (a * g).sqrt();
+        a = mean;
+        let c = 0.5 * (a - g);
+        c2_over_e2 = if e2 > 0.0 { c * c / e2 } else { 0.0 };
+        if c <= f64::EPSILON * a * 1e-3 {
+            break;
+        }
+    }
+    let first = PI / (2.0 * a);
+    let d = first * (0.5 + sum);
+    (first, d, first - d)
+}

@@ -1,0 +1,11 @@
+//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle.
+
+mod coarsest;
+mod cycle;
+mod hierarchy;
+pub mod smoother;
+pub mod transfer;
+
+pub use cycle::{CycleShape, Multigrid};
+pub use hierarchy::{coarsen, Hierarchy, Level};
+pub use smoother::SmootherKind;

@@ -1,0 +1,225 @@
+//! Lexicographic Gauss-Seidel with relaxation (x fastest), restricted to a set of elements.
+//!
+//! ```text
+//! for I in the set, in order:  p_I += omega (b_I - sum_J A_IJ p_J) / A_II       with what is already updated
+//! ```
+//!
+//! Summed element by element a sweep costs O(n^2). But with `r = b - A p` before the sweep and `d` the changes it makes, the
+//! sum that element I sees is `r_I - sum over J < I of A_IJ d_J`: a triangular block Toeplitz product. So the changes of
+//! each finished row are transformed in x once, and what they do to later rows is gathered in transformed space, by
+//! products within [`STRIP`] rows and by FFT in y between halves of larger blocks (divide and conquer). Only the part
+//! inside the current row is sequential. Same iterates as the dense sweep to round-off, at O(n log^2 n) plus mx^2 my for
+//! the rows themselves.
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Influence;
+use crate::operator::fft::{good_length, ColumnTransform, Complex, RowTransform};
+use crate::operator::zeros;
+
+/// Rows in a block whose mutual influence is summed directly.
+const STRIP: usize = 16;
+
+/// Bins transformed together: neighbours in memory.
+const COLUMNS: usize = 8;
+
+/// Gauss-Seidel on one grid.
+pub struct GaussSeidel {
+    mx: usize,
+    my: usize,
+    rows: RowTransform<f64>,
+    /// Coefficients `c(k, 0)` inside a row, `k >= 0`.
+    within_row: Vec<f64>,
+    /// `[d][bin]`: transformed coefficients between rows that are `d < STRIP` apart, normalised.
+    between_rows: Vec<Complex<f64>>,
+    /// For blocks of 2, 4, .. strips: how their first half acts on the second.
+    halves: Vec<Half>,
+    /// `[my][bins]`: the transformed changes of each finished row, and what each row gathered from them.
+    changes: Vec<Complex<f64>>,
+    gathered: Vec<Complex<f64>>,
+    bins: Vec<Complex<f64>>,
+    columns: Vec<Complex<f64>>,
+    row: Vec<f64>,
+    scratch: Vec<Complex<f64>>,
+}
+
+/// The action of the first half of a block of rows on its second half.
+struct Half {
+    transform: ColumnTransform<f64>,
+    /// `[bin][rows]`: transformed in y over the block.
+    kernel: Vec<Complex<f64>>,
+}
+
+impl GaussSeidel {
+    /// Sets up sweeps on `grid`.
+    pub fn new(influence: &Influence, grid: &Grid) -> Result<GaussSeidel> {
+        let (mx, my) = (grid.mx, grid.my);
+        let px = good_length(2 * mx - 1);
+        let rows = RowTransform::new(px);
+        let nb = rows.bins();
+        let mut row = vec![0.0; px];
+        let mut scratch = rows.scratch();
+
+        // Transform of the coefficients between rows d apart, for every d.
+        let mut kernels: Vec<Complex<f64>> = zeros(my * nb, "the smoother")?;
+        let normalisation = 1.0 / px as f64;
+        for (d, bins) in kernels.chunks_exact_mut(nb).enumerate() {
+            row.fill(0.0);
+            for kx in 1 - mx as i64..mx as i64 {
+                row[kx.rem_euclid(px as i64) as usize] = normalisation * influence.at(kx, d as i64);
+            }
+            rows.forward(&mut row, bins, &mut scratch);
+        }
+
+        let mut halves = Vec::new();
+        let mut block = 2 * STRIP;
+        while block < 2 * my && my > STRIP {
+            let transform = ColumnTransform::new(block);
+            scratch.resize(scratch.len().max(transform.scratch().len()), Complex::default());
+            let mut kernel: Vec<Complex<f64>> = zeros(nb * block, "the smoother")?;
+            for (bin, column) in kernel.chunks_exact_mut(block).enumerate() {
+                for d in 1..block.min(my) {
+                    column[d] = kernels[d * nb + bin] / block as f64;
+                }
+                transform.forward(column, &mut scratch);
+            }
+            halves.push(Half { transform, kernel });
+            block *= 2;
+        }
+        kernels.truncate(STRIP * nb);
+        let longest = halves.last().map_or(0, |half| half.transform.length());
+        let mut within_row = vec![0.0; mx];
+        influence.fill_row(0, 0, &mut within_row);
+        Ok(GaussSeidel {
+            mx,
+            my,
+            within_row,
+            between_rows: kernels,
+            halves,
+            changes: zeros(my * nb, "the smoother")?,
+            gathered: zeros(my * nb, "the smoother")?,
+            bins: vec![Complex::default(); nb],
+            columns: vec![Complex::default(); COLUMNS * longest],
+            row,
+            scratch,
+            rows,
+        })
+    }
+
+    /// Elements in a row of the grid.
+    pub fn row_length(&self) -> usize {
+        self.mx
+    }
+
+    /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is used up.
+    pub fn sweep(&mut self, p: &mut [f64], residual: &mut [f64], relaxation: f64, in_set: impl Fn(usize) -> bool + Copy) {
+        let mx = self.mx;
+        let used = |iy: &usize| (iy * mx..(iy + 1) * mx).any(in_set);
+        let Some(first) = (0..self.my).find(used) else { return };
+        let end = (0..self.my).rfind(used).map_or(first, |last| last + 1);
+        let nb = self.rows.bins();
+        self.gathered[first * nb..end * nb].fill(Complex::default());
+        // Blocks of 2^level strips; the smallest that holds all rows of the set.
+        let level = (0..).find(|&level| STRIP << level >= end - first).unwrap_or(0);
+        self.block(first, end, level, &mut Sweep { p, residual, relaxation, in_set });
+    }
+
+    /// Sweeps the rows from `first` to the end of its block of `STRIP << level` rows, or to `end`.
+    fn block<S: Fn(usize) -> bool + Copy>(&mut self, first: usize, end: usize, level: usize, sweep: &mut Sweep<'_, S>) {
+        if level == 0 {
+            for iy in first..end.min(first + STRIP) {
+                self.gather_within_strip(first, iy);
+                self.sweep_row(iy, sweep);
+            }
+            return;
+        }
+        let middle = first + (STRIP << (level - 1));
+        self.block(first, end, level - 1, sweep);
+        if middle < end {
+            self.gather_from_first_half(first, middle, end.min(first + (STRIP << level)), level);
+            self.block(middle, end, level - 1, sweep);
+        }
+    }
+
+    /// Adds to row `iy` what the finished rows `first..iy` of its strip do to it.
+    fn gather_within_strip(&mut self, first: usize, iy: usize) {
+        let nb = self.rows.bins();
+        let to = &mut self.gathered[iy * nb..(iy + 1) * nb];
+        for jy in first..iy {
+            let kernel = &self.between_rows[(iy - jy) * nb..(iy - jy + 1) * nb];
+            let changes = &self.changes[jy * nb..(jy + 1) * nb];
+            for ((value, k), change) in to.iter_mut().zip(kernel).zip(changes) {
+                *value += k * change;
+            }
+        }
+    }
+
+    /// Adds to the rows `middle..end` what the finished rows `first..middle` do to them.
+    fn gather_from_first_half(&mut self, first: usize, middle: usize, end: usize, level: usize) {
+        let nb = self.rows.bins();
+        let half = &self.halves[level - 1];
+        let block = half.transform.length();
+        for bin in (0..nb).step_by(COLUMNS) {
+            let count = COLUMNS.min(nb - bin);
+            let columns = &mut self.columns[..count * block];
+            for (row, jy) in (first..middle).enumerate() {
+                for (c, change) in self.changes[jy * nb + bin..][..count].iter().enumerate() {
+                    columns[c * block + row] = *change;
+                }
+            }
+            for column in columns.chunks_exact_mut(block) {
+                column[middle - first..].fill(Complex::default());
+            }
+            half.transform.forward(columns, &mut self.scratch);
+            for (value, k) in columns.iter_mut().zip(&half.kernel[bin * block..]) {
+                *value *= k;
+            }
+            half.transform.inverse(columns, &mut self.scratch);
+            for iy in middle..end {
+                for (c, gathered) in self.gathered[iy * nb + bin..][..count].iter_mut().enumerate() {
+                    *gathered += columns[c * block + iy - first];
+                }
+            }
+        }
+    }
+
+    /// The sequential part: the elements of one row, one after the other.
+    fn sweep_row<S: Fn(usize) -> bool + Copy>(&mut self, iy: usize, sweep: &mut Sweep<'_, S>) {
+        let (mx, nb) = (self.mx, self.rows.bins());
+        let elements = iy * mx..(iy + 1) * mx;
+        let in_set = sweep.in_set;
+        let changes = &mut self.changes[iy * nb..(iy + 1) * nb];
+        let (Some(start), Some(last)) = (elements.clone().find(|&i| in_set(i)), elements.clone().rfind(|&i| in_set(i))) else {
+            changes.fill(Complex::default());
+            return;
+        };
+        self.bins.copy_from_slice(&self.gathered[iy * nb..(iy + 1) * nb]);
+        self.rows.inverse(&mut self.bins, &mut self.row, &mut self.scratch);
+        let residual = &mut sweep.residual[elements.clone()];
+        let p = &mut sweep.p[elements.clone()];
+        residual.iter_mut().zip(&self.row).for_each(|(r, gathered)| *r -= gathered);
+        self.row.fill(0.0);
+        let (start, end) = (start - elements.start, last - elements.start + 1);
+        let factor = sweep.relaxation / self.within_row[0];
+        for ix in start..end {
+            if !in_set(elements.start + ix) {
+                continue;
+            }
+            let change = factor * residual[ix];
+            p[ix] += change;
+            self.row[ix] = change;
+            for (r, c) in residual[ix + 1..end].iter_mut().zip(&self.within_row[1..]) {
+                *r -= c * change;
+            }
+        }
+        self.rows.forward(&mut self.row, changes, &mut self.scratch);
+    }
+}
+
+/// What one sweep works on.
+struct Sweep<'a, S> {
+    p: &'a mut [f64],
+    residual: &'a mut [f64],
+    relaxation: f64,
+    in_set: S,
+}

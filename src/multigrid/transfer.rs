@@ -1,0 +1,69 @@
+//! Transfer between a grid and the next coarser one (section 4.2 of the paper, figure 3).
+//!
+//! A coarse element covers up to 2 x 2 fine ones, its children: four by standard coarsening, fewer at the end of an odd
+//! count or where one direction is left alone.
+
+use crate::grid::Grid;
+
+/// The indices of the children of coarse element `(ix, iy)`.
+fn children(fine: &Grid, coarse: &Grid, ix: usize, iy: usize) -> impl Iterator<Item = usize> {
+    let span = |fine: usize, coarse: usize, i: usize| {
+        let factor = if coarse < fine { 2 } else { 1 };
+        factor * i..(factor * (i + 1)).min(fine)
+    };
+    let (columns, mx) = (span(fine.mx, coarse.mx, ix), fine.mx);
+    span(fine.my, coarse.my, iy).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
+}
+
+/// Restriction of defects: the mean over the children. Defects in the exterior area are zero, and count.
+pub fn restrict_defect(fine: &Grid, coarse: &Grid, defect: &[f64], to: &mut [f64]) {
+    for iy in 0..coarse.my {
+        for ix in 0..coarse.mx {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for i in children(fine, coarse, ix, iy) {
+                sum += defect[i];
+                count += 1.0;
+            }
+            to[coarse.index(ix, iy)] = sum / count;
+        }
+    }
+}
+
+/// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has.
+pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], to: &mut [f64]) {
+    for iy in 0..coarse.my {
+        for ix in 0..coarse.mx {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for i in children(fine, coarse, ix, iy).filter(|&i| h[i].is_finite()) {
+                sum += h[i];
+                count += 1.0;
+            }
+            to[coarse.index(ix, iy)] = if count > 0.0 { sum / count } else { f64::INFINITY };
+        }
+    }
+}
+
+/// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
+pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
+    for iy in 0..coarse.my {
+        for ix in 0..coarse.mx {
+            let (mut inside, mut count) = (0, 0);
+            for i in children(fine, coarse, ix, iy) {
+                inside += usize::from(contact[i]);
+                count += 1;
+            }
+            to[coarse.index(ix, iy)] = 2 * inside >= count;
+        }
+    }
+}
+
+/// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
+pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], combine: impl Fn(&mut f64, f64)) {
+    for iy in 0..coarse.my {
+        for ix in 0..coarse.mx {
+            for i in children(fine, coarse, ix, iy) {
+                combine(&mut to[i], from[coarse.index(ix, iy)]);
+            }
+        }
+    }
+}

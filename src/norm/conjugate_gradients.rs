@@ -1,0 +1,101 @@
+//! Conjugate gradients for the equations on a fixed contact area, with the approach or the force prescribed.
+//!
+//! ```text
+//! prescribed approach:  A p = approach - h              on C, p = 0 outside
+//! prescribed force:     A p = approach - h, sum of p dx dy = F;  the approach is unknown, so residuals and search
+//!                       directions keep mean zero over C, and the approach is the mean of h + A p over C
+//! ```
+
+use crate::active_set::State;
+use crate::error::{Error, Result};
+use crate::scene::Load;
+
+/// When the inner iteration stops.
+#[derive(Clone, Copy, Debug)]
+pub struct InnerStop {
+    /// 2-norm over C of the residual, recursively updated, at which it stops.
+    pub residual: f64,
+    /// Or: rms of the last change of p at most this part of the rms of p (NORM's own criterion); 0: not used.
+    pub update: f64,
+    /// Iterations at most.
+    pub iterations: usize,
+}
+
+/// What the inner iteration did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inner {
+    /// Iterations; each is one matrix product.
+    pub iterations: usize,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// Whether the criterion was met.
+    pub met: bool,
+}
+
+/// Conjugate gradients from the state's p, whose u = A p is known. Updates p; u is not kept up to date.
+/// `displace` computes products; `go_on(update, residual)` is asked after
+/// each iteration.
+pub fn conjugate_gradients(
+    state: &mut State,
+    stop: InnerStop,
+    mut displace: impl FnMut(&[f64], &mut [f64]),
+    mut go_on: impl FnMut(f64, f64) -> bool,
+) -> Result<Inner> {
+    let n = state.p.len();
+    let mean_free = matches!(state.load, Load::Force(_));
+    let count = state.contact_count() as f64;
+    let contact = &state.contact;
+    let project = |values: &mut [f64]| {
+        let mut sum = 0.0;
+        for (value, &inside) in values.iter_mut().zip(contact) {
+            if inside {
+                sum += *value;
+            } else {
+                *value = 0.0;
+            }
+        }
+        if mean_free {
+            values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
+        }
+    };
+    let mut r: Vec<f64> = (0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }).collect();
+    project(&mut r);
+    let mut direction = r.clone();
+    let mut product = vec![0.0; n];
+    let mut rr: f64 = dot(&r, &r);
+    let mut inner = Inner::default();
+    while inner.iterations < stop.iterations && rr.sqrt() > stop.residual {
+        displace(&direction, &mut product);
+        project(&mut product);
+        inner.iterations += 1;
+        let curvature = dot(&direction, &product);
+        if !(curvature > 0.0) {
+            return Err(Error::NotPositiveDefinite(format!(
+                "influence coefficients: p'Ap is {curvature} for some pressures p; it must be positive"
+            )));
+        }
+        let step = rr / curvature;
+        for (p, d) in state.p.iter_mut().zip(&direction) {
+            *p += step * d;
+        }
+        for (r, q) in r.iter_mut().zip(&product) {
+            *r -= step * q;
+        }
+        let before = std::mem::replace(&mut rr, dot(&r, &r));
+        inner.update = step.abs() * (dot(&direction, &direction) / count).sqrt();
+        let met = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt() && stop.update > 0.0;
+        if !go_on(inner.update, rr.sqrt()) || met {
+            inner.met = met;
+            return Ok(inner);
+        }
+        for (d, r) in direction.iter_mut().zip(&r) {
+            *d = r + rr / before * *d;
+        }
+    }
+    inner.met = rr.sqrt() <= stop.residual;
+    Ok(inner)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

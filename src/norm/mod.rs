@@ -1,0 +1,12 @@
+//! The original algorithm, Kalker's NORM (section 3 of the paper): an active set, and conjugate gradients inside.
+//!
+//! 1. Start from a contact area.
+//! 2. Solve `h - approach + A p = 0` on it, `p = 0` outside, by conjugate gradients from `p = 0`.
+//! 3. Elements with `p < 0` leave, exterior elements with `e < 0` enter.
+//! 4. Repeat until the contact area stays.
+
+mod conjugate_gradients;
+mod minimal_residual;
+
+pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
+pub use minimal_residual::minimal_residual;

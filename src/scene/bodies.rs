@@ -1,0 +1,49 @@
+//! The elasticity of the two bodies.
+
+use crate::error::{invalid, Error, Result};
+
+/// Shear modulus G and Poisson ratio nu of the two bodies; `G = +infinity`: rigid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bodies {
+    /// G of body 1 and 2, in the caller's unit of pressure.
+    pub shear_modulus: [f64; 2],
+    /// nu of body 1 and 2, in (-1, 0.5].
+    pub poisson_ratio: [f64; 2],
+}
+
+impl Bodies {
+    /// Two bodies of the same material.
+    pub fn same(shear_modulus: f64, poisson_ratio: f64) -> Bodies {
+        Bodies { shear_modulus: [shear_modulus; 2], poisson_ratio: [poisson_ratio; 2] }
+    }
+
+    /// `1/E* = sum over the bodies of (1 - nu)/(2 G)`: half-spaces in series (Johnson, eq. 4.5).
+    pub fn compliance(&self) -> f64 {
+        (0..2).map(|i| (1.0 - self.poisson_ratio[i]) / (2.0 * self.shear_modulus[i])).sum()
+    }
+
+    /// Refuses what is no material.
+    pub fn check(&self) -> Result<()> {
+        for i in 0..2 {
+            let (modulus, ratio) = (self.shear_modulus[i], self.poisson_ratio[i]);
+            if modulus.is_nan() || ratio.is_nan() {
+                let (name, value) = if modulus.is_nan() { ("shear_modulus", modulus) } else { ("poisson_ratio", ratio) };
+                return Err(Error::NotFinite(format!("{name}[{i}] is {value}; it must be a number")));
+            }
+            if modulus <= 0.0 {
+                return invalid(format!("shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"));
+            }
+            if !(ratio > -1.0 && ratio <= 0.5) {
+                return invalid(format!("poisson_ratio[{i}] is {ratio}; it must lie in (-1, 0.5]"));
+            }
+        }
+        if self.shear_modulus.iter().all(|modulus| modulus.is_infinite()) {
+            return invalid("shear_modulus is infinite for both bodies; at least one of them must be elastic".into());
+        }
+        let compliance = self.compliance();
+        if !(compliance.is_normal() && (1.0 / compliance).is_normal()) {
+            return invalid(format!("shear_modulus is {:?}; 1/E* = {compliance} is out of range", self.shear_modulus));
+        }
+        Ok(())
+    }
+}

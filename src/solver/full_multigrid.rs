@@ -1,0 +1,91 @@
+//! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first.
+
+use super::monitor::{Monitor, Rule};
+use super::norm_method::{self, Displace};
+use super::report::Stop;
+use super::multigrid_method;
+use crate::active_set::State;
+use crate::error::Result;
+use crate::multigrid::{transfer, Multigrid};
+use crate::scene::Load;
+
+/// Cycles at most on the coarser grids: they only prepare the next finer one.
+const COARSE_CYCLES: u64 = 30;
+
+/// Solves on all grids; `states[0]` is the finest. `error_ratio` as in the options.
+pub fn solve(
+    multigrid: &mut Multigrid,
+    states: &mut [State],
+    rule: &Rule,
+    error_ratio: f64,
+    monitor: &mut Monitor<'_>,
+) -> Result<Stop> {
+    let coarsest = states.len() - 1;
+    let coarse_rule = Rule { max_cycles: rule.max_cycles.min(COARSE_CYCLES), ..*rule };
+
+    // The coarsest grid, by NORM.
+    monitor.enter_grid();
+    let level = &multigrid.hierarchy.levels[coarsest];
+    let (influence, work) = (level.influence.clone(), multigrid.hierarchy.work(coarsest));
+    states[coarsest].start(influence.at(0, 0));
+    let symmetric = influence.is_symmetric(&level.grid);
+    let mut displace = |p: &[f64], u: &mut [f64]| multigrid.displace(coarsest, p, u);
+    let norm_rule = if coarsest == 0 { *rule } else { Rule { max_cycles: rule.max_cycles.max(1000), ..*rule } };
+    let by = Displace { product: &mut displace, work, symmetric };
+    let mut stop = norm_method::solve(&mut states[coarsest], by, &norm_rule, monitor)?;
+    multigrid.take_products();
+
+    // Each finer grid, from the pressures of the coarser one.
+    for l in (0..coarsest).rev() {
+        let cancelled = stop == Stop::Cancelled;
+        if !cancelled {
+            monitor.close_grid(&states[l + 1]);
+            monitor.enter_grid();
+        }
+        let (finer, coarser) = states.split_at_mut(l + 1);
+        let state = &mut finer[l];
+        interpolate(&coarser[0], state);
+        state.balance_force();
+        multigrid.displace(l, &state.p, &mut state.u);
+        state.fit_approach();
+        if cancelled {
+            continue; // what the coarser grids found is the best iterate there is
+        }
+        let mut level_rule = if l == 0 { *rule } else { coarse_rule };
+        if l == 0 && error_ratio > 0.0 {
+            level_rule.tolerance = level_rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
+        }
+        stop = multigrid_method::solve(multigrid, l, state, &level_rule, monitor);
+    }
+    Ok(stop)
+}
+
+/// p and u of the coarser grid, piecewise constant; contact where p > 0 or e <= 0.
+fn interpolate(coarse: &State, fine: &mut State) {
+    let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.u, &mut fine.u, |to, value| *to = value);
+    fine.approach = coarse.approach;
+    for i in 0..fine.p.len() {
+        if fine.h[i].is_infinite() {
+            fine.p[i] = 0.0;
+        }
+        fine.contact[i] = fine.p[i] > 0.0 || fine.deformed_distance(i) <= 0.0;
+    }
+}
+
+/// Relative discretisation error of the force, or of the approach if the force is prescribed, as the step between the
+/// last two coarser grids suggests it for this one: half of it, by first-order convergence.
+fn discretisation_error(monitor: &Monitor<'_>, state: &State) -> f64 {
+    let Some(row) = monitor.ledger().last() else { return 0.0 };
+    let value = match state.load {
+        Load::Approach(_) => row.measures.force,
+        Load::Force(_) => row.measures.approach,
+    };
+    let relative = 0.5 * row.error.force / value.abs();
+    if relative.is_finite() && relative > 0.0 {
+        relative
+    } else {
+        0.0
+    }
+}

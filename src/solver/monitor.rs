@@ -1,0 +1,202 @@
+//! Counts what a solve does, asks the caller whether to go on, and keeps the ledger.
+
+use std::time::Instant;
+
+use super::report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
+use crate::active_set::{norm_of_distance, residual_norm, State};
+use crate::grid::Grid;
+use crate::scene::Load;
+
+/// What a progress callback is told after each cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Elements in x of the grid that the cycle was on.
+    pub mx: usize,
+    /// Elements in y.
+    pub my: usize,
+    /// Cycles on that grid.
+    pub cycles: u64,
+    /// Elements that changed sides in the last cycle.
+    pub active_set_changes: u64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+    /// Work units since then.
+    pub work_units: f64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// Relative residual over C, as far as it is known.
+    pub residual: f64,
+}
+
+/// Told the progress after each cycle; says whether to cancel.
+pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
+
+/// The counters of one solve.
+pub struct Monitor<'a> {
+    began: Instant,
+    callback: Option<ProgressCallback<'a>>,
+    cancelled: bool,
+    /// Cycles on the current grid.
+    pub cycles: u64,
+    /// Work units on all grids.
+    pub work_units: f64,
+    /// Products on the finest grid.
+    pub matrix_products: u64,
+    /// Elements that changed sides on the current grid.
+    pub active_set_changes: u64,
+    /// Active-set steps on the current grid.
+    pub active_set_steps: u64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    ledger: Vec<LedgerRow>,
+}
+
+impl<'a> Monitor<'a> {
+    /// The clock starts.
+    pub fn new(callback: Option<ProgressCallback<'a>>, ledger: Vec<LedgerRow>) -> Monitor<'a> {
+        Monitor {
+            began: Instant::now(),
+            callback,
+            cancelled: false,
+            cycles: 0,
+            work_units: 0.0,
+            matrix_products: 0,
+            active_set_changes: 0,
+            active_set_steps: 0,
+            update: 0.0,
+            ledger,
+        }
+    }
+
+    /// A new grid: its own counts start.
+    pub fn enter_grid(&mut self) {
+        self.cycles = 0;
+        self.active_set_changes = 0;
+        self.active_set_steps = 0;
+        self.update = 0.0;
+    }
+
+    /// Counts products: their number and the work of one.
+    pub fn count_products(&mut self, products: u64, work: f64) {
+        self.work_units += products as f64 * work;
+        if work == 1.0 {
+            self.matrix_products += products;
+        }
+    }
+
+    /// Counts a cycle; false when the caller cancels.
+    pub fn cycle_done(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
+        self.cycles += 1;
+        self.active_set_changes += changes;
+        self.update = update;
+        if let Some(callback) = &mut self.callback {
+            let progress = Progress {
+                mx: grid.mx,
+                my: grid.my,
+                cycles: self.cycles,
+                active_set_changes: changes,
+                seconds: self.began.elapsed().as_secs_f64(),
+                work_units: self.work_units,
+                update,
+                residual,
+            };
+            self.cancelled = callback(&progress);
+        }
+        !self.cancelled
+    }
+
+    /// The ledger so far.
+    pub fn ledger(&self) -> &[LedgerRow] {
+        &self.ledger
+    }
+
+    /// Whether the caller cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled
+    }
+
+    /// Writes the ledger row of the current grid; returns the estimated errors on it.
+    pub fn close_grid(&mut self, state: &State) -> DiscretisationError {
+        let measures = Measures::of(state);
+        let error = self.error_of(&measures, state);
+        self.ledger.push(LedgerRow {
+            mx: state.grid.mx,
+            my: state.grid.my,
+            cycles: self.cycles,
+            seconds: self.began.elapsed().as_secs_f64(),
+            work_units: self.work_units,
+            measures,
+            error,
+        });
+        error
+    }
+
+    /// The error that the step from the next coarser grid suggests for what is known now.
+    pub fn error_of(&self, measures: &Measures, state: &State) -> DiscretisationError {
+        let Some(coarser) = self.ledger.last() else { return DiscretisationError::default() };
+        let before = coarser.measures;
+        DiscretisationError {
+            force: match state.load {
+                Load::Approach(_) => (measures.force - before.force).abs(),
+                Load::Force(_) => (measures.approach - before.approach).abs(),
+            },
+            max_pressure: (measures.max_pressure - before.max_pressure).abs(),
+            contact_area: (measures.contact_area - before.contact_area).abs(),
+        }
+    }
+
+    /// The report of the whole solve, whose last ledger row is the finest grid's.
+    pub fn report(self) -> Report {
+        let last = self.ledger.last().copied();
+        Report {
+            cycles: self.cycles,
+            active_set_changes: self.active_set_changes,
+            active_set_steps: self.active_set_steps,
+            update: self.update,
+            matrix_products: self.matrix_products,
+            work_units: self.work_units,
+            measures: last.map(|row| row.measures).unwrap_or_default(),
+            error: last.map(|row| row.error).unwrap_or_default(),
+            solve_seconds: self.began.elapsed().as_secs_f64(),
+            ledger: self.ledger,
+            ..Report::default()
+        }
+    }
+}
+
+/// What ends the iteration on one grid.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule {
+    /// Of the criterion.
+    pub tolerance: f64,
+    /// Whether the last change of p is judged, or the residual.
+    pub by_update: bool,
+    /// Whether the contact area is given.
+    pub fixed: bool,
+    /// Cycles at most.
+    pub max_cycles: u64,
+}
+
+impl Rule {
+    /// Whether the criterion holds for a state whose u is A p.
+    pub fn holds(&self, state: &State, update: f64) -> bool {
+        if self.by_update {
+            let count = state.contact_count() as f64;
+            let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / count.max(1.0)).sqrt();
+            // not `>` so that a NaN does not pass
+            return update <= self.tolerance * rms;
+        }
+        residual_norm(state) <= self.tolerance * norm_of_distance(state)
+    }
+}
+
+impl Stop {
+    /// The stop of a loop that ran out of cycles or was cancelled.
+    pub(crate) fn interrupted(monitor: &Monitor<'_>) -> Stop {
+        if monitor.is_cancelled() {
+            Stop::Cancelled
+        } else {
+            Stop::IterationLimit
+        }
+    }
+}

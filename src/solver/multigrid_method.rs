@@ -1,0 +1,99 @@
+//! The multigrid-based algorithm (section 4.1 of the paper): one V-cycle per active-set step.
+
+use super::monitor::{Monitor, Rule};
+use super::report::Stop;
+use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, State};
+use crate::multigrid::Multigrid;
+
+/// Cycles without a new smallest residual after which the method is given up.
+const PATIENCE: u32 = 20;
+/// Cycles in which the criterion holds but elements still change sides, after which the certificate decides.
+const CHATTER: u32 = 5;
+
+/// Steps 2 to 6 on level `l`, from a state whose contact area is chosen (step 1) and whose u is A p.
+pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Stop {
+    let mut residual = vec![0.0; state.p.len()];
+    let mut best = Best::new(state);
+    let mut chatter = 0;
+    loop {
+        if monitor.cycles >= rule.max_cycles {
+            best.restore(state, multigrid, l);
+            return Stop::IterationLimit;
+        }
+        // 2. p = 0 in E, and the system restricted to C.
+        for i in 0..residual.len() {
+            residual[i] = if state.contact[i] { -state.deformed_distance(i) } else { 0.0 };
+        }
+        // 3. One multigrid cycle.
+        let correction = multigrid.cycle(l, &residual, &state.contact);
+        let mut update = 0.0;
+        for (p, v) in state.p.iter_mut().zip(correction) {
+            *p += v;
+            update += v * v;
+        }
+        let update = (update / state.contact_count().max(1) as f64).sqrt();
+        // 4.1 Elements with p < 0 leave, then u = A p: in this order, or the loop cycles for ever.
+        let mut changed = if rule.fixed { 0 } else { truncate(state) };
+        state.balance_force();
+        multigrid.displace(l, &state.p, &mut state.u);
+        state.fit_approach();
+        // 4.2 Elements with e <= 0 enter.
+        changed += if rule.fixed { 0 } else { admit(state) };
+
+        for (level, products) in multigrid.take_products().into_iter().enumerate() {
+            monitor.count_products(products, multigrid.hierarchy.work(level));
+        }
+        monitor.active_set_steps += 1;
+        let (r, h) = (residual_norm(state), norm_of_distance(state));
+        if !monitor.cycle_done(&state.grid, changed as u64, update, r / h) {
+            best.restore(state, multigrid, l);
+            return Stop::Cancelled;
+        }
+        // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
+        if rule.holds(state, update) {
+            chatter += u32::from(changed > 0);
+            let scale = h / (state.contact_count().max(1) as f64).sqrt();
+            if changed == 0 || (chatter > CHATTER && certify(state).penetration <= rule.tolerance * scale) {
+                return Stop::Converged;
+            }
+        }
+        if best.without_progress(state, r / h) {
+            best.restore(state, multigrid, l);
+            return Stop::Stagnated;
+        }
+    }
+}
+
+/// The best iterate so far.
+struct Best {
+    residual: f64,
+    since: u32,
+    p: Vec<f64>,
+    contact: Vec<bool>,
+}
+
+impl Best {
+    fn new(state: &State) -> Best {
+        Best { residual: f64::INFINITY, since: 0, p: state.p.clone(), contact: state.contact.clone() }
+    }
+
+    /// Notes an iterate; true when there has been no better one for too long, or this one is no longer a number.
+    fn without_progress(&mut self, state: &State, residual: f64) -> bool {
+        if residual < self.residual {
+            self.residual = residual;
+            self.since = 0;
+            self.p.copy_from_slice(&state.p);
+            self.contact.copy_from_slice(&state.contact);
+        } else {
+            self.since += 1;
+        }
+        self.since > PATIENCE || !residual.is_finite()
+    }
+
+    fn restore(self, state: &mut State, multigrid: &mut Multigrid, l: usize) {
+        state.p = self.p;
+        state.contact = self.contact;
+        multigrid.displace(l, &state.p, &mut state.u);
+        state.fit_approach();
+    }
+}

@@ -1,0 +1,165 @@
+//! How a scene is solved. The defaults suit everybody.
+
+use crate::error::{invalid, Result};
+use crate::multigrid::{CycleShape, SmootherKind};
+
+/// The method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The fastest way known that is safe for this scene.
+    #[default]
+    Auto,
+    /// Kalker's NORM: active set and conjugate gradients (section 3 of the paper).
+    Norm,
+    /// One V-cycle per active-set step (section 4.1).
+    Multigrid,
+    /// The same, nested over the grids (section 4.3).
+    FullMultigrid,
+}
+
+/// Who chooses the contact area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ActiveSet {
+    /// The contact conditions.
+    #[default]
+    Free,
+    /// The caller: the equations are solved on the given elements only (NORM's inner solve). Pressures may be negative.
+    Fixed,
+}
+
+/// Where the iteration starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InitialGuess {
+    /// Nothing is known.
+    #[default]
+    None,
+    /// The given pressures and contact area.
+    Given,
+    /// What this solver found last.
+    Previous,
+}
+
+/// What has to become small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Criterion {
+    /// `||h - approach + A p||_2 <= tolerance * ||h - approach||_2`, over C.
+    #[default]
+    Residual,
+    /// NORM's own: rms over C of the last change of p at most `tolerance` times the rms over C of p.
+    Update,
+}
+
+/// Arithmetic of the inner work; results are always computed in double precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Whichever is faster.
+    #[default]
+    Auto,
+    /// Double precision throughout.
+    Double,
+    /// Single precision inside, where it helps.
+    Mixed,
+}
+
+/// How a scene is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The method.
+    pub method: Method,
+    /// The smoother; `None`: Gauss-Seidel.
+    pub smoother: Option<SmootherKind>,
+    /// n1 of V(n1, n2).
+    pub pre_sweeps: usize,
+    /// n2 of V(n1, n2).
+    pub post_sweeps: usize,
+    /// omega; 0: what suits the smoother.
+    pub relaxation: f64,
+    /// The coarsest grid has at most this many elements in each direction.
+    pub coarsest: usize,
+    /// Free or given contact area.
+    pub active_set: ActiveSet,
+    /// Where to start.
+    pub initial_guess: InitialGuess,
+    /// See [`Criterion`].
+    pub tolerance: f64,
+    /// What has to become small.
+    pub criterion: Criterion,
+    /// > 0: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
+    /// approach, whichever is not prescribed). Needs the coarser grids of full multigrid.
+    pub error_ratio: f64,
+    /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid at most.
+    pub max_cycles: usize,
+    /// Threads; 0: all cores.
+    pub threads: usize,
+    /// Arithmetic of the inner work.
+    pub precision: Precision,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            method: Method::Auto,
+            smoother: None,
+            pre_sweeps: 1,
+            post_sweeps: 1,
+            relaxation: 0.0,
+            coarsest: 4,
+            active_set: ActiveSet::Free,
+            initial_guess: InitialGuess::None,
+            tolerance: 1e-6,
+            criterion: Criterion::Residual,
+            error_ratio: 0.0,
+            max_cycles: 1000,
+            threads: 1,
+            precision: Precision::Auto,
+        }
+    }
+}
+
+/// The coarsest grid is solved by elimination, `coarsest^2` unknowns.
+const LARGEST_COARSEST: usize = 64;
+/// More sweeps than this are a mistake.
+const MOST_SWEEPS: usize = 100;
+
+impl Options {
+    /// Refuses what makes no sense.
+    pub fn check(&self) -> Result<()> {
+        if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
+            return invalid(format!("tolerance is {}; it must be positive and finite", self.tolerance));
+        }
+        if self.max_cycles == 0 {
+            return invalid("max_cycles is 0; at least one cycle must be allowed".into());
+        }
+        if !(self.relaxation >= 0.0 && self.relaxation < 2.0) {
+            return invalid(format!("relaxation is {}; it must lie in (0, 2), or be 0 for the default", self.relaxation));
+        }
+        if self.pre_sweeps + self.post_sweeps == 0 {
+            return invalid("pre_sweeps and post_sweeps are both 0; a cycle needs at least one sweep".into());
+        }
+        for (name, sweeps) in [("pre_sweeps", self.pre_sweeps), ("post_sweeps", self.post_sweeps)] {
+            if sweeps > MOST_SWEEPS {
+                return invalid(format!("{name} is {sweeps}; at most {MOST_SWEEPS} are allowed"));
+            }
+        }
+        if !(1..=LARGEST_COARSEST).contains(&self.coarsest) {
+            return invalid(format!("coarsest is {}; it must lie in 1..{LARGEST_COARSEST}", self.coarsest));
+        }
+        if !(self.error_ratio >= 0.0 && self.error_ratio.is_finite()) {
+            return invalid(format!("error_ratio is {}; it must be positive and finite, or 0", self.error_ratio));
+        }
+        Ok(())
+    }
+
+    /// The V-cycle that these options ask for.
+    pub fn cycle_shape(&self) -> CycleShape {
+        let smoother = self.smoother.unwrap_or(SmootherKind::GaussSeidel);
+        let relaxation = if self.relaxation > 0.0 { self.relaxation } else { smoother.default_relaxation() };
+        CycleShape {
+            smoother,
+            relaxation,
+            pre_sweeps: self.pre_sweeps,
+            post_sweeps: self.post_sweeps,
+            coarsest: self.coarsest,
+        }
+    }
+}

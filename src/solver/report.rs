@@ -1,0 +1,114 @@
+//! What a solve found, what it cost, and what it knew when.
+
+use crate::active_set::{certify, Certificate, State};
+
+/// Why a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The certificate holds.
+    Converged,
+    /// `max_cycles` was reached.
+    IterationLimit,
+    /// The progress callback said so.
+    Cancelled,
+    /// No further progress: the method does not converge on this scene, or round-off is reached.
+    Stagnated,
+}
+
+/// The state of affairs on one grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measures {
+    /// How well the conditions hold.
+    pub certificate: Certificate,
+    /// The approach.
+    pub approach: f64,
+    /// `sum of p dx dy`.
+    pub force: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// Elements in contact.
+    pub contact_count: usize,
+    /// Their area.
+    pub contact_area: f64,
+}
+
+impl Measures {
+    /// Measures a state whose u is A p.
+    pub fn of(state: &State) -> Measures {
+        let contact_count = state.contact_count();
+        Measures {
+            certificate: certify(state),
+            approach: state.approach,
+            force: state.force(),
+            max_pressure: state.p.iter().copied().fold(0.0, f64::max),
+            contact_count,
+            contact_area: contact_count as f64 * state.grid.element_area(),
+        }
+    }
+}
+
+/// Estimated discretisation errors: how far the value moved from the next coarser grid. Pressures and areas converge about
+/// linearly in the element size, so that is about the error that is left. Negative: not known (no coarser grid was solved).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscretisationError {
+    /// Of the force (of the approach, when the force is prescribed).
+    pub force: f64,
+    /// Of the largest pressure.
+    pub max_pressure: f64,
+    /// Of the contact area.
+    pub contact_area: f64,
+}
+
+impl Default for DiscretisationError {
+    fn default() -> DiscretisationError {
+        DiscretisationError { force: -1.0, max_pressure: -1.0, contact_area: -1.0 }
+    }
+}
+
+/// One row of the ledger: what was known on one grid, and what it had cost by then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LedgerRow {
+    /// Elements in x.
+    pub mx: usize,
+    /// Elements in y.
+    pub my: usize,
+    /// Cycles on this grid.
+    pub cycles: u64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+    /// Work units since then: products, each weighted by its elements over those of the finest grid.
+    pub work_units: f64,
+    /// What was known.
+    pub measures: Measures,
+    /// And how far it was off.
+    pub error: DiscretisationError,
+}
+
+/// What a solve found and what it cost.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
+    pub cycles: u64,
+    /// Elements that entered or left the contact area on the finest grid, in all.
+    pub active_set_changes: u64,
+    /// Active-set steps on the finest grid.
+    pub active_set_steps: u64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// Products on the finest grid.
+    pub matrix_products: u64,
+    /// Products on all grids, in products on the finest.
+    pub work_units: f64,
+    /// The result.
+    pub measures: Measures,
+    /// And how far it is off.
+    pub error: DiscretisationError,
+    /// Seconds of set-up: 0 when the solver was set up before.
+    pub setup_seconds: f64,
+    /// Seconds of the solve.
+    pub solve_seconds: f64,
+    /// Bytes held by operators and unknowns.
+    pub bytes: u64,
+    /// One row per grid, coarsest first.
+    pub ledger: Vec<LedgerRow>,
+}
