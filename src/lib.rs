@@ -11,3 +11,8 @@ pub mod operator;
 pub mod scene;
 pub mod solver;
 pub mod threads;
+
+pub mod ffi;
+
+#[cfg(panic = "abort")]
+compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");

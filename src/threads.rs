@@ -21,6 +21,9 @@ pub enum Threads {
     Pool(Arc<rayon::ThreadPool>),
 }
 
+/// Prefix of the names of our threads.
+pub(crate) const THREAD_NAME: &str = "contact-normal-";
+
 struct Stamped {
     process: u32,
     count: usize,
@@ -54,7 +57,7 @@ impl Threads {
         });
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
-            .thread_name(|i| format!("contact-normal-{i}"))
+            .thread_name(|i| format!("{THREAD_NAME}{i}"))
             .build()
             .map_err(|e| Error::OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
         let pool = Arc::new(pool);

@@ -1,0 +1,72 @@
+//! The floating-point environment of the host: Fortran hosts flush denormals to zero, or trap; we compute in the default
+//! environment and give theirs back.
+
+/// Restores the host's environment when dropped.
+pub struct DefaultEnvironment {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    host: Register,
+}
+
+#[cfg(target_arch = "x86_64")]
+type Register = u32;
+#[cfg(target_arch = "aarch64")]
+type Register = u64;
+
+/// MXCSR: all exceptions masked, round to nearest, denormals kept.
+#[cfg(target_arch = "x86_64")]
+const DEFAULT: Register = 0x1f80;
+/// FPCR: no traps, round to nearest, denormals kept.
+#[cfg(target_arch = "aarch64")]
+const DEFAULT: Register = 0;
+
+#[cfg(target_arch = "x86_64")]
+fn read() -> Register {
+    let mut value: Register = 0;
+    // SAFETY: stmxcsr writes the 4 bytes of MXCSR to `value`; SSE is part of x86_64.
+    unsafe { std::arch::asm!("stmxcsr [{}]", in(reg) &mut value, options(nostack, preserves_flags)) };
+    value
+}
+
+#[cfg(target_arch = "x86_64")]
+fn write(value: Register) {
+    // SAFETY: only values read by stmxcsr or the architecture's default are loaded. The compiler assumes the default
+    // environment, which is what the library runs in between the two writes.
+    unsafe { std::arch::asm!("ldmxcsr [{}]", in(reg) &value, options(nostack, preserves_flags, readonly)) };
+}
+
+#[cfg(target_arch = "aarch64")]
+fn read() -> Register {
+    let value: Register;
+    // SAFETY: reads the floating-point control register.
+    unsafe { std::arch::asm!("mrs {}, fpcr", out(reg) value, options(nomem, nostack, preserves_flags)) };
+    value
+}
+
+#[cfg(target_arch = "aarch64")]
+fn write(value: Register) {
+    // SAFETY: only values read from the register, or its default.
+    unsafe { std::arch::asm!("msr fpcr, {}", in(reg) value, options(nomem, nostack, preserves_flags)) };
+}
+
+impl DefaultEnvironment {
+    /// Switches to the default environment.
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    pub fn enter() -> DefaultEnvironment {
+        let host = read();
+        write(DEFAULT);
+        DefaultEnvironment { host }
+    }
+
+    /// Unknown architectures keep the environment they have.
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    pub fn enter() -> DefaultEnvironment {
+        DefaultEnvironment {}
+    }
+}
+
+impl Drop for DefaultEnvironment {
+    fn drop(&mut self) {
+        #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+        write(self.host);
+    }
+}

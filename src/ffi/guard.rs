@@ -1,0 +1,52 @@
+//! The one guard that every export goes through: floating-point environment, panics, status, message.
+
+use std::cell::Cell;
+use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::sync::Once;
+
+use super::floating_point::DefaultEnvironment;
+use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_INTERNAL, CONTACT_NORMAL_OK};
+
+thread_local! {
+    static INSIDE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
+pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> contact_normal_status {
+    silence_our_panics();
+    let _environment = DefaultEnvironment::enter();
+    let nested = INSIDE.replace(true);
+    let outcome = catch_unwind(AssertUnwindSafe(body));
+    INSIDE.set(nested);
+    let (status, message) = match outcome {
+        Ok(Ok(status)) => (status, String::new()),
+        Ok(Err(refusal)) => (refusal.status, refusal.message),
+        Err(panic) => {
+            let text = panic.downcast_ref::<&str>().map(|s| s.to_string()).or(panic.downcast_ref::<String>().cloned());
+            let message = format!("internal error: {}; please report it", text.unwrap_or_default());
+            // Dropping a foreign payload might panic again.
+            std::mem::forget(panic);
+            (CONTACT_NORMAL_INTERNAL, message)
+        }
+    };
+    if status != CONTACT_NORMAL_OK || !message.is_empty() {
+        set_last_error(&message);
+    }
+    status
+}
+
+/// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the
+/// process go to whatever hook was there.
+fn silence_our_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let previous = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            let thread = std::thread::current();
+            let ours = thread.name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME));
+            if !INSIDE.get() && !ours {
+                previous(info);
+            }
+        }));
+    });
+}

@@ -1,0 +1,77 @@
+//! Log messages to a callback of the caller's.
+
+use std::ffi::{c_char, c_void, CString};
+use std::sync::{Mutex, PoisonError};
+
+use log::{LevelFilter, Log, Metadata, Record};
+
+use super::guard::guard;
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
+
+/// Log level: nothing.
+pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
+/// Log level: what the caller should look at.
+pub const CONTACT_NORMAL_LOG_WARNING: i32 = 1;
+/// Log level: what the library decided.
+pub const CONTACT_NORMAL_LOG_INFO: i32 = 2;
+
+/// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, with
+/// no lock held.
+pub type contact_normal_log_callback = Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
+
+#[derive(Clone, Copy)]
+struct Target {
+    callback: contact_normal_log_callback,
+    user: *mut c_void,
+}
+
+// SAFETY: the pointer is the caller's, who promises that the callback may be called from any thread that calls the library.
+unsafe impl Send for Target {}
+
+static TARGET: Mutex<Target> = Mutex::new(Target { callback: None, user: std::ptr::null_mut() });
+
+struct Forward;
+
+impl Log for Forward {
+    fn enabled(&self, _: &Metadata<'_>) -> bool {
+        true
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        // A copy, so that the lock is not held during the call.
+        let target = *TARGET.lock().unwrap_or_else(PoisonError::into_inner);
+        let level = if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
+        if let (Some(callback), Ok(message)) = (target.callback, CString::new(record.args().to_string())) {
+            // SAFETY: the caller's function with the caller's pointer.
+            unsafe { callback(level, message.as_ptr(), target.user) };
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
+/// UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_set_log(
+    callback: contact_normal_log_callback,
+    level: i32,
+    user: *mut c_void,
+) -> contact_normal_status {
+    static OURS: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
+    guard(|| {
+        let filter = match level {
+            CONTACT_NORMAL_LOG_OFF => LevelFilter::Off,
+            CONTACT_NORMAL_LOG_WARNING => LevelFilter::Warn,
+            CONTACT_NORMAL_LOG_INFO => LevelFilter::Info,
+            other => return Err(Refusal::invalid(format!("level is {other}; it must be OFF 0, WARNING 1 or INFO 2"))),
+        };
+        if !OURS.get_or_init(|| log::set_logger(&Forward).is_ok()) {
+            let message = "a logger is set already; it receives the messages".into();
+            return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message));
+        }
+        *TARGET.lock().unwrap_or_else(PoisonError::into_inner) = Target { callback, user };
+        log::set_max_level(if callback.is_some() { filter } else { LevelFilter::Off });
+        Ok(CONTACT_NORMAL_OK)
+    })
+}

@@ -1,0 +1,26 @@
+//! The C ABI: translation only, no numerics. Each export goes through [`guard`].
+
+#![allow(unsafe_code)]
+#![allow(non_camel_case_types)]
+#![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
+
+mod floating_point;
+mod guard;
+mod log;
+mod options;
+mod report;
+mod scene;
+mod solve;
+mod solver;
+mod special;
+mod status;
+mod structs;
+
+pub use self::log::*;
+pub use options::*;
+pub use report::*;
+pub use scene::*;
+pub use solve::*;
+pub use solver::*;
+pub use special::*;
+pub use status::*;

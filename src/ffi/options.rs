@@ -1,0 +1,210 @@
+//! `contact_normal_options`.
+
+use std::ffi::c_void;
+
+use super::report::contact_normal_progress;
+use super::scene::count;
+use super::status::Refusal;
+use super::structs::{self, Versioned};
+use crate::multigrid::SmootherKind;
+use crate::solver::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
+
+/// `method`: the fastest way known that is safe.
+pub const CONTACT_NORMAL_METHOD_AUTO: i32 = 0;
+/// `method`: Kalker's NORM, active set and conjugate gradients.
+pub const CONTACT_NORMAL_METHOD_NORM: i32 = 1;
+/// `method`: one V-cycle per active-set step (section 4.1 of the paper).
+pub const CONTACT_NORMAL_METHOD_MULTIGRID: i32 = 2;
+/// `method`: the same, nested over the grids (section 4.3).
+pub const CONTACT_NORMAL_METHOD_FULL_MULTIGRID: i32 = 3;
+
+/// `smoother`: Gauss-Seidel.
+pub const CONTACT_NORMAL_SMOOTHER_AUTO: i32 = 0;
+/// `smoother`: lexicographic Gauss-Seidel with relaxation.
+pub const CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL: i32 = 1;
+/// `smoother`: Gauss-Seidel in red-black order.
+pub const CONTACT_NORMAL_SMOOTHER_RED_BLACK: i32 = 2;
+/// `smoother`: (damped) Jacobi; does not converge on fine grids.
+pub const CONTACT_NORMAL_SMOOTHER_JACOBI: i32 = 3;
+
+/// `active_set`: the contact conditions decide.
+pub const CONTACT_NORMAL_ACTIVE_SET_FREE: i32 = 0;
+/// `active_set`: the equations are solved on `fields->contact` only, NORM's inner solve. Pressures may be negative.
+pub const CONTACT_NORMAL_ACTIVE_SET_FIXED: i32 = 1;
+
+/// `initial_guess`: nothing is known.
+pub const CONTACT_NORMAL_INITIAL_GUESS_NONE: i32 = 0;
+/// `initial_guess`: `fields->pressure`, and `fields->contact` if not NULL.
+pub const CONTACT_NORMAL_INITIAL_GUESS_GIVEN: i32 = 1;
+/// `initial_guess`: what this solver handle found last.
+pub const CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS: i32 = 2;
+
+/// `criterion`: `||h - approach + A p|| <= tolerance ||h - approach||`, 2-norms over C.
+pub const CONTACT_NORMAL_CRITERION_RESIDUAL: i32 = 0;
+/// `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p.
+pub const CONTACT_NORMAL_CRITERION_UPDATE: i32 = 1;
+
+/// `precision`: whichever is faster.
+pub const CONTACT_NORMAL_PRECISION_AUTO: i32 = 0;
+/// `precision`: double precision throughout.
+pub const CONTACT_NORMAL_PRECISION_DOUBLE: i32 = 1;
+/// `precision`: single precision in the inner work, where it helps; never in the result.
+pub const CONTACT_NORMAL_PRECISION_MIXED: i32 = 2;
+
+/// Called after each cycle, on the calling thread; non-zero cancels.
+pub type contact_normal_progress_callback =
+    Option<unsafe extern "C" fn(progress: *const contact_normal_progress, user: *mut c_void) -> i32>;
+
+/// How a scene is solved; the defaults suit everybody.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_options {
+    /// Set by `contact_normal_options_init`.
+    pub struct_size: i64,
+    /// CONTACT_NORMAL_METHOD_...; default AUTO.
+    pub method: i32,
+    /// CONTACT_NORMAL_SMOOTHER_...; default AUTO.
+    pub smoother: i32,
+    /// n1 of V(n1, n2); default 1.
+    pub pre_sweeps: i32,
+    /// n2 of V(n1, n2); default 1.
+    pub post_sweeps: i32,
+    /// omega, in (0, 2); default 0: what suits the smoother.
+    pub relaxation: f64,
+    /// The coarsest grid has at most this many elements in each direction, 1 to 64; default 4.
+    pub coarsest: i32,
+    /// CONTACT_NORMAL_ACTIVE_SET_...; default FREE.
+    pub active_set: i32,
+    /// CONTACT_NORMAL_INITIAL_GUESS_...; default NONE.
+    pub initial_guess: i32,
+    /// CONTACT_NORMAL_CRITERION_...; default RESIDUAL.
+    pub criterion: i32,
+    /// Of the criterion; default 1e-6.
+    pub tolerance: f64,
+    /// > 0: may stop once the residual is below this part of the estimated discretisation error; default 0.
+    pub error_ratio: f64,
+    /// Cycles (or iterations) on the finest grid at most; default 1000.
+    pub max_cycles: i32,
+    /// Threads; default 1: safe beside OpenMP and MPI; 0: all cores.
+    pub threads: i32,
+    /// CONTACT_NORMAL_PRECISION_...; default AUTO.
+    pub precision: i32,
+    /// Always 0.
+    pub reserved: i32,
+    /// Called after each cycle, or NULL.
+    pub progress: contact_normal_progress_callback,
+    /// Passed to `progress`.
+    pub user: *mut c_void,
+}
+
+// SAFETY: integers, floats, a raw pointer and an optional function pointer, struct_size first.
+unsafe impl Versioned for contact_normal_options {
+    const NAME: &'static str = "contact_normal_options";
+    const FIRST_SIZE: usize = 96;
+    fn defaults() -> Self {
+        let defaults = Options::default();
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            method: CONTACT_NORMAL_METHOD_AUTO,
+            smoother: CONTACT_NORMAL_SMOOTHER_AUTO,
+            pre_sweeps: defaults.pre_sweeps as i32,
+            post_sweeps: defaults.post_sweeps as i32,
+            relaxation: defaults.relaxation,
+            coarsest: defaults.coarsest as i32,
+            active_set: CONTACT_NORMAL_ACTIVE_SET_FREE,
+            initial_guess: CONTACT_NORMAL_INITIAL_GUESS_NONE,
+            criterion: CONTACT_NORMAL_CRITERION_RESIDUAL,
+            tolerance: defaults.tolerance,
+            error_ratio: defaults.error_ratio,
+            max_cycles: defaults.max_cycles as i32,
+            threads: defaults.threads as i32,
+            precision: CONTACT_NORMAL_PRECISION_AUTO,
+            reserved: 0,
+            progress: None,
+            user: std::ptr::null_mut(),
+        }
+    }
+}
+
+/// Fills options with the defaults. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_normal_options) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(options) }
+}
+
+/// Options and the callback with its user pointer.
+pub(super) struct Translated {
+    pub options: Options,
+    pub progress: contact_normal_progress_callback,
+    pub user: *mut c_void,
+}
+
+/// Translates options; NULL: the defaults.
+pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result<Translated, Refusal> {
+    let given = if options.is_null() {
+        contact_normal_options::defaults()
+    } else {
+        // SAFETY: not null: a struct that declares its size.
+        unsafe { structs::read(options, "options")? }
+    };
+    if given.reserved != 0 {
+        return Err(Refusal::invalid(format!("options->reserved is {}; it must be 0", given.reserved)));
+    }
+    let options = Options {
+        method: match given.method {
+            CONTACT_NORMAL_METHOD_AUTO => Method::Auto,
+            CONTACT_NORMAL_METHOD_NORM => Method::Norm,
+            CONTACT_NORMAL_METHOD_MULTIGRID => Method::Multigrid,
+            CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Method::FullMultigrid,
+            other => return unknown("method", other, "AUTO 0, NORM 1, MULTIGRID 2 or FULL_MULTIGRID 3"),
+        },
+        smoother: match given.smoother {
+            CONTACT_NORMAL_SMOOTHER_AUTO => None,
+            CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => Some(SmootherKind::GaussSeidel),
+            CONTACT_NORMAL_SMOOTHER_RED_BLACK => Some(SmootherKind::RedBlack),
+            CONTACT_NORMAL_SMOOTHER_JACOBI => Some(SmootherKind::Jacobi),
+            other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2 or JACOBI 3"),
+        },
+        pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
+        post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
+        relaxation: given.relaxation,
+        coarsest: count("coarsest", given.coarsest)?,
+        active_set: match given.active_set {
+            CONTACT_NORMAL_ACTIVE_SET_FREE => ActiveSet::Free,
+            CONTACT_NORMAL_ACTIVE_SET_FIXED => ActiveSet::Fixed,
+            other => return unknown("active_set", other, "FREE 0 or FIXED 1"),
+        },
+        initial_guess: match given.initial_guess {
+            CONTACT_NORMAL_INITIAL_GUESS_NONE => InitialGuess::None,
+            CONTACT_NORMAL_INITIAL_GUESS_GIVEN => InitialGuess::Given,
+            CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS => InitialGuess::Previous,
+            other => return unknown("initial_guess", other, "NONE 0, GIVEN 1 or PREVIOUS 2"),
+        },
+        tolerance: given.tolerance,
+        criterion: match given.criterion {
+            CONTACT_NORMAL_CRITERION_RESIDUAL => Criterion::Residual,
+            CONTACT_NORMAL_CRITERION_UPDATE => Criterion::Update,
+            other => return unknown("criterion", other, "RESIDUAL 0 or UPDATE 1"),
+        },
+        error_ratio: given.error_ratio,
+        max_cycles: count("max_cycles", given.max_cycles)?,
+        threads: not_negative("threads", given.threads)?,
+        precision: match given.precision {
+            CONTACT_NORMAL_PRECISION_AUTO => Precision::Auto,
+            CONTACT_NORMAL_PRECISION_DOUBLE => Precision::Double,
+            CONTACT_NORMAL_PRECISION_MIXED => Precision::Mixed,
+            other => return unknown("precision", other, "AUTO 0, DOUBLE 1 or MIXED 2"),
+        },
+    };
+    options.check()?;
+    Ok(Translated { options, progress: given.progress, user: given.user })
+}
+
+fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
+    Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
+}
+
+fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
+    usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
+}

@@ -1,0 +1,267 @@
+//! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
+
+use super::structs::{self, Versioned};
+use crate::solver::{LedgerRow, Progress, Report};
+
+/// Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_fields {
+    /// Set by `contact_normal_fields_init`.
+    pub struct_size: i64,
+    /// p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area.
+    pub pressure: *mut f64,
+    /// e = h - approach + A p; +infinity where there is no surface.
+    pub deformed_distance: *mut f64,
+    /// u = A p.
+    pub displacement: *mut f64,
+    /// 0: exterior, 1: contact. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+    pub contact: *mut i32,
+}
+
+// SAFETY: an integer and raw pointers only, struct_size first.
+unsafe impl Versioned for contact_normal_fields {
+    const NAME: &'static str = "contact_normal_fields";
+    const FIRST_SIZE: usize = 40;
+    fn defaults() -> Self {
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            pressure: std::ptr::null_mut(),
+            deformed_distance: std::ptr::null_mut(),
+            displacement: std::ptr::null_mut(),
+            contact: std::ptr::null_mut(),
+        }
+    }
+}
+
+/// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are negative where no
+/// coarser grid was solved.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_ledger_row {
+    /// Elements in x of the grid.
+    pub mx: i32,
+    /// Elements in y.
+    pub my: i32,
+    /// Cycles on it.
+    pub cycles: i64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+    /// Work units since then: products, each weighted by its elements over those of the finest grid.
+    pub work_units: f64,
+    /// Relative residual over C.
+    pub residual: f64,
+    /// Approach.
+    pub approach: f64,
+    /// Force.
+    pub force: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// Contact area.
+    pub contact_area: f64,
+    /// Estimated discretisation error of the force (of the approach, when the force is prescribed).
+    pub error_force: f64,
+    /// Of the largest pressure.
+    pub error_max_pressure: f64,
+    /// Of the contact area.
+    pub error_contact_area: f64,
+}
+
+impl From<&LedgerRow> for contact_normal_ledger_row {
+    fn from(row: &LedgerRow) -> Self {
+        Self {
+            mx: row.mx as i32,
+            my: row.my as i32,
+            cycles: row.cycles as i64,
+            seconds: row.seconds,
+            work_units: row.work_units,
+            residual: row.measures.certificate.residual,
+            approach: row.measures.approach,
+            force: row.measures.force,
+            max_pressure: row.measures.max_pressure,
+            contact_area: row.measures.contact_area,
+            error_force: row.error.force,
+            error_max_pressure: row.error.max_pressure,
+            error_contact_area: row.error.contact_area,
+        }
+    }
+}
+
+/// What a solve found and what it cost. Written only when the status is >= 0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_report {
+    /// Set by `contact_normal_report_init`.
+    pub struct_size: i64,
+    /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
+    pub cycles: i64,
+    /// Active-set steps on the finest grid.
+    pub active_set_steps: i64,
+    /// Elements that entered or left the contact area in them, in all.
+    pub active_set_changes: i64,
+    /// Products u = A p on the finest grid.
+    pub matrix_products: i64,
+    /// Products on all grids, in products on the finest.
+    pub work_units: f64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+    pub residual: f64,
+    /// Largest -e outside C, or 0: a length.
+    pub penetration: f64,
+    /// `sum of p |e| / sum of p |u|`.
+    pub complementarity: f64,
+    /// Smallest pressure.
+    pub min_pressure: f64,
+    /// Approach.
+    pub approach: f64,
+    /// Sum of p dx dy.
+    pub force: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// Contact area.
+    pub contact_area: f64,
+    /// Elements in contact.
+    pub contact_count: i64,
+    /// Estimated discretisation error of the force (of the approach, when the force is prescribed); < 0: not known.
+    pub error_force: f64,
+    /// Of the largest pressure.
+    pub error_max_pressure: f64,
+    /// Of the contact area.
+    pub error_contact_area: f64,
+    /// Seconds of set-up: 0 for later solves with a handle.
+    pub setup_seconds: f64,
+    /// Seconds of the solve.
+    pub solve_seconds: f64,
+    /// Bytes held by operators and unknowns.
+    pub bytes: i64,
+    /// Rows that the solve wrote to `ledger`, or would have written had there been room: one per grid, coarsest first.
+    pub ledger_rows: i64,
+    /// In: room in `ledger`.
+    pub ledger_capacity: i64,
+    /// In: the caller's array, or NULL.
+    pub ledger: *mut contact_normal_ledger_row,
+}
+
+// SAFETY: integers, floats and a raw pointer only, struct_size first.
+unsafe impl Versioned for contact_normal_report {
+    const NAME: &'static str = "contact_normal_report";
+    const FIRST_SIZE: usize = 200;
+    fn defaults() -> Self {
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            cycles: 0,
+            active_set_steps: 0,
+            active_set_changes: 0,
+            matrix_products: 0,
+            work_units: 0.0,
+            update: 0.0,
+            residual: 0.0,
+            penetration: 0.0,
+            complementarity: 0.0,
+            min_pressure: 0.0,
+            approach: 0.0,
+            force: 0.0,
+            max_pressure: 0.0,
+            contact_area: 0.0,
+            contact_count: 0,
+            error_force: -1.0,
+            error_max_pressure: -1.0,
+            error_contact_area: -1.0,
+            setup_seconds: 0.0,
+            solve_seconds: 0.0,
+            bytes: 0,
+            ledger_rows: 0,
+            ledger_capacity: 0,
+            ledger: std::ptr::null_mut(),
+        }
+    }
+}
+
+impl contact_normal_report {
+    /// The values of a report, and the ledger of the caller's.
+    pub(super) fn of(report: &Report, ledger: *mut contact_normal_ledger_row, ledger_capacity: i64) -> Self {
+        let (measures, certificate) = (&report.measures, &report.measures.certificate);
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            cycles: report.cycles as i64,
+            active_set_steps: report.active_set_steps as i64,
+            active_set_changes: report.active_set_changes as i64,
+            matrix_products: report.matrix_products as i64,
+            work_units: report.work_units,
+            update: report.update,
+            residual: certificate.residual,
+            penetration: certificate.penetration,
+            complementarity: certificate.complementarity,
+            min_pressure: certificate.min_pressure,
+            approach: measures.approach,
+            force: measures.force,
+            max_pressure: measures.max_pressure,
+            contact_area: measures.contact_area,
+            contact_count: measures.contact_count as i64,
+            error_force: report.error.force,
+            error_max_pressure: report.error.max_pressure,
+            error_contact_area: report.error.contact_area,
+            setup_seconds: report.setup_seconds,
+            solve_seconds: report.solve_seconds,
+            bytes: report.bytes as i64,
+            ledger_rows: report.ledger.len() as i64,
+            ledger_capacity,
+            ledger,
+        }
+    }
+}
+
+/// What the progress callback is told after each cycle.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_progress {
+    /// Size of this struct in the library.
+    pub struct_size: i64,
+    /// Elements in x of the grid that the cycle was on.
+    pub mx: i32,
+    /// Elements in y.
+    pub my: i32,
+    /// Cycles on that grid so far.
+    pub cycles: i64,
+    /// Elements that changed sides in the last cycle.
+    pub active_set_changes: i64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+    /// Work units since then.
+    pub work_units: f64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// Relative residual over C, as far as it is known.
+    pub residual: f64,
+}
+
+impl From<&Progress> for contact_normal_progress {
+    fn from(progress: &Progress) -> Self {
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            mx: progress.mx as i32,
+            my: progress.my as i32,
+            cycles: progress.cycles as i64,
+            active_set_changes: progress.active_set_changes as i64,
+            seconds: progress.seconds,
+            work_units: progress.work_units,
+            update: progress.update,
+            residual: progress.residual,
+        }
+    }
+}
+
+/// Fills fields with NULL: nothing is wanted. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_fields_init(fields: *mut contact_normal_fields) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(fields) }
+}
+
+/// Fills a report with nothing, without a ledger. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_report_init(report: *mut contact_normal_report) {
+    // SAFETY: as above.
+    unsafe { structs::init(report) }
+}

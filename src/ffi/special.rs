@@ -1,0 +1,121 @@
+//! Closed forms and coefficient tables.
+
+use super::guard::guard;
+use super::scene::count;
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_NOT_FINITE, CONTACT_NORMAL_OK};
+use crate::analytic;
+use crate::grid::Grid;
+use crate::influence::HalfSpace;
+use crate::scene::Bodies;
+
+/// The exact Hertz solution.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_hertz_solution {
+    /// Semi-axis of the contact ellipse in x.
+    pub semi_axis_x: f64,
+    /// Semi-axis in y.
+    pub semi_axis_y: f64,
+    /// Pressure at the centre.
+    pub max_pressure: f64,
+    /// Approach.
+    pub approach: f64,
+    /// Normal force.
+    pub force: f64,
+    /// Area of the ellipse.
+    pub area: f64,
+}
+
+unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
+    for (name, pointer) in [("shear_modulus", shear_modulus), ("poisson_ratio", poisson_ratio)] {
+        if pointer.is_null() {
+            return Err(Refusal::null(name));
+        }
+    }
+    // SAFETY: not null: two values each, by the conventions of the ABI.
+    let bodies = unsafe {
+        Bodies {
+            shear_modulus: [shear_modulus.read(), shear_modulus.add(1).read()],
+            poisson_ratio: [poisson_ratio.read(), poisson_ratio.add(1).read()],
+        }
+    };
+    bodies.check()?;
+    Ok(bodies)
+}
+
+/// Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`
+/// PRESCRIBED_APPROACH or PRESCRIBED_FORCE with the value `amount`. `shear_modulus` and `poisson_ratio`: two values. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_hertz(
+    curvature_x: f64,
+    curvature_y: f64,
+    shear_modulus: *const f64,
+    poisson_ratio: *const f64,
+    load: i32,
+    amount: f64,
+    solution: *mut contact_normal_hertz_solution,
+) -> contact_normal_status {
+    guard(|| {
+        if solution.is_null() {
+            return Err(Refusal::null("solution"));
+        }
+        // SAFETY: NULL or two values each, by the conventions of the ABI.
+        let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
+        let exact = match load {
+            super::CONTACT_NORMAL_PRESCRIBED_APPROACH => analytic::hertz(curvature_x, curvature_y, amount, compliance)?,
+            super::CONTACT_NORMAL_PRESCRIBED_FORCE => analytic::hertz_by_force(curvature_x, curvature_y, amount, compliance)?,
+            other => {
+                return Err(Refusal::invalid(format!("load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)")))
+            }
+        };
+        let value = contact_normal_hertz_solution {
+            semi_axis_x: exact.semi_axis_x,
+            semi_axis_y: exact.semi_axis_y,
+            max_pressure: exact.max_pressure,
+            approach: exact.approach,
+            force: exact.force,
+            area: exact.area,
+        };
+        // SAFETY: not null: room for the struct.
+        unsafe { solution.write(value) };
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// The influence coefficients of the half-space for elements `dx` by `dy`, as a table over offsets -cx..cx-1 by -cy..cy-1:
+/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_influence_half_space(
+    cx: i32,
+    cy: i32,
+    dx: f64,
+    dy: f64,
+    shear_modulus: *const f64,
+    poisson_ratio: *const f64,
+    coefficients: *mut f64,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: NULL or two values each, by the conventions of the ABI.
+        let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
+        for (name, value) in [("dx", dx), ("dy", dy)] {
+            if !value.is_finite() {
+                let message = format!("{name} is {value}; an element size must be positive and finite");
+                return Err(Refusal::new(CONTACT_NORMAL_NOT_FINITE, message));
+            }
+        }
+        let grid = Grid::new(count("cx", cx)?, count("cy", cy)?, dx, dy)?;
+        if coefficients.is_null() {
+            return Err(Refusal::null("coefficients"));
+        }
+        let half_space = HalfSpace::new(dx, dy, compliance);
+        let mut half_row = vec![0.0; grid.mx + 1];
+        for row in 0..2 * grid.my {
+            half_space.fill_row(0, row as i64 - grid.my as i64, &mut half_row);
+            for column in 0..2 * grid.mx {
+                // SAFETY: the caller's table has 2 cy by 2 cx values.
+                unsafe { coefficients.add(row * 2 * grid.mx + column).write(half_row[column.abs_diff(grid.mx)]) };
+            }
+        }
+        Ok(CONTACT_NORMAL_OK)
+    })
+}

@@ -1,0 +1,138 @@
+//! Statuses, their texts, the last error message, versions.
+
+use std::cell::RefCell;
+use std::ffi::{c_char, CStr, CString};
+
+use crate::error::Error;
+use crate::solver::Stop;
+
+/// What a call returns: 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
+pub type contact_normal_status = i32;
+
+/// Solved: the certificate holds to the tolerance.
+pub const CONTACT_NORMAL_OK: i32 = 0;
+/// `max_cycles` was reached; outputs hold the best iterate.
+pub const CONTACT_NORMAL_ITERATION_LIMIT: i32 = 1;
+/// The progress callback cancelled; outputs hold the best iterate.
+pub const CONTACT_NORMAL_CANCELLED: i32 = 2;
+/// No further progress; outputs hold the best iterate.
+pub const CONTACT_NORMAL_STAGNATED: i32 = 3;
+/// A pointer that must not be NULL is.
+pub const CONTACT_NORMAL_NULL_POINTER: i32 = -1;
+/// An argument breaks a rule; the message names it, its value and the rule.
+pub const CONTACT_NORMAL_INVALID_ARGUMENT: i32 = -2;
+/// A NaN, or an infinity where none is allowed.
+pub const CONTACT_NORMAL_NOT_FINITE: i32 = -3;
+/// A struct_size that no version of the struct has; call its `_init`.
+pub const CONTACT_NORMAL_STRUCT_SIZE: i32 = -4;
+/// A valid request that this version does not carry out.
+pub const CONTACT_NORMAL_UNSUPPORTED: i32 = -5;
+/// The force cannot be carried.
+pub const CONTACT_NORMAL_INFEASIBLE: i32 = -6;
+/// The influence coefficients are not those of a positive definite operator.
+pub const CONTACT_NORMAL_NOT_POSITIVE_DEFINITE: i32 = -7;
+/// Memory (or a thread) could not be had.
+pub const CONTACT_NORMAL_OUT_OF_MEMORY: i32 = -8;
+/// A bug of ours, caught at the boundary.
+pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
+
+/// Version of the ABI: grows with every release that adds to it.
+pub const CONTACT_NORMAL_ABI_VERSION: i32 = 1;
+
+/// A refusal at the boundary.
+pub(super) struct Refusal {
+    pub status: contact_normal_status,
+    pub message: String,
+}
+
+impl Refusal {
+    pub fn new(status: contact_normal_status, message: String) -> Refusal {
+        Refusal { status, message }
+    }
+
+    pub fn null(name: &str) -> Refusal {
+        Refusal::new(CONTACT_NORMAL_NULL_POINTER, format!("{name} is NULL; it must point to something"))
+    }
+
+    pub fn invalid(message: String) -> Refusal {
+        Refusal::new(CONTACT_NORMAL_INVALID_ARGUMENT, message)
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Refusal {
+        let status = match error {
+            Error::InvalidArgument(_) => CONTACT_NORMAL_INVALID_ARGUMENT,
+            Error::NotFinite(_) => CONTACT_NORMAL_NOT_FINITE,
+            Error::Unsupported(_) => CONTACT_NORMAL_UNSUPPORTED,
+            Error::Infeasible(_) => CONTACT_NORMAL_INFEASIBLE,
+            Error::NotPositiveDefinite(_) => CONTACT_NORMAL_NOT_POSITIVE_DEFINITE,
+            Error::OutOfMemory(_) => CONTACT_NORMAL_OUT_OF_MEMORY,
+        };
+        Refusal::new(status, error.to_string())
+    }
+}
+
+impl From<Stop> for i32 {
+    fn from(stop: Stop) -> contact_normal_status {
+        match stop {
+            Stop::Converged => CONTACT_NORMAL_OK,
+            Stop::IterationLimit => CONTACT_NORMAL_ITERATION_LIMIT,
+            Stop::Cancelled => CONTACT_NORMAL_CANCELLED,
+            Stop::Stagnated => CONTACT_NORMAL_STAGNATED,
+        }
+    }
+}
+
+thread_local! {
+    static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
+}
+
+pub(super) fn set_last_error(message: &str) {
+    let text: Vec<u8> = message.bytes().filter(|&b| b != 0).collect();
+    LAST_ERROR.with_borrow_mut(|last| *last = CString::new(text).unwrap_or_default());
+}
+
+fn text_of(status: contact_normal_status) -> &'static CStr {
+    match status {
+        CONTACT_NORMAL_OK => c"solved",
+        CONTACT_NORMAL_ITERATION_LIMIT => c"stopped at max_cycles",
+        CONTACT_NORMAL_CANCELLED => c"cancelled by the progress callback",
+        CONTACT_NORMAL_STAGNATED => c"no further progress",
+        CONTACT_NORMAL_NULL_POINTER => c"a null pointer",
+        CONTACT_NORMAL_INVALID_ARGUMENT => c"an invalid argument",
+        CONTACT_NORMAL_NOT_FINITE => c"a value that is not finite",
+        CONTACT_NORMAL_STRUCT_SIZE => c"an unknown struct size",
+        CONTACT_NORMAL_UNSUPPORTED => c"not supported",
+        CONTACT_NORMAL_INFEASIBLE => c"the force cannot be carried",
+        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => c"influence coefficients that are not positive definite",
+        CONTACT_NORMAL_OUT_OF_MEMORY => c"out of memory",
+        CONTACT_NORMAL_INTERNAL => c"internal error, please report",
+        _ => c"an unknown status",
+    }
+}
+
+/// A short text for a status; never NULL, static storage. Since 0.1.
+#[no_mangle]
+pub extern "C" fn contact_normal_status_text(status: contact_normal_status) -> *const c_char {
+    text_of(status).as_ptr()
+}
+
+/// The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
+/// Valid until the next call of this library on this thread. Since 0.1.
+#[no_mangle]
+pub extern "C" fn contact_normal_last_error() -> *const c_char {
+    LAST_ERROR.with_borrow(|last| last.as_ptr())
+}
+
+/// The version of the library, as "0.1.0"; static storage. Since 0.1.
+#[no_mangle]
+pub extern "C" fn contact_normal_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
+/// `CONTACT_NORMAL_ABI_VERSION` of the library: at least that of the header it is used with. Since 0.1.
+#[no_mangle]
+pub extern "C" fn contact_normal_abi_version() -> i32 {
+    CONTACT_NORMAL_ABI_VERSION
+}

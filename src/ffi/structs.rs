@@ -1,0 +1,96 @@
+//! Structs that grow: each begins with its size, set by its `_init`. Shorter ones (of an older header, from 0.1 on) and longer
+//! ones (of a newer header, if what we do not know is zero) are accepted.
+
+use std::mem::size_of;
+
+use super::status::{Refusal, CONTACT_NORMAL_STRUCT_SIZE};
+
+/// A struct of the ABI.
+///
+/// # Safety
+/// `repr(C)`, begins with `struct_size: i64`, and every bit pattern is valid: integers, floats, raw pointers and
+/// optional function pointers only.
+pub unsafe trait Versioned: Copy {
+    /// Its name in C.
+    const NAME: &'static str;
+    /// Its size in version 0.1.
+    const FIRST_SIZE: usize;
+    /// What its `_init` writes.
+    fn defaults() -> Self;
+}
+
+/// No struct of ours will ever be larger: a bound for what is read of longer ones.
+const LARGEST: usize = 4096;
+
+/// The declared size of a struct, after a check.
+unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> Result<usize, Refusal> {
+    if from.is_null() {
+        return Err(Refusal::null(name));
+    }
+    // SAFETY: not null, and the caller's struct begins with its size, by the conventions of the ABI.
+    let declared = unsafe { from.cast::<i64>().read_unaligned() };
+    let refuse = |rule: &str| {
+        Err(Refusal::new(
+            CONTACT_NORMAL_STRUCT_SIZE,
+            format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME),
+        ))
+    };
+    let Ok(size) = usize::try_from(declared) else { return refuse("it must be positive") };
+    if size < T::FIRST_SIZE {
+        return refuse(&format!("it must be at least {}", T::FIRST_SIZE));
+    }
+    if size > LARGEST {
+        return refuse(&format!("no version has more than {LARGEST} bytes"));
+    }
+    for i in size_of::<T>()..size {
+        // SAFETY: the caller declares `size` bytes.
+        if unsafe { from.cast::<u8>().add(i).read() } != 0 {
+            return refuse("it sets members that this version of the library does not know");
+        }
+    }
+    Ok(size)
+}
+
+/// Reads a struct; members that an older header does not have get their defaults.
+pub unsafe fn read<T: Versioned>(from: *const T, name: &str) -> Result<T, Refusal> {
+    // SAFETY: the caller's pointer is NULL or points to a struct that declares its size.
+    let size = unsafe { declared_size(from, name)? }.min(size_of::<T>());
+    let mut value = T::defaults();
+    // SAFETY: both sides have `size` bytes, and any bytes are a valid T (Versioned).
+    unsafe { std::ptr::copy_nonoverlapping(from.cast::<u8>(), (&raw mut value).cast::<u8>(), size) };
+    Ok(value)
+}
+
+/// Writes the members that the caller's header has; `struct_size` stays.
+pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> {
+    // SAFETY: as in `read`.
+    let size = unsafe { declared_size(to.cast_const(), T::NAME)? }.min(size_of::<T>());
+    let skip = size_of::<i64>();
+    // SAFETY: both sides have `size` bytes.
+    unsafe {
+        std::ptr::copy_nonoverlapping(
+            (value as *const T).cast::<u8>().add(skip),
+            to.cast::<u8>().add(skip),
+            size - skip,
+        );
+    }
+    Ok(())
+}
+
+/// Writes the defaults: the body of every `_init`. NULL is ignored.
+pub unsafe fn init<T: Versioned>(to: *mut T) {
+    if !to.is_null() {
+        // SAFETY: not null, and `_init` is documented to fill a whole struct of this version.
+        unsafe { to.write_unaligned(T::defaults()) };
+    }
+}
+
+/// Sizes of version 0.1: a struct may grow, never change.
+const _: () = {
+    use super::{contact_normal_fields, contact_normal_influence, contact_normal_options, contact_normal_report, contact_normal_scene};
+    assert!(size_of::<contact_normal_scene>() >= contact_normal_scene::FIRST_SIZE);
+    assert!(size_of::<contact_normal_influence>() >= contact_normal_influence::FIRST_SIZE);
+    assert!(size_of::<contact_normal_options>() >= contact_normal_options::FIRST_SIZE);
+    assert!(size_of::<contact_normal_fields>() >= contact_normal_fields::FIRST_SIZE);
+    assert!(size_of::<contact_normal_report>() >= contact_normal_report::FIRST_SIZE);
+};
