@@ -63,9 +63,13 @@ pub unsafe extern "C" fn contact_normal_hertz(
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
         let exact = match load {
             super::CONTACT_NORMAL_PRESCRIBED_APPROACH => analytic::hertz(curvature_x, curvature_y, amount, compliance)?,
-            super::CONTACT_NORMAL_PRESCRIBED_FORCE => analytic::hertz_by_force(curvature_x, curvature_y, amount, compliance)?,
+            super::CONTACT_NORMAL_PRESCRIBED_FORCE => {
+                analytic::hertz_by_force(curvature_x, curvature_y, amount, compliance)?
+            }
             other => {
-                return Err(Refusal::invalid(format!("load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)")))
+                return Err(Refusal::invalid(format!(
+                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
+                )))
             }
         };
         let value = contact_normal_hertz_solution {

@@ -52,8 +52,7 @@ struct Piece<T: Real> {
 
 pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    v.try_reserve_exact(n)
-        .map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
     v.resize(n, A::default());
     Ok(v)
 }
@@ -188,7 +187,13 @@ fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
 
 /// Spectrum of even coefficients: both transforms are real; two columns share one complex transform, one as its real
 /// and one as its imaginary part.
-fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+fn even_spectrum<T: Real>(
+    influence: &Influence,
+    grid: &Grid,
+    px: usize,
+    py: usize,
+    threads: &Threads,
+) -> Result<Spectrum<T>> {
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let nb = rows.bins();
     let mut in_x: Vec<f64> = zeros(grid.my * nb, "the influence coefficients")?;
@@ -228,7 +233,13 @@ fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usi
     Ok(Spectrum::Even(spectrum))
 }
 
-fn general_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+fn general_spectrum<T: Real>(
+    influence: &Influence,
+    grid: &Grid,
+    px: usize,
+    py: usize,
+    threads: &Threads,
+) -> Result<Spectrum<T>> {
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let nb = rows.bins();
     let (mx, my) = (grid.mx, grid.my);

@@ -27,11 +27,14 @@ impl Bodies {
         for i in 0..2 {
             let (modulus, ratio) = (self.shear_modulus[i], self.poisson_ratio[i]);
             if modulus.is_nan() || ratio.is_nan() {
-                let (name, value) = if modulus.is_nan() { ("shear_modulus", modulus) } else { ("poisson_ratio", ratio) };
+                let (name, value) =
+                    if modulus.is_nan() { ("shear_modulus", modulus) } else { ("poisson_ratio", ratio) };
                 return Err(Error::NotFinite(format!("{name}[{i}] is {value}; it must be a number")));
             }
             if modulus <= 0.0 {
-                return invalid(format!("shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"));
+                return invalid(format!(
+                    "shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"
+                ));
             }
             if !(ratio > -1.0 && ratio <= 0.5) {
                 return invalid(format!("poisson_ratio[{i}] is {ratio}; it must lie in (-1, 0.5]"));

@@ -1,9 +1,9 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first.
 
 use super::monitor::{Monitor, Rule};
+use super::multigrid_method;
 use super::norm_method::{self, Displace};
 use super::report::Stop;
-use super::multigrid_method;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::multigrid::{transfer, Multigrid};

@@ -140,7 +140,9 @@ impl Solver {
             return invalid("influence is given, but this solver was set up for the half-space".into());
         }
         if options.cycle_shape() != self.shape || options.threads != self.threads {
-            return invalid("smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into());
+            return invalid(
+                "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
+            );
         }
         Ok(())
     }
@@ -157,7 +159,9 @@ impl Solver {
                 state.contact.copy_from_slice(guess.contact);
                 true
             }
-            (InitialGuess::Given, None) => return invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
+            (InitialGuess::Given, None) => {
+                return invalid("initial_guess is GIVEN, but no pressures and contact area are".into())
+            }
             (InitialGuess::None, Some(guess)) if fixed => {
                 check_guess(guess, &state.grid)?;
                 state.p.fill(0.0);
@@ -268,11 +272,17 @@ impl Solver {
 
 fn check_guess(guess: Guess<'_>, grid: &Grid) -> Result<()> {
     if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
-        return invalid(format!("the initial guess has {} pressures and {} contact elements; the grid has {} elements",
-            guess.pressure.len(), guess.contact.len(), grid.len()));
+        return invalid(format!(
+            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
+            guess.pressure.len(),
+            guess.contact.len(),
+            grid.len()
+        ));
     }
     match guess.pressure.iter().find(|p| !p.is_finite()) {
-        Some(p) => Err(crate::error::Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
+        Some(p) => {
+            Err(crate::error::Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite")))
+        }
         None => Ok(()),
     }
 }

@@ -131,7 +131,10 @@ impl Options {
             return invalid("max_cycles is 0; at least one cycle must be allowed".into());
         }
         if !(self.relaxation >= 0.0 && self.relaxation < 2.0) {
-            return invalid(format!("relaxation is {}; it must lie in (0, 2), or be 0 for the default", self.relaxation));
+            return invalid(format!(
+                "relaxation is {}; it must lie in (0, 2), or be 0 for the default",
+                self.relaxation
+            ));
         }
         if self.pre_sweeps + self.post_sweeps == 0 {
             return invalid("pre_sweeps and post_sweeps are both 0; a cycle needs at least one sweep".into());
