@@ -23,6 +23,15 @@ pub fn solve(
     let coarsest = states.len() - 1;
     let coarse_rule = Rule { max_cycles: rule.max_cycles.min(COARSE_CYCLES), ..*rule };
 
+    for l in 1..states.len() {
+        let (finer, coarser) = states.split_at_mut(l);
+        let (fine, coarse) = (&finer[l - 1], &mut coarser[0]);
+        transfer::restrict_distance(&fine.grid, &coarse.grid, &fine.h, &mut coarse.h);
+        (coarse.load, coarse.approach) = (fine.load, fine.approach);
+        coarse.p.fill(0.0);
+        coarse.u.fill(0.0);
+    }
+
     // The coarsest grid, by NORM.
     monitor.enter_grid();
     let level = &multigrid.hierarchy.levels[coarsest];
