@@ -6,7 +6,7 @@
 //!                       directions keep mean zero over C, and the approach is the mean of h + A p over C
 //! ```
 
-use crate::active_set::State;
+use crate::active_set::{norm_of_distance, State};
 use crate::error::{Error, Result};
 use crate::scene::Load;
 
@@ -65,6 +65,9 @@ pub fn conjugate_gradients(
     let mut product = vec![0.0; n];
     let mut rr: f64 = dot(&r, &r);
     let mut inner = Inner::default();
+    // Below this the recursive residual goes on falling, but nothing is gained.
+    let round_off = f64::EPSILON * norm_of_distance(state);
+    let stop = InnerStop { residual: stop.residual.max(round_off), ..stop };
     while inner.iterations < stop.iterations && rr.sqrt() > stop.residual {
         displace(&direction, &mut product);
         project(&mut product);
