@@ -80,16 +80,17 @@ fn auto_and_norm_agree_on_200_random_problems() {
         let (h, approach) = distance(number % 5, &grid, &mut random);
         let bodies = Bodies { shear_modulus: [random.between(0.1, 10.0), f64::INFINITY], poisson_ratio: [0.3, 0.3] };
         let by_approach = Scene::new(grid, &h, bodies, Load::Approach(approach));
-        let run = |scene: &Scene<'_>, method| {
+        let run = |scene: &Scene<'_>, method, tolerance| {
             let options = Options { method, tolerance, max_cycles: 20_000, ..Options::default() };
             let (solver, stop, report) = solve(scene, &options).unwrap();
             assert_eq!(stop, Stop::Converged, "problem {number}, {method:?}, {:?} on {grid:?}", scene.load);
             (solver, report)
         };
-        let (norm, report) = run(&by_approach, Method::Norm);
+        // NORM, whose residual is rich in the short waves that A hardly sees, is the reference: solved further.
+        let (norm, report) = run(&by_approach, Method::Norm, 1e-3 * tolerance);
         let by_force = Scene { load: Load::Force(report.measures.force), ..by_approach.clone() };
         for scene in [&by_approach, &by_force] {
-            let (auto, _) = run(scene, Method::Auto);
+            let (auto, _) = run(scene, Method::Auto, tolerance);
             let (a, b) = (auto.state(), norm.state());
             let size = b.p.iter().map(|p| p * p).sum::<f64>().sqrt();
             let difference = a.p.iter().zip(&b.p).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

@@ -23,7 +23,7 @@ const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 4;
 /// The iteration aims at this part of the tolerance, so that the rounding of its single precision products does not fail the
 /// certificate.
-const AIM: f64 = 0.8;
+const AIM: f64 = 0.5;
 /// Rounds without progress after which round-off is reached, or the method does not work on this scene.
 const PATIENCE: u32 = 3;
 
