@@ -335,7 +335,7 @@ contains
       ! From a contact area that is too small on one side and too large on the other; garbage where igs is 0.
       start%ps = not_a_number()
       start%igs = 0
-      start%igs(8:24, :) = 2
+      start%igs(11:24, :) = 2
       start%igs(12, 10) = 3
       start%igs(1, :) = -4
       where (start%igs > 0) start%ps = 0
