@@ -64,8 +64,8 @@ fn wheel_rail_case() -> String {
     root().join("data/wheel_rail/y0_10kN.txt").to_string_lossy().into_owned()
 }
 
-/// norm_solve stops at an rms update of eps rms(p). The errors of p that are left are at most 10 updates if they fall to 0.9
-/// or less in an iteration. Smooth p displaces the most, so that `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
+/// norm_solve stops at an rms update of eps rms(p). The errors dp that are left are at most 10 updates if they fall to
+/// 0.9 or less in an iteration. Smooth p displaces the most: `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
 const PER_UPDATE: f64 = 10.0;
 
 #[test]

@@ -158,8 +158,8 @@ contains
     end do
   end subroutine
 
-  ! The iteration stops at an rms update of EPS rms(p). If errors fall to 0.9 or less in an iteration, what is left is at
-  ! most 10 updates, and in one element at most sqrt(n) times the rms.
+  ! The iteration stops at an rms update of EPS rms(p). If errors fall to 0.9 or less in an iteration, what is left is
+  ! at most 10 updates, and in one element at most sqrt(n) times the rms.
   function pressure_tolerance(of, exact) result(tolerance)
     type(problem), intent(in) :: of
     type(answer), intent(in) :: exact
@@ -300,6 +300,10 @@ contains
     call nothing("no contact, approach, from an estimate", solved(of, 0, -1.0_dp, start))
     call nothing("no contact, force", solved(of, 1, 0.0_dp))
     call nothing("no contact, force, from an estimate", solved(of, 1, 0.0_dp, start))
+    ! The bodies touch, with nothing to carry: contact without pressure, or none.
+    found = solved(of, 0, minval(of%hs))
+    call hold(found%ierror == 0 .and. all(abs(found%ps) <= 0) .and. abs(found%err) <= 0, "touching")
+    print '(a)', "touching"
     of%hs = 1e30_dp
     found = solved(of, 0, 1.0_dp, start)
     call nothing("no contact, everything excluded", found)
