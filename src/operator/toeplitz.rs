@@ -44,6 +44,24 @@ pub struct Workspace<T: Real> {
     pieces: Vec<Piece<T>>,
 }
 
+impl<T: Real> Workspace<T> {
+    /// Makes room for products by another operator too. A smaller grid may need more of something: its transforms may be
+    /// of another kind.
+    pub fn cover(&mut self, other: Workspace<T>) {
+        fn longer<A>(mine: &mut Vec<A>, other: Vec<A>) {
+            if other.len() > mine.len() {
+                *mine = other;
+            }
+        }
+        longer(&mut self.bins, other.bins);
+        for (mine, other) in self.pieces.iter_mut().zip(other.pieces) {
+            longer(&mut mine.row, other.row);
+            longer(&mut mine.columns, other.columns);
+            longer(&mut mine.scratch, other.scratch);
+        }
+    }
+}
+
 /// Scratch of one piece of the work.
 struct Piece<T: Real> {
     row: Vec<T>,
@@ -119,7 +137,7 @@ impl<T: Real> Toeplitz<T> {
         }))
     }
 
-    /// Memory for products by this operator, or by any of no more elements in either direction.
+    /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         let mut pieces = Vec::new();
         for _ in 0..self.threads.pieces() {
