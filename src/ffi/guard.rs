@@ -5,7 +5,7 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Once;
 
 use super::floating_point::DefaultEnvironment;
-use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_INTERNAL, CONTACT_NORMAL_OK};
+use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_INTERNAL};
 
 thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
@@ -19,7 +19,8 @@ pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> c
     let outcome = catch_unwind(AssertUnwindSafe(body));
     INSIDE.set(nested);
     let (status, message) = match outcome {
-        Ok(Ok(status)) => (status, String::new()),
+        // A solve that stopped early has set its message.
+        Ok(Ok(status)) => return status,
         Ok(Err(refusal)) => (refusal.status, refusal.message),
         Err(panic) => {
             let text = panic.downcast_ref::<&str>().map(|s| s.to_string()).or(panic.downcast_ref::<String>().cloned());
@@ -29,9 +30,7 @@ pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> c
             (CONTACT_NORMAL_INTERNAL, message)
         }
     };
-    if status != CONTACT_NORMAL_OK || !message.is_empty() {
-        set_last_error(&message);
-    }
+    set_last_error(&message);
     status
 }
 
