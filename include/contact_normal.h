@@ -112,6 +112,11 @@
 #define CONTACT_NORMAL_METHOD_FULL_MULTIGRID 3
 
 /*
+ `method`: nested iteration with projected, preconditioned conjugate gradients; symmetric influence coefficients only.
+ */
+#define CONTACT_NORMAL_METHOD_PROJECTED_CG 4
+
+/*
  `smoother`: Gauss-Seidel.
  */
 #define CONTACT_NORMAL_SMOOTHER_AUTO 0

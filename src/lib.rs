@@ -8,6 +8,7 @@ pub mod influence;
 pub mod multigrid;
 pub mod norm;
 pub mod operator;
+pub mod projected_cg;
 pub mod scene;
 pub mod solver;
 pub mod threads;

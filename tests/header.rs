@@ -19,5 +19,8 @@ fn the_committed_header_is_the_generated_one() {
         std::fs::write(&path, &header).expect("a writable include/");
     }
     let committed = std::fs::read_to_string(&path).expect("include/contact_normal.h");
-    assert!(header == committed, "include/contact_normal.h is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header");
+    assert!(
+        header == committed,
+        "include/contact_normal.h is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header"
+    );
 }

@@ -21,8 +21,21 @@ fn largest(values: &[f64]) -> f64 {
 
 /// Sizes: one element, one row, one column, primes, ragged, powers of two and their neighbours.
 const SIZES: [(usize, usize); 15] = [
-    (1, 1), (1, 2), (2, 1), (1, 31), (37, 1), (2, 2), (3, 3), (4, 4), (7, 13), (17, 16), (31, 8), (33, 20), (5, 47),
-    (64, 9), (29, 53),
+    (1, 1),
+    (1, 2),
+    (2, 1),
+    (1, 31),
+    (37, 1),
+    (2, 2),
+    (3, 3),
+    (4, 4),
+    (7, 13),
+    (17, 16),
+    (31, 8),
+    (33, 20),
+    (5, 47),
+    (64, 9),
+    (29, 53),
 ];
 
 fn product(influence: &Influence, grid: &Grid, p: &[f64], threads: &Threads) -> Vec<f64> {

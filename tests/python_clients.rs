@@ -170,8 +170,12 @@ for name in contact_normal._PROTOTYPES:
             .filter_map(|line| line.split_once('('))
             .map(|(before, _)| format!("{}(", before.rsplit([' ', '*']).next().expect("a name"))),
     );
-    (theirs.sort(), ours.sort());
-    assert_eq!(theirs, ours);
+    theirs.sort();
+    ours.sort();
+    let only = |these: &[String], those: &[String]| -> Vec<String> {
+        these.iter().filter(|name| !those.contains(name)).cloned().collect()
+    };
+    assert_eq!((only(&theirs, &ours), only(&ours, &theirs)), (vec![], vec![]), "only in Python, only in the header");
 }
 
 #[test]

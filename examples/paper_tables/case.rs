@@ -35,7 +35,13 @@ pub fn scene(m: usize, h: &[f64]) -> Scene<'_> {
 }
 
 /// Table 1: the system on `C^1 = {h <= approach}`; cycles or iterations, and the mean reduction factor of the residual.
-pub fn linear_system(m: usize, method: Method, smoother: SmootherKind, relaxation: f64, most: usize) -> (Stop, Report, f64) {
+pub fn linear_system(
+    m: usize,
+    method: Method,
+    smoother: SmootherKind,
+    relaxation: f64,
+    most: usize,
+) -> (Stop, Report, f64) {
     let h = undeformed_distance(m);
     let scene = scene(m, &h);
     let options = Options {

@@ -33,7 +33,15 @@ impl State {
             Load::Approach(approach) => approach,
             Load::Force(_) => estimate,
         };
-        Ok(State { grid, h, p: zeros(n, "pressures")?, u: zeros(n, "displacements")?, contact: zeros(n, "contact")?, approach, load })
+        Ok(State {
+            grid,
+            h,
+            p: zeros(n, "pressures")?,
+            u: zeros(n, "displacements")?,
+            contact: zeros(n, "contact")?,
+            approach,
+            load,
+        })
     }
 
     /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.

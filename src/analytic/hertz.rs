@@ -33,7 +33,8 @@ pub struct Hertz {
 
 /// Hertz contact for `h = curvature_x x^2 + curvature_y y^2 - approach`; `compliance` is `1/E*`.
 pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Result<Hertz> {
-    let named = [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
+    let named =
+        [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
     for (name, value) in named {
         require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")?;
     }

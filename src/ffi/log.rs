@@ -17,7 +17,8 @@ pub const CONTACT_NORMAL_LOG_INFO: i32 = 2;
 
 /// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, with
 /// no lock held.
-pub type contact_normal_log_callback = Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
+pub type contact_normal_log_callback =
+    Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
 
 #[derive(Clone, Copy)]
 struct Target {
@@ -40,7 +41,8 @@ impl Log for Forward {
     fn log(&self, record: &Record<'_>) {
         // A copy, so that the lock is not held during the call.
         let target = *TARGET.lock().unwrap_or_else(PoisonError::into_inner);
-        let level = if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
+        let level =
+            if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
         if let (Some(callback), Ok(message)) = (target.callback, CString::new(record.args().to_string())) {
             // SAFETY: the caller's function with the caller's pointer.
             unsafe { callback(level, message.as_ptr(), target.user) };

@@ -17,6 +17,8 @@ pub const CONTACT_NORMAL_METHOD_NORM: i32 = 1;
 pub const CONTACT_NORMAL_METHOD_MULTIGRID: i32 = 2;
 /// `method`: the same, nested over the grids (section 4.3).
 pub const CONTACT_NORMAL_METHOD_FULL_MULTIGRID: i32 = 3;
+/// `method`: nested iteration with projected, preconditioned conjugate gradients; symmetric influence coefficients only.
+pub const CONTACT_NORMAL_METHOD_PROJECTED_CG: i32 = 4;
 
 /// `smoother`: Gauss-Seidel.
 pub const CONTACT_NORMAL_SMOOTHER_AUTO: i32 = 0;
@@ -157,7 +159,10 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
             CONTACT_NORMAL_METHOD_NORM => Method::Norm,
             CONTACT_NORMAL_METHOD_MULTIGRID => Method::Multigrid,
             CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Method::FullMultigrid,
-            other => return unknown("method", other, "AUTO 0, NORM 1, MULTIGRID 2 or FULL_MULTIGRID 3"),
+            CONTACT_NORMAL_METHOD_PROJECTED_CG => Method::ProjectedCg,
+            other => {
+                return unknown("method", other, "AUTO 0, NORM 1, MULTIGRID 2, FULL_MULTIGRID 3 or PROJECTED_CG 4")
+            }
         },
         smoother: match given.smoother {
             CONTACT_NORMAL_SMOOTHER_AUTO => None,

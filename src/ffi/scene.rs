@@ -138,7 +138,9 @@ pub(super) unsafe fn translate_for<'a>(
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Load::Approach(scene.approach),
         CONTACT_NORMAL_PRESCRIBED_FORCE => Load::Force(scene.force),
         other => {
-            return Err(Refusal::invalid(format!("load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)")))
+            return Err(Refusal::invalid(format!(
+                "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
+            )))
         }
     };
     if scene.undeformed_distance.is_null() {

@@ -37,7 +37,10 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    pub unsafe fn of(fields: *mut contact_normal_fields, report: *mut contact_normal_report) -> Result<Outputs, Refusal> {
+    pub unsafe fn of(
+        fields: *mut contact_normal_fields,
+        report: *mut contact_normal_report,
+    ) -> Result<Outputs, Refusal> {
         // SAFETY: NULL or structs that declare their size.
         let fields = unsafe { structs::read(fields.cast_const(), "fields")? };
         let (mut ledger, mut ledger_capacity) = (std::ptr::null_mut(), 0);
@@ -46,7 +49,9 @@ impl Outputs {
             let given = unsafe { structs::read(report.cast_const(), "report")? };
             (ledger, ledger_capacity) = (given.ledger, given.ledger_capacity);
             if ledger_capacity < 0 {
-                return Err(Refusal::invalid(format!("report->ledger_capacity is {ledger_capacity}; it must not be negative")));
+                return Err(Refusal::invalid(format!(
+                    "report->ledger_capacity is {ledger_capacity}; it must not be negative"
+                )));
             }
             if ledger_capacity > 0 && ledger.is_null() {
                 return Err(Refusal::null("report->ledger (with ledger_capacity > 0)"));
@@ -67,7 +72,9 @@ impl Outputs {
         }
         // SAFETY: not null: n values, by the conventions of the ABI.
         if fixed && unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().all(|&c| c == 0) {
-            return Err(Refusal::invalid("active_set is FIXED, but fields->contact is empty; it must hold an element".into()));
+            return Err(Refusal::invalid(
+                "active_set is FIXED, but fields->contact is empty; it must hold an element".into(),
+            ));
         }
         Ok(())
     }
@@ -140,7 +147,8 @@ pub(super) fn run(
         Some(callback) => unsafe { callback(&contact_normal_progress::from(progress), options.user) != 0 },
         None => false,
     };
-    let (stop, report) = solver.solve(scene, &options.options, guess, options.progress.is_some().then_some(&mut callback))?;
+    let (stop, report) =
+        solver.solve(scene, &options.options, guess, options.progress.is_some().then_some(&mut callback))?;
     outputs.write(solver, &report)?;
     if stop != Stop::Converged {
         set_last_error(&explain(stop, &report));

@@ -66,7 +66,9 @@ pub unsafe extern "C" fn contact_normal_hertz(
             super::CONTACT_NORMAL_PRESCRIBED_APPROACH => ("amount, the approach,", analytic::hertz),
             super::CONTACT_NORMAL_PRESCRIBED_FORCE => ("amount, the force,", analytic::hertz_by_force),
             other => {
-                return Err(Refusal::invalid(format!("load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)")))
+                return Err(Refusal::invalid(format!(
+                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
+                )))
             }
         };
         require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;

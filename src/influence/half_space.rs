@@ -160,8 +160,7 @@ fn multipole_series(dx: f64, dy: f64) -> [[f64; MOST_TERMS + 1]; MOST_TERMS + 1]
                 / 2f64.powi(n as i32);
             let m = k - l; // (sx cx + sy cy)^(2m) (sx^2 + sy^2)^l, even powers only
             for j in 0..=m {
-                let mean: f64 =
-                    (0..=l).map(|i| binomial(l, i) * moment(hx, j + i) * moment(hy, m - j + l - i)).sum();
+                let mean: f64 = (0..=l).map(|i| binomial(l, i) * moment(hx, j + i) * moment(hy, m - j + l - i)).sum();
                 let coefficient = legendre * binomial(2 * m, 2 * j) * mean;
                 // times t^j (1 - t)^(m - j)
                 for i in 0..=m - j {

@@ -38,6 +38,20 @@ impl Influence {
         }
     }
 
+    /// Fills `out[k]` with the mean of the coefficients at offsets `(+-k, +-ky)`: what is even of them, for preconditioners. A
+    /// table that ends before is carried on with its outermost coefficient.
+    pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
+        match self {
+            Influence::HalfSpace(half_space) => half_space.fill_row(0, ky, out),
+            Influence::Table(table) => {
+                for (kx, value) in (0..).zip(out) {
+                    let four = [(kx, ky), (-kx, ky), (kx, -ky), (-kx, -ky)];
+                    *value = 0.25 * four.into_iter().map(|(x, y)| table.at(x, y)).sum::<f64>();
+                }
+            }
+        }
+    }
+
     /// Whether `c(kx, ky) = c(-kx, ky) = c(kx, -ky)` for all offsets within `grid`.
     pub fn is_even(&self, grid: &Grid) -> bool {
         match self {

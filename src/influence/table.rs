@@ -26,7 +26,9 @@ impl Table {
     pub fn new(cx: usize, cy: usize, values: &[f64], grid: &Grid) -> Result<Table> {
         for (name, c, count, m) in [("cx", cx, "mx", grid.mx), ("cy", cy, "my", grid.my)] {
             if c < m {
-                return invalid(format!("influence.{name} is {c}; the table must reach offsets of the grid, {count} = {m}"));
+                return invalid(format!(
+                    "influence.{name} is {c}; the table must reach offsets of the grid, {count} = {m}"
+                ));
             }
         }
         let expected = cx.checked_mul(cy).and_then(|n| n.checked_mul(4));
@@ -86,7 +88,8 @@ impl Table {
 
     /// The coefficients of the coarser grid, as means of the finer ones.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Table {
-        let weights = |coarsened: bool| if coarsened { [(-1, 0.5), (0, 1.0), (1, 0.5)] } else { [(0, 1.0), (0, 0.0), (0, 0.0)] };
+        let weights =
+            |coarsened: bool| if coarsened { [(-1, 0.5), (0, 1.0), (1, 0.5)] } else { [(0, 1.0), (0, 0.0), (0, 0.0)] };
         let (half_x, half_y) = (coarse.mx < fine.mx, coarse.my < fine.my);
         let (wx, wy) = (weights(half_x), weights(half_y));
         let (fx, fy) = (1 + half_x as i64, 1 + half_y as i64);

@@ -63,5 +63,10 @@ pub fn coarsen(grid: &Grid, coarsest: usize) -> Option<Grid> {
     let y = more_y && (!more_x || grid.dy <= 2.0 * grid.dx);
     let halve = |halved: bool, m: usize| if halved { m.div_ceil(2) } else { m };
     let double = |doubled: bool, d: f64| if doubled { 2.0 * d } else { d };
-    (x || y).then(|| Grid { mx: halve(x, grid.mx), my: halve(y, grid.my), dx: double(x, grid.dx), dy: double(y, grid.dy) })
+    (x || y).then(|| Grid {
+        mx: halve(x, grid.mx),
+        my: halve(y, grid.my),
+        dx: double(x, grid.dx),
+        dy: double(y, grid.dy),
+    })
 }

@@ -58,7 +58,8 @@ pub fn conjugate_gradients(
             values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
         }
     };
-    let mut r: Vec<f64> = (0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }).collect();
+    let mut r: Vec<f64> =
+        (0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }).collect();
     project(&mut r);
     let mut direction = r.clone();
     let mut product = vec![0.0; n];

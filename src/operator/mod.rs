@@ -5,5 +5,5 @@ pub mod dense;
 pub mod fft;
 mod toeplitz;
 
-pub use toeplitz::{Toeplitz, Workspace};
 pub(crate) use toeplitz::zeros;
+pub use toeplitz::{Toeplitz, Workspace};

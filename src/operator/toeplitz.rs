@@ -10,6 +10,7 @@
 //! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::columns::{Columns, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
@@ -52,10 +53,16 @@ struct Piece<T: Real> {
 
 pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    v.try_reserve_exact(n)
-        .map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
     v.resize(n, A::default());
     Ok(v)
+}
+
+impl<T: Real> Workspace<T> {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        std::mem::size_of_val(&self.bins[..])
+    }
 }
 
 impl<T: Real> Toeplitz<T> {
@@ -65,7 +72,13 @@ impl<T: Real> Toeplitz<T> {
         let period = |m: usize| good_length(if even { 2 * m - 2 } else { 2 * m - 1 });
         let (px, py) = (period(grid.mx), period(grid.my));
         let spectrum = if even {
-            even_spectrum(influence, grid, px, py, threads)?
+            even_spectrum(
+                (px, py),
+                (grid.mx, grid.my),
+                |ky, row| influence.fill_row(0, ky, row),
+                |value| value,
+                threads,
+            )?
         } else {
             general_spectrum(influence, grid, px, py, threads)?
         };
@@ -77,6 +90,33 @@ impl<T: Real> Toeplitz<T> {
             spectrum,
             threads: threads.clone(),
         })
+    }
+
+    /// The inverse of a circulant near A, as a preconditioner: period `px * py >= mx * my`, coefficients at offsets up to
+    /// half of it (at offset -m as well: the true one, not zero), even in both directions. None if it is not positive.
+    pub fn inverse_circulant(
+        influence: &Influence,
+        grid: &Grid,
+        (px, py): (usize, usize),
+        threads: &Threads,
+    ) -> Result<Option<Toeplitz<T>>> {
+        let positive = AtomicBool::new(true);
+        let finish = |value: f64| {
+            if !(value > 0.0) {
+                positive.store(false, Ordering::Relaxed);
+            }
+            1.0 / value
+        };
+        let fill = |ky: i64, row: &mut [f64]| influence.fill_even_row(ky, row);
+        let spectrum = even_spectrum((px, py), (px / 2 + 1, py / 2 + 1), fill, finish, threads)?;
+        Ok(positive.into_inner().then(|| Toeplitz {
+            mx: grid.mx,
+            my: grid.my,
+            rows: RowTransform::new(px),
+            columns: ColumnTransform::new(py),
+            spectrum,
+            threads: threads.clone(),
+        }))
     }
 
     /// Memory for products by this operator, or by any of no more elements in either direction.
@@ -107,29 +147,44 @@ impl<T: Real> Toeplitz<T> {
     /// `u = A p` in the grid's rows `wanted`; the other rows of `u` keep what they hold.
     pub fn apply_rows(&self, p: &[T], u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
         assert!(p.len() == self.mx * self.my && u.len() == p.len() && wanted.end <= self.my);
-        let given = rows_with_pressure(p, self.mx);
-        if given.is_empty() {
-            u[wanted.start * self.mx..wanted.end * self.mx].fill(T::zero());
-            return;
-        }
-        let nb = self.rows.bins();
-        let Workspace { bins, pieces } = workspace;
-        let bins = &mut bins[..self.my * nb];
+        let loaded = self.transform_rows(p, workspace);
+        self.convolve_columns(loaded, wanted.clone(), workspace);
+        self.transform_rows_back(u, wanted, workspace);
+    }
 
-        let first = given.start;
-        self.threads.for_each_row(&mut bins[given.start * nb..given.end * nb], nb, pieces, |i, row_bins, piece| {
+    /// `p = A p`.
+    pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
+        assert!(p.len() == self.mx * self.my);
+        let loaded = self.transform_rows(p, workspace);
+        self.convolve_columns(loaded, 0..self.my, workspace);
+        self.transform_rows_back(p, 0..self.my, workspace);
+    }
+
+    /// Transforms in x the rows that hold pressures; returns which.
+    fn transform_rows(&self, p: &[T], workspace: &mut Workspace<T>) -> Range<usize> {
+        let loaded = rows_with_pressure(p, self.mx);
+        let nb = self.rows.bins();
+        let bins = &mut workspace.bins[loaded.start * nb..loaded.end * nb];
+        let first = loaded.start;
+        self.threads.for_each_row(bins, nb, &mut workspace.pieces, |i, row_bins, piece| {
             let row = &mut piece.row[..self.rows.length()];
             row[..self.mx].copy_from_slice(&p[(first + i) * self.mx..(first + i + 1) * self.mx]);
             row[self.mx..].fill(T::zero());
             self.rows.forward(row, row_bins, &mut piece.scratch);
         });
+        loaded
+    }
 
-        let columns = Columns::new(bins, nb);
+    /// Transforms in y, multiplies by the spectrum and transforms back, block by block: from rows `loaded` to rows `wanted`.
+    fn convolve_columns(&self, loaded: Range<usize>, wanted: Range<usize>, workspace: &mut Workspace<T>) {
+        let Workspace { bins, pieces } = workspace;
+        let nb = self.rows.bins();
+        let columns = Columns::new(&mut bins[..self.my * nb], nb);
         let blocks_per_piece = columns.blocks().div_ceil(pieces.len());
         self.threads.for_each(pieces, |k, piece| {
             for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(columns.blocks()) {
                 // SAFETY: each block belongs to one piece, and each piece is worked on by one thread.
-                unsafe { columns.gather(b, given.clone(), self.columns.length(), &mut piece.columns) };
+                unsafe { columns.gather(b, loaded.clone(), self.columns.length(), &mut piece.columns) };
                 let block = &mut piece.columns[..columns.columns(b) * self.columns.length()];
                 let scratch = &mut piece.scratch[..];
                 self.columns.forward(block, scratch);
@@ -139,15 +194,18 @@ impl<T: Real> Toeplitz<T> {
                 unsafe { columns.scatter(b, wanted.clone(), self.columns.length(), block) };
             }
         });
+    }
 
-        // The rows are read and overwritten by the inverse transform: each goes through the piece's column scratch.
-        let first = wanted.start;
-        let bins = &bins[..];
+    /// Transforms the rows `wanted` back.
+    fn transform_rows_back(&self, u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
+        let Workspace { bins, pieces } = workspace;
+        let nb = self.rows.bins();
+        let (first, bins) = (wanted.start, &bins[..]);
         let out = &mut u[wanted.start * self.mx..wanted.end * self.mx];
         self.threads.for_each_row(out, self.mx, pieces, |i, u_row, piece| {
-            let from = &bins[(first + i) * nb..(first + i + 1) * nb];
+            // The inverse overwrites its input: each row goes through the piece's scratch.
             let row_bins = &mut piece.columns[..nb];
-            row_bins.copy_from_slice(from);
+            row_bins.copy_from_slice(&bins[(first + i) * nb..(first + i + 1) * nb]);
             self.rows.inverse(row_bins, &mut piece.row[..self.rows.length()], &mut piece.scratch);
             u_row.copy_from_slice(&piece.row[..self.mx]);
         });
@@ -187,18 +245,25 @@ fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
 }
 
 /// Spectrum of even coefficients: both transforms are real; two columns share one complex transform, one as its real
-/// and one as its imaginary part.
-fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+/// and one as its imaginary part. `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`, for `ky < rows_given`;
+/// the others are zero. `finish` maps each value of the spectrum to what is kept of it (but for the normalisation).
+fn even_spectrum<T: Real>(
+    (px, py): (usize, usize),
+    (row_given, rows_given): (usize, usize),
+    fill: impl Fn(i64, &mut [f64]) + Sync + Send,
+    finish: impl Fn(f64) -> f64 + Sync + Send,
+    threads: &Threads,
+) -> Result<Spectrum<T>> {
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let nb = rows.bins();
-    let mut in_x: Vec<f64> = zeros(grid.my * nb, "the influence coefficients")?;
+    let mut in_x: Vec<f64> = zeros(rows_given * nb, "the influence coefficients")?;
     let mut pieces: Vec<_> = (0..threads.pieces())
         .map(|_| (vec![0.0; px], vec![Complex::default(); nb.max(py)], rows.scratch(), columns.scratch()))
         .collect();
     threads.for_each_row(&mut in_x, nb, &mut pieces, |ky, out, (row, bins, scratch, _)| {
         row.fill(0.0);
-        influence.fill_row(0, ky as i64, &mut row[..grid.mx]);
-        for kx in 1..grid.mx {
+        fill(ky as i64, &mut row[..row_given]);
+        for kx in 1..row_given {
             row[px - kx] = row[kx];
         }
         rows.forward(row, &mut bins[..nb], scratch);
@@ -212,7 +277,7 @@ fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usi
         let column = &mut column[..py];
         let second = (2 * pair + 1).min(nb - 1);
         column.fill(Complex::default());
-        for ky in 0..grid.my {
+        for ky in 0..rows_given {
             let value = Complex::new(in_x[ky * nb + 2 * pair], in_x[ky * nb + second]);
             column[ky] = value;
             if ky > 0 {
@@ -221,14 +286,20 @@ fn even_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usi
         }
         columns.forward(column, scratch);
         for (ky, bin) in column[..half].iter().enumerate() {
-            out[ky] = T::of(scale * bin.re);
-            out[half + ky] = T::of(scale * bin.im);
+            out[ky] = T::of(scale * finish(bin.re));
+            out[half + ky] = T::of(scale * finish(bin.im));
         }
     });
     Ok(Spectrum::Even(spectrum))
 }
 
-fn general_spectrum<T: Real>(influence: &Influence, grid: &Grid, px: usize, py: usize, threads: &Threads) -> Result<Spectrum<T>> {
+fn general_spectrum<T: Real>(
+    influence: &Influence,
+    grid: &Grid,
+    px: usize,
+    py: usize,
+    threads: &Threads,
+) -> Result<Spectrum<T>> {
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let nb = rows.bins();
     let (mx, my) = (grid.mx, grid.my);

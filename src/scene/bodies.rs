@@ -30,7 +30,9 @@ impl Bodies {
                 return Err(Error::NotFinite(format!("shear_modulus[{i}] is {modulus}; it must be a number")));
             }
             if modulus <= 0.0 {
-                return invalid(format!("shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"));
+                return invalid(format!(
+                    "shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"
+                ));
             }
             require(ratio > -1.0 && ratio <= 0.5, &format!("poisson_ratio[{i}]"), ratio, "it must lie in (-1, 0.5]")?;
         }

@@ -52,7 +52,11 @@ impl<'a> Scene<'a> {
     pub fn check_distance_and_load(&self) -> Result<()> {
         let h = self.undeformed_distance;
         if h.len() != self.grid.len() {
-            return invalid(format!("undeformed_distance has {} values; the grid has {} elements", h.len(), self.grid.len()));
+            return invalid(format!(
+                "undeformed_distance has {} values; the grid has {} elements",
+                h.len(),
+                self.grid.len()
+            ));
         }
         if let Some(i) = h.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
             return Err(Error::NotFinite(format!(

@@ -1,9 +1,9 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first.
 
 use super::monitor::{Monitor, Rule};
+use super::multigrid_method;
 use super::norm_method::{self, Displace};
 use super::report::Stop;
-use super::multigrid_method;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::multigrid::{transfer, Multigrid};
@@ -22,6 +22,15 @@ pub fn solve(
 ) -> Result<Stop> {
     let coarsest = states.len() - 1;
     let coarse_rule = Rule { max_cycles: rule.max_cycles.min(COARSE_CYCLES), ..*rule };
+
+    for l in 1..states.len() {
+        let (finer, coarser) = states.split_at_mut(l);
+        let (fine, coarse) = (&finer[l - 1], &mut coarser[0]);
+        transfer::restrict_distance(&fine.grid, &coarse.grid, &fine.h, &mut coarse.h);
+        (coarse.load, coarse.approach) = (fine.load, fine.approach);
+        coarse.p.fill(0.0);
+        coarse.u.fill(0.0);
+    }
 
     // The coarsest grid, by NORM.
     monitor.enter_grid();

@@ -8,6 +8,7 @@ mod monitor;
 mod multigrid_method;
 mod norm_method;
 mod options;
+mod projected_method;
 mod report;
 
 use std::time::Instant;
@@ -16,15 +17,17 @@ pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 pub use report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
 
-use crate::active_set::{truncate, State};
-use crate::error::{invalid, Result};
+use crate::active_set::State;
+use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::multigrid::{transfer, CycleShape, Multigrid};
+use crate::multigrid::{CycleShape, Multigrid};
+use crate::operator::zeros;
 use crate::scene::{Bodies, Load, Scene};
 use crate::threads::Threads;
 use monitor::{Monitor, Rule};
 use norm_method::Displace;
+use projected_method::Projected;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +46,10 @@ pub struct Solver {
     symmetric: bool,
     shape: CycleShape,
     threads: usize,
-    multigrid: Multigrid,
-    /// One per grid, finest first.
+    projected: Projected,
+    /// Made when a method first asks for it.
+    multigrid: Option<Multigrid>,
+    /// The finest grid's, then one per coarser grid of `multigrid`.
     states: Vec<State>,
     solved_before: bool,
     setup_seconds: f64,
@@ -65,23 +70,18 @@ impl Solver {
         options.check()?;
         let threads = Threads::new(options.threads)?;
         let influence = scene.influence();
-        let shape = options.cycle_shape();
-        let multigrid = Multigrid::new(&scene.grid, &influence, shape, &threads)?;
-        let states = multigrid
-            .hierarchy
-            .levels
-            .iter()
-            .map(|level| State::new(level.grid, vec![0.0; level.grid.len()], scene.load, 0.0))
-            .collect::<Result<Vec<_>>>()?;
+        let projected = Projected::new(&scene.grid, &influence, options.precision, &threads)?;
+        let h = zeros(scene.grid.len(), "undeformed distances")?;
         Ok(Solver {
             grid: scene.grid,
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
             symmetric: influence.is_symmetric(&scene.grid),
-            shape,
+            shape: options.cycle_shape(),
             threads: options.threads,
-            multigrid,
-            states,
+            projected,
+            multigrid: None,
+            states: vec![State::new(scene.grid, h, scene.load, 0.0)?],
             solved_before: false,
             setup_seconds: began.elapsed().as_secs_f64(),
         })
@@ -113,7 +113,7 @@ impl Solver {
         monitor.close_grid(&self.states[0]);
         let mut report = monitor.report();
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
-        report.bytes = (self.multigrid.bytes() + self.states.iter().map(|s| s.p.len() * 25).sum::<usize>()) as u64;
+        report.bytes = self.bytes() as u64;
         Ok((stop, report))
     }
 
@@ -124,7 +124,7 @@ impl Solver {
 
     /// The influence coefficients in use.
     pub fn influence(&self) -> &Influence {
-        &self.multigrid.hierarchy.levels[0].influence
+        self.projected.influence()
     }
 
     /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
@@ -146,7 +146,9 @@ impl Solver {
             return invalid("influence is given, but this solver was set up for the half-space".into());
         }
         if options.cycle_shape() != self.shape || options.threads != self.threads {
-            return invalid("smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into());
+            return invalid(
+                "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
+            );
         }
         Ok(())
     }
@@ -171,7 +173,9 @@ impl Solver {
                 state.contact.copy_from_slice(guess.contact);
                 true
             }
-            (InitialGuess::Given, None) => return invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
+            (InitialGuess::Given, None) => {
+                return invalid("initial_guess is GIVEN, but no pressures and contact area are".into())
+            }
             (InitialGuess::None, Some(guess)) if fixed => {
                 check_guess(guess, &state.grid)?;
                 state.p.fill(0.0);
@@ -184,26 +188,21 @@ impl Solver {
             return invalid("active_set is FIXED, but no contact area is given".into());
         }
 
-        for l in 0..self.states.len() {
-            let (finer, coarser) = self.states.split_at_mut(l);
-            match finer.last() {
-                None => coarser[0].h.copy_from_slice(scene.undeformed_distance),
-                Some(fine) => transfer::restrict_distance(&fine.grid, &coarser[0].grid, &fine.h, &mut coarser[0].h),
-            }
-            coarser[0].load = scene.load;
-            if let Load::Approach(approach) = scene.load {
-                coarser[0].approach = approach;
-            }
-            if l > 0 || !has_guess {
-                coarser[0].p.fill(0.0);
-                coarser[0].u.fill(0.0);
-                coarser[0].contact.fill(false);
-            }
+        let state = &mut self.states[0];
+        state.h.copy_from_slice(scene.undeformed_distance);
+        state.load = scene.load;
+        if let Load::Approach(approach) = scene.load {
+            state.approach = approach;
+        }
+        if !has_guess {
+            state.p.fill(0.0);
+            state.u.fill(0.0);
+            state.contact.fill(false);
         }
 
         let state = &mut self.states[0];
         if !has_guess {
-            state.start(self.multigrid.hierarchy.levels[0].influence.at(0, 0));
+            state.start(self.projected.influence().at(0, 0));
             return Ok(false);
         }
         for i in 0..state.p.len() {
@@ -216,11 +215,11 @@ impl Solver {
             if fixed {
                 return invalid("active_set is FIXED, but the given contact area is empty".into());
             }
-            state.start(self.multigrid.hierarchy.levels[0].influence.at(0, 0));
+            state.start(self.projected.influence().at(0, 0));
             return Ok(false);
         }
         state.balance_force();
-        self.multigrid.displace(0, &state.p, &mut state.u);
+        self.projected.displace(&state.p, &mut state.u);
         state.fit_approach();
         Ok(true)
     }
@@ -245,48 +244,93 @@ impl Solver {
     }
 
     fn run(&mut self, options: &Options, rule: &Rule, has_start: bool, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        let products = self.multigrid.take_products();
-        monitor.count_products(products[0], 1.0);
-        let (multigrid, states) = (&mut self.multigrid, &mut self.states);
-        let nested = !has_start && !rule.fixed;
+        if has_start {
+            monitor.count_products(1, 1.0);
+        }
         match options.method {
             Method::Norm => self.norm(rule, monitor),
-            Method::Multigrid => Ok(multigrid_method::solve(multigrid, 0, &mut states[0], rule, monitor)),
-            Method::FullMultigrid | Method::Auto => {
-                let stop = if nested {
-                    full_multigrid::solve(multigrid, states, rule, options.error_ratio, monitor)?
+            Method::Multigrid => self.multigrid(rule, monitor),
+            Method::FullMultigrid => self.full_multigrid(options, rule, has_start, monitor),
+            Method::ProjectedCg if !self.symmetric => Err(Error::Unsupported(
+                "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
+            )),
+            Method::ProjectedCg => self.projected.solve(&mut self.states[0], rule, has_start, monitor),
+            Method::Auto => {
+                let stop = if self.symmetric {
+                    self.projected.solve(&mut self.states[0], rule, has_start, monitor)?
                 } else {
-                    multigrid_method::solve(multigrid, 0, &mut states[0], rule, monitor)
+                    self.full_multigrid(options, rule, has_start, monitor)?
                 };
-                if stop != Stop::Stagnated || options.method == Method::FullMultigrid {
+                if stop != Stop::Stagnated {
                     return Ok(stop);
                 }
-                log::info!("the V-cycle stagnated on this scene; NORM takes over");
-                if !rule.fixed {
-                    truncate(&mut self.states[0]);
-                }
+                log::info!("the fast method stagnated on this scene; NORM takes over");
                 self.norm(rule, monitor)
             }
         }
     }
 
     fn norm(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        let (multigrid, state) = (&mut self.multigrid, &mut self.states[0]);
-        let mut displace = |p: &[f64], u: &mut [f64]| multigrid.displace(0, p, u);
+        let (projected, state) = (&mut self.projected, &mut self.states[0]);
+        let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
         let by = Displace { product: &mut displace, work: 1.0, symmetric: self.symmetric };
-        let stop = norm_method::solve(state, by, rule, monitor)?;
-        multigrid.take_products();
-        Ok(stop)
+        norm_method::solve(state, by, rule, monitor)
+    }
+
+    fn multigrid(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
+        self.set_up_multigrid()?;
+        let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
+        Ok(multigrid_method::solve(multigrid, 0, &mut self.states[0], rule, monitor))
+    }
+
+    fn full_multigrid(
+        &mut self,
+        options: &Options,
+        rule: &Rule,
+        has_start: bool,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        if has_start || rule.fixed {
+            return self.multigrid(rule, monitor);
+        }
+        self.set_up_multigrid()?;
+        let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
+        full_multigrid::solve(multigrid, &mut self.states, rule, options.error_ratio, monitor)
+    }
+
+    fn set_up_multigrid(&mut self) -> Result<()> {
+        if self.multigrid.is_none() {
+            let began = Instant::now();
+            let threads = Threads::new(self.threads)?;
+            let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &threads)?;
+            for level in &multigrid.hierarchy.levels[1..] {
+                let h = zeros(level.grid.len(), "undeformed distances")?;
+                let load = self.states[0].load;
+                self.states.push(State::new(level.grid, h, load, 0.0)?);
+            }
+            self.multigrid = Some(multigrid);
+            self.setup_seconds += began.elapsed().as_secs_f64();
+        }
+        Ok(())
+    }
+
+    fn bytes(&self) -> usize {
+        let states: usize = self.states.iter().map(|state| state.p.len() * 25).sum();
+        self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states
     }
 }
 
 fn check_guess(guess: Guess<'_>, grid: &Grid) -> Result<()> {
     if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
-        return invalid(format!("the initial guess has {} pressures and {} contact elements; the grid has {} elements",
-            guess.pressure.len(), guess.contact.len(), grid.len()));
+        return invalid(format!(
+            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
+            guess.pressure.len(),
+            guess.contact.len(),
+            grid.len()
+        ));
     }
     match guess.pressure.iter().find(|p| !p.is_finite()) {
-        Some(p) => Err(crate::error::Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
+        Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
         None => Ok(()),
     }
 }

@@ -40,7 +40,7 @@ pub struct Monitor<'a> {
     pub cycles: u64,
     /// Work units on all grids.
     pub work_units: f64,
-    /// Products on the finest grid.
+    /// Products on the current grid.
     pub matrix_products: u64,
     /// Elements that changed sides on the current grid.
     pub active_set_changes: u64,
@@ -74,14 +74,18 @@ impl<'a> Monitor<'a> {
         self.active_set_changes = 0;
         self.active_set_steps = 0;
         self.update = 0.0;
+        self.matrix_products = 0;
     }
 
-    /// Counts products: their number and the work of one.
+    /// Counts products on other grids than the current one: work only.
+    pub fn count_work(&mut self, work: f64) {
+        self.work_units += work;
+    }
+
+    /// Counts products on the current grid: their number and the work of one.
     pub fn count_products(&mut self, products: u64, work: f64) {
         self.work_units += products as f64 * work;
-        if work == 1.0 {
-            self.matrix_products += products;
-        }
+        self.matrix_products += products;
     }
 
     /// Counts a cycle; false when the caller cancels.

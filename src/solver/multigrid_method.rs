@@ -6,7 +6,7 @@ use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncat
 use crate::multigrid::Multigrid;
 
 /// Cycles without a new smallest residual after which the method is given up.
-const PATIENCE: u32 = 20;
+const PATIENCE: u32 = 50;
 /// Cycles in which the criterion holds but elements still change sides, after which the certificate decides.
 const CHATTER: u32 = 5;
 
@@ -41,7 +41,12 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
         changed += if rule.fixed { 0 } else { admit(state) };
 
         for (level, products) in multigrid.take_products().into_iter().enumerate() {
-            monitor.count_products(products, multigrid.hierarchy.work(level));
+            let work = multigrid.hierarchy.work(level);
+            if level == l {
+                monitor.count_products(products, work);
+            } else {
+                monitor.count_work(products as f64 * work);
+            }
         }
         monitor.active_set_steps += 1;
         let (r, h) = (residual_norm(state), norm_of_distance(state));

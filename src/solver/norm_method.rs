@@ -71,7 +71,11 @@ pub fn solve(state: &mut State, mut by: Displace<'_>, rule: &Rule, monitor: &mut
 
         // 3. The contact conditions.
         let violates = |state: &State, i: usize| {
-            if state.contact[i] { state.p[i] < 0.0 } else { state.deformed_distance(i) <= 0.0 }
+            if state.contact[i] {
+                state.p[i] < 0.0
+            } else {
+                state.deformed_distance(i) <= 0.0
+            }
         };
         let violators = (0..state.p.len()).filter(|&i| violates(state, i)).count();
         // 4. Done if all hold.

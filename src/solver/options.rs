@@ -15,6 +15,8 @@ pub enum Method {
     Multigrid,
     /// The same, nested over the grids (section 4.3).
     FullMultigrid,
+    /// Nested iteration with projected, preconditioned conjugate gradients; needs symmetric influence coefficients.
+    ProjectedCg,
 }
 
 /// Who chooses the contact area.

@@ -112,7 +112,13 @@ impl GaussSeidel {
     }
 
     /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is used up.
-    pub fn sweep(&mut self, p: &mut [f64], residual: &mut [f64], relaxation: f64, in_set: impl Fn(usize) -> bool + Copy) {
+    pub fn sweep(
+        &mut self,
+        p: &mut [f64],
+        residual: &mut [f64],
+        relaxation: f64,
+        in_set: impl Fn(usize) -> bool + Copy,
+    ) {
         let mx = self.mx;
         let used = |iy: &usize| (iy * mx..(iy + 1) * mx).any(in_set);
         let Some(first) = (0..self.my).find(used) else { return };
@@ -189,7 +195,8 @@ impl GaussSeidel {
         let elements = iy * mx..(iy + 1) * mx;
         let in_set = sweep.in_set;
         let changes = &mut self.changes[iy * nb..(iy + 1) * nb];
-        let (Some(start), Some(last)) = (elements.clone().find(|&i| in_set(i)), elements.clone().rfind(|&i| in_set(i))) else {
+        let (Some(start), Some(last)) = (elements.clone().find(|&i| in_set(i)), elements.clone().rfind(|&i| in_set(i)))
+        else {
             changes.fill(Complex::default());
             return;
         };

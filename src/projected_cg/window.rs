@@ -1,0 +1,112 @@
+//! The window: the part of the grid that the iteration works on.
+//!
+//! Products cost by the area they cover, and contact is often a small part of the potential contact area. So the iteration works on
+//! the bounding box of the contact area and a margin around it; that nothing outside it penetrates is checked on the full grid
+//! afterwards, and the window grows where something does.
+
+use std::ops::Range;
+
+use crate::active_set::State;
+use crate::grid::Grid;
+use crate::operator::fft::good_length;
+
+/// Elements around the contact area, at least: one for what may enter, more for an area that still moves.
+const MARGIN: usize = 3;
+/// A window of more than this part of the grid is not worth its own operator.
+const WORTHWHILE: f64 = 0.6;
+/// Windows are not worth it on grids of fewer elements.
+const SMALLEST_GRID: usize = 64 * 64;
+
+/// A rectangle of elements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Window {
+    /// Columns.
+    pub x: Range<usize>,
+    /// Rows.
+    pub y: Range<usize>,
+}
+
+impl Window {
+    /// The whole grid.
+    pub fn full(grid: &Grid) -> Window {
+        Window { x: 0..grid.mx, y: 0..grid.my }
+    }
+
+    /// Whether this is the whole grid.
+    pub fn is_full(&self, grid: &Grid) -> bool {
+        self.x.len() == grid.mx && self.y.len() == grid.my
+    }
+
+    /// The window for a contact area, with a margin of a part of its size; the whole grid where a window is not worthwhile.
+    pub fn around(state: &State, current: Option<&Window>) -> Window {
+        let grid = &state.grid;
+        let full = Window::full(grid);
+        if grid.len() < SMALLEST_GRID {
+            return full;
+        }
+        let Some(area) = bounding_box(state) else { return full };
+        if let Some(current) = current.filter(|current| current.holds(&area, grid)) {
+            return current.clone();
+        }
+        let span = |range: &Range<usize>, m: usize| {
+            let margin = MARGIN + range.len() / 32;
+            let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
+            // An even kernel of k elements has the period 2k - 2: fill it.
+            let length = (good_length(2 * (end - start) - 2) / 2 + 1).min(m);
+            let start = start.saturating_sub((length - (end - start)) / 2).min(m - length);
+            start..start + length
+        };
+        let window = Window { x: span(&area.x, grid.mx), y: span(&area.y, grid.my) };
+        let part = window.x.len() as f64 * window.y.len() as f64 / grid.len() as f64;
+        if part <= WORTHWHILE {
+            window
+        } else {
+            full
+        }
+    }
+
+    /// Whether this window still serves a contact area: it has a margin around it and is not far too large.
+    fn holds(&self, area: &Window, grid: &Grid) -> bool {
+        let margin = |outer: &Range<usize>, inner: &Range<usize>, m: usize| {
+            (outer.start == 0 || outer.start + MARGIN <= inner.start)
+                && (outer.end == m || inner.end + MARGIN <= outer.end)
+        };
+        let part = area.x.len() as f64 * area.y.len() as f64 / (self.x.len() as f64 * self.y.len() as f64);
+        margin(&self.x, &area.x, grid.mx) && margin(&self.y, &area.y, grid.my) && part > 0.3
+    }
+
+    /// The grid of the window.
+    pub fn grid(&self, grid: &Grid) -> Grid {
+        Grid { mx: self.x.len(), my: self.y.len(), ..*grid }
+    }
+
+    /// Copies the window's part of `from`, on `grid`, to `to`.
+    pub fn extract<A: Copy>(&self, grid: &Grid, from: &[A], to: &mut [A]) {
+        for (row, y) in to.chunks_exact_mut(self.x.len()).zip(self.y.clone()) {
+            row.copy_from_slice(&from[y * grid.mx..][self.x.clone()]);
+        }
+    }
+
+    /// Copies `from`, on the window, to its part of `to`; `to` becomes `outside` elsewhere.
+    pub fn insert<A: Copy>(&self, grid: &Grid, from: &[A], to: &mut [A], outside: A) {
+        to.fill(outside);
+        for (row, y) in from.chunks_exact(self.x.len()).zip(self.y.clone()) {
+            to[y * grid.mx..][self.x.clone()].copy_from_slice(row);
+        }
+    }
+}
+
+/// The smallest window that holds the contact area; none when it is empty.
+fn bounding_box(state: &State) -> Option<Window> {
+    let mx = state.grid.mx;
+    let in_contact = |row: &&[bool]| row.contains(&true);
+    let rows = state.contact.chunks_exact(mx);
+    let first = rows.clone().position(|row| in_contact(&row))?;
+    let last = rows.clone().rposition(|row| in_contact(&row))?;
+    let (mut start, mut end) = (mx, 0);
+    for row in rows.filter(in_contact) {
+        start = start.min(row.iter().position(|&inside| inside).unwrap_or(mx));
+        end = end.max(row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1));
+    }
+    Some(Window { x: start..end, y: first..last + 1 })
+}
