@@ -41,7 +41,7 @@ impl Hierarchy {
             influence = influence.coarsen(&grid, &coarse);
             grid = coarse;
         }
-        let workspace = levels[0].operator.workspace()?;
+        let workspace = levels[0].operator.workspace_with(levels[1..].iter().map(|level| &level.operator))?;
         Ok(Hierarchy { levels, workspace })
     }
 

@@ -58,6 +58,13 @@ pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> 
     Ok(v)
 }
 
+/// Keeps the longer one of two buffers.
+fn grow<A>(buffer: &mut Vec<A>, other: Vec<A>) {
+    if other.len() > buffer.len() {
+        *buffer = other;
+    }
+}
+
 impl<T: Real> Workspace<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
@@ -119,7 +126,7 @@ impl<T: Real> Toeplitz<T> {
         }))
     }
 
-    /// Memory for products by this operator, or by any of no more elements in either direction.
+    /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         let mut pieces = Vec::new();
         for _ in 0..self.threads.pieces() {
@@ -129,6 +136,23 @@ impl<T: Real> Toeplitz<T> {
             pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
         }
         Ok(Workspace { bins: zeros(self.my * self.rows.bins(), "the product's workspace")?, pieces })
+    }
+
+    /// Memory for products by this operator and by `others`. The one with the most elements does not have the largest of
+    /// everything: a transform of length 10 needs scratch where one of length 16 needs none, and a coarser table may be less
+    /// even than the finer one, hence have a longer period.
+    pub fn workspace_with<'a>(&self, others: impl Iterator<Item = &'a Toeplitz<T>>) -> Result<Workspace<T>> {
+        let mut all = self.workspace()?;
+        for one in others {
+            let one = one.workspace()?;
+            grow(&mut all.bins, one.bins);
+            for (all, one) in all.pieces.iter_mut().zip(one.pieces) {
+                grow(&mut all.row, one.row);
+                grow(&mut all.columns, one.columns);
+                grow(&mut all.scratch, one.scratch);
+            }
+        }
+        Ok(all)
     }
 
     /// Bytes held by the operator.
