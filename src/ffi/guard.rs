@@ -19,7 +19,7 @@ pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> c
     let outcome = catch_unwind(AssertUnwindSafe(body));
     INSIDE.set(nested);
     let (status, message) = match outcome {
-        // A solve that stopped early has set its message.
+        // A status > 0 has its message from the body.
         Ok(Ok(status)) => return status,
         Ok(Err(refusal)) => (refusal.status, refusal.message),
         Err(panic) => {

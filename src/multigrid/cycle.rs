@@ -100,6 +100,11 @@ impl Multigrid {
         &self.unknowns[l].correction
     }
 
+    /// The correction of the last cycle that started on level `l`.
+    pub fn correction(&self, l: usize) -> &[f64] {
+        &self.unknowns[l].correction
+    }
+
     fn cycle_level(&mut self, l: usize) {
         let level = &self.hierarchy.levels[l];
         if l + 1 == self.depth() {

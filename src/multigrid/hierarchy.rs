@@ -41,7 +41,10 @@ impl Hierarchy {
             influence = influence.coarsen(&grid, &coarse);
             grid = coarse;
         }
-        let workspace = levels[0].operator.workspace_with(levels[1..].iter().map(|level| &level.operator))?;
+        let mut workspace = levels[0].operator.workspace()?;
+        for level in &levels[1..] {
+            workspace.cover(level.operator.workspace()?);
+        }
         Ok(Hierarchy { levels, workspace })
     }
 

@@ -2,7 +2,7 @@
 //! need not be, and conjugate gradients would then converge to something else, or not at all.
 
 use super::{Inner, InnerStop};
-use crate::active_set::State;
+use crate::active_set::{norm_of_distance, State};
 use crate::error::Result;
 use crate::scene::Load;
 
@@ -26,6 +26,7 @@ pub fn minimal_residual(
         }
     };
     let mut inner = Inner::default();
+    let stop = InnerStop { residual: stop.residual.max(f64::EPSILON * norm_of_distance(state)), ..stop };
     let mut full = vec![0.0; state.p.len()];
     let mut product = vec![0.0; state.p.len()];
     let mut residual: Vec<f64> = elements.iter().map(|&i| state.approach - state.h[i] - state.u[i]).collect();

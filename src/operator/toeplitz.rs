@@ -44,6 +44,24 @@ pub struct Workspace<T: Real> {
     pieces: Vec<Piece<T>>,
 }
 
+impl<T: Real> Workspace<T> {
+    /// Makes room for products by another operator too. A smaller grid may need more of something: its transforms may be
+    /// of another kind.
+    pub fn cover(&mut self, other: Workspace<T>) {
+        fn longer<A>(mine: &mut Vec<A>, other: Vec<A>) {
+            if other.len() > mine.len() {
+                *mine = other;
+            }
+        }
+        longer(&mut self.bins, other.bins);
+        for (mine, other) in self.pieces.iter_mut().zip(other.pieces) {
+            longer(&mut mine.row, other.row);
+            longer(&mut mine.columns, other.columns);
+            longer(&mut mine.scratch, other.scratch);
+        }
+    }
+}
+
 /// Scratch of one piece of the work.
 struct Piece<T: Real> {
     row: Vec<T>,
@@ -56,13 +74,6 @@ pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> 
     v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
     v.resize(n, A::default());
     Ok(v)
-}
-
-/// Keeps the longer one of two buffers.
-fn grow<A>(buffer: &mut Vec<A>, other: Vec<A>) {
-    if other.len() > buffer.len() {
-        *buffer = other;
-    }
 }
 
 impl<T: Real> Workspace<T> {
@@ -136,23 +147,6 @@ impl<T: Real> Toeplitz<T> {
             pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
         }
         Ok(Workspace { bins: zeros(self.my * self.rows.bins(), "the product's workspace")?, pieces })
-    }
-
-    /// Memory for products by this operator and by `others`. The one with the most elements does not have the largest of
-    /// everything: a transform of length 10 needs scratch where one of length 16 needs none, and a coarser table may be less
-    /// even than the finer one, hence have a longer period.
-    pub fn workspace_with<'a>(&self, others: impl Iterator<Item = &'a Toeplitz<T>>) -> Result<Workspace<T>> {
-        let mut all = self.workspace()?;
-        for one in others {
-            let one = one.workspace()?;
-            grow(&mut all.bins, one.bins);
-            for (all, one) in all.pieces.iter_mut().zip(one.pieces) {
-                grow(&mut all.row, one.row);
-                grow(&mut all.columns, one.columns);
-                grow(&mut all.scratch, one.scratch);
-            }
-        }
-        Ok(all)
     }
 
     /// Bytes held by the operator.

@@ -4,6 +4,7 @@ use super::monitor::{Monitor, Rule};
 use super::report::Stop;
 use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, State};
 use crate::multigrid::Multigrid;
+use crate::scene::Load;
 
 /// Cycles without a new smallest residual after which the method is given up.
 const PATIENCE: u32 = 50;
@@ -14,6 +15,7 @@ const CHATTER: u32 = 5;
 pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Stop {
     let mut residual = vec![0.0; state.p.len()];
     let mut best = Best::new(state);
+    let mut unit = UnitApproach::default();
     let mut chatter = 0;
     loop {
         if monitor.cycles >= rule.max_cycles {
@@ -25,11 +27,23 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
             residual[i] = if state.contact[i] { -state.deformed_distance(i) } else { 0.0 };
         }
         // 3. One multigrid cycle.
-        let correction = multigrid.cycle(l, &residual, &state.contact);
+        if let Load::Force(force) = state.load {
+            if unit.contact != state.contact {
+                unit.find(multigrid, l, &state.contact);
+            }
+            let correction = multigrid.cycle(l, &residual, &state.contact);
+            let carried: f64 = state.p.iter().zip(correction).map(|(p, v)| p + v).sum();
+            unit.amount = (force / state.grid.element_area() - carried) / unit.response.iter().sum::<f64>();
+        } else {
+            multigrid.cycle(l, &residual, &state.contact);
+        }
+        let correction = multigrid.correction(l);
+        let unit_response = |i: usize| if unit.amount.is_finite() { unit.amount * unit.response[i] } else { 0.0 };
         let mut update = 0.0;
-        for (p, v) in state.p.iter_mut().zip(correction) {
-            *p += v;
-            update += v * v;
+        for (i, (p, v)) in state.p.iter_mut().zip(correction).enumerate() {
+            let change = if unit.response.is_empty() { *v } else { v + unit_response(i) };
+            *p += change;
+            update += change * change;
         }
         let update = (update / state.contact_count().max(1) as f64).sqrt();
         // 4.1 Elements with p < 0 leave, then u = A p: in this order, or the loop cycles for ever.
@@ -50,6 +64,7 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
         }
         monitor.active_set_steps += 1;
         let (r, h) = (residual_norm(state), norm_of_distance(state));
+        let stuck = best.without_progress(state, r / h);
         if !monitor.cycle_done(&state.grid, changed as u64, update, r / h) {
             best.restore(state, multigrid, l);
             return Stop::Cancelled;
@@ -62,10 +77,26 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
                 return Stop::Converged;
             }
         }
-        if best.without_progress(state, r / h) {
+        if stuck {
             best.restore(state, multigrid, l);
             return Stop::Stagnated;
         }
+    }
+}
+
+/// With a prescribed force: what one cycle makes of a unit approach, `response = B 1` with B the cycle. The change of the approach
+/// that gives p + B r + amount * response the prescribed force is then a Newton step.
+#[derive(Default)]
+struct UnitApproach {
+    contact: Vec<bool>,
+    response: Vec<f64>,
+    amount: f64,
+}
+
+impl UnitApproach {
+    fn find(&mut self, multigrid: &mut Multigrid, l: usize, contact: &[bool]) {
+        self.contact = contact.to_vec();
+        self.response = multigrid.cycle(l, &vec![1.0; contact.len()], contact).to_vec();
     }
 }
 

@@ -1,0 +1,78 @@
+! The paper's case: two steel bodies with h = 0.0016681 x^2 + 0.0030671 y^2 (mm) pressed together by 0.1091 mm, against
+! the exact solution of Hertz. Usage: hertz [file for the arrays]
+program hertz
+  use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
+  use contact_normal
+  implicit none
+  integer(c_int32_t), parameter :: M = 128
+  real(c_double), parameter :: CURVATURE_X = 0.0016681_c_double, CURVATURE_Y = 0.0030671_c_double
+  type(contact_normal_scene) :: scene
+  type(contact_normal_options) :: options
+  type(contact_normal_fields) :: fields
+  type(contact_normal_report) :: report
+  type(contact_normal_hertz_solution) :: exact
+  real(c_double), target :: h(M, M), pressure(M, M)
+  integer(c_int32_t), target :: contact(M, M)
+  integer :: ix, iy
+
+  call contact_normal_scene_init(scene)
+  scene%mx = M
+  scene%my = M
+  scene%dx = 20.0_c_double/M
+  scene%dy = 12.0_c_double/M
+  scene%shear_modulus = 82000        ! N/mm2
+  scene%poisson_ratio = 0.28_c_double
+  scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
+  scene%approach = 0.1091_c_double
+  do iy = 1, M
+    do ix = 1, M
+      h(ix, iy) = CURVATURE_X*((ix - 0.5_c_double*(M + 1))*scene%dx)**2 &
+        + CURVATURE_Y*((iy - 0.5_c_double*(M + 1))*scene%dy)**2
+    end do
+  end do
+  call contact_normal_set_undeformed_distance(scene, h)
+
+  call contact_normal_options_init(options)
+  options%tolerance = 1e-8_c_double
+  call contact_normal_fields_init(fields)
+  call contact_normal_set_fields(fields, pressure=pressure, contact=contact)
+  call contact_normal_report_init(report)
+  call check(contact_normal_solve(scene, options, fields, report))
+  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
+                                  scene%approach, exact))
+
+  print '(a, i0, a, i0, a)', "Hertz contact on ", M, " x ", M, " elements"
+  print '(a)', "                          computed       exact"
+  print '(a, 2f12.5)', "approach       mm     ", report%approach, exact%approach
+  print '(a, 2f12.1)', "force          N      ", report%force, exact%force
+  print '(a, 2f12.2)', "max pressure   N/mm2  ", report%max_pressure, exact%max_pressure
+  print '(a, 2f12.4)', "contact area   mm2    ", report%contact_area, exact%area
+  print '(a, f8.4, a)', "time", report%setup_seconds + report%solve_seconds, " s"
+  call write_arrays()
+
+contains
+
+  subroutine check(status)
+    integer(c_int32_t), intent(in) :: status
+    if (status == CONTACT_NORMAL_OK) return
+    print '(4a)', contact_normal_status_text(status), ": ", contact_normal_last_error_message()
+    error stop 1
+  end subroutine
+
+  ! "mx my dx dy approach", then "h p contact" of each element.
+  subroutine write_arrays()
+    character(1000) :: name
+    integer :: unit
+    if (command_argument_count() < 1) return
+    call get_command_argument(1, name)
+    open (newunit=unit, file=trim(name), action="write", status="replace")
+    write (unit, '(i0, 1x, i0, 3es26.16e3)') scene%mx, scene%my, scene%dx, scene%dy, report%approach
+    do iy = 1, M
+      do ix = 1, M
+        write (unit, '(2es26.16e3, 1x, i0)') h(ix, iy), pressure(ix, iy), contact(ix, iy)
+      end do
+    end do
+    close (unit)
+  end subroutine
+
+end program hertz

@@ -1,0 +1,589 @@
+! contact-normal: the elastic normal contact problem by full multigrid, for Fortran. (Fortran 2018, for the optional
+! arguments of bind(C) procedures and for arrays of any rank.)
+!
+! Compile this file with your program and link the library:
+!   gfortran contact_normal.f90 my_program.f90 -lcontact_normal
+!
+! It mirrors contact_normal.h, which says what each member and each call does; what differs in Fortran is said here.
+!   * Arrays are a(mx, my), x first. A call returns a status: 0 OK; > 0 stopped early, outputs hold the best iterate;
+!     < 0 refused, outputs untouched, and contact_normal_last_error_message() says which argument breaks which rule.
+!   * Every structure is filled by its _init before its components are set.
+!   * Where C takes NULL, the argument is optional.
+!   * Arrays are attached to structures by the contact_normal_set_... subroutines. They must have the TARGET or POINTER
+!     attribute and be contiguous, which the compiler checks, and live as long as the structure is used.
+!   * norm_solve, at the end, is one call with plain arrays that needs none of this; it is there as a module procedure
+!     and, for programs that do not use the module, as an external subroutine.
+module contact_normal
+  use, intrinsic :: iso_c_binding
+  implicit none
+  private
+
+  ! Statuses.
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_OK = 0, CONTACT_NORMAL_ITERATION_LIMIT = 1, &
+    CONTACT_NORMAL_CANCELLED = 2, CONTACT_NORMAL_STAGNATED = 3, CONTACT_NORMAL_NULL_POINTER = -1, &
+    CONTACT_NORMAL_INVALID_ARGUMENT = -2, CONTACT_NORMAL_NOT_FINITE = -3, CONTACT_NORMAL_STRUCT_SIZE = -4, &
+    CONTACT_NORMAL_UNSUPPORTED = -5, CONTACT_NORMAL_INFEASIBLE = -6, CONTACT_NORMAL_NOT_POSITIVE_DEFINITE = -7, &
+    CONTACT_NORMAL_OUT_OF_MEMORY = -8, CONTACT_NORMAL_INTERNAL = -99
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_ABI_VERSION = 1
+  ! scene%load
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_PRESCRIBED_APPROACH = 0, CONTACT_NORMAL_PRESCRIBED_FORCE = 1
+  ! options%method
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_METHOD_AUTO = 0, CONTACT_NORMAL_METHOD_NORM = 1, &
+    CONTACT_NORMAL_METHOD_MULTIGRID = 2, CONTACT_NORMAL_METHOD_FULL_MULTIGRID = 3, &
+    CONTACT_NORMAL_METHOD_PROJECTED_CG = 4
+  ! options%smoother
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_SMOOTHER_AUTO = 0, CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL = 1, &
+    CONTACT_NORMAL_SMOOTHER_RED_BLACK = 2, CONTACT_NORMAL_SMOOTHER_JACOBI = 3
+  ! options%active_set
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_ACTIVE_SET_FREE = 0, CONTACT_NORMAL_ACTIVE_SET_FIXED = 1
+  ! options%initial_guess
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_INITIAL_GUESS_NONE = 0, &
+    CONTACT_NORMAL_INITIAL_GUESS_GIVEN = 1, CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS = 2
+  ! options%criterion
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_CRITERION_RESIDUAL = 0, CONTACT_NORMAL_CRITERION_UPDATE = 1
+  ! options%precision
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_PRECISION_AUTO = 0, CONTACT_NORMAL_PRECISION_DOUBLE = 1, &
+    CONTACT_NORMAL_PRECISION_MIXED = 2
+  ! contact_normal_set_log
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LOG_OFF = 0, CONTACT_NORMAL_LOG_WARNING = 1, &
+    CONTACT_NORMAL_LOG_INFO = 2
+
+  ! Own influence coefficients; filled by contact_normal_set_influence. Since 0.1.
+  type, bind(C), public :: contact_normal_influence
+    integer(c_int64_t) :: struct_size = 0      ! 0 until _init: such a structure is refused, not misread
+    integer(c_int32_t) :: cx = 0
+    integer(c_int32_t) :: cy = 0
+    type(c_ptr) :: coefficients = c_null_ptr
+  end type
+
+  ! What is simulated. Since 0.1.
+  type, bind(C), public :: contact_normal_scene
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: mx = 0
+    integer(c_int32_t) :: my = 0
+    real(c_double) :: dx = 0
+    real(c_double) :: dy = 0
+    type(c_ptr) :: undeformed_distance = c_null_ptr       ! contact_normal_set_undeformed_distance
+    real(c_double) :: shear_modulus(2) = 0
+    real(c_double) :: poisson_ratio(2) = 0
+    integer(c_int32_t) :: load = CONTACT_NORMAL_PRESCRIBED_APPROACH
+    integer(c_int32_t) :: reserved = 0
+    real(c_double) :: approach = 0
+    real(c_double) :: force = 0
+    type(c_ptr) :: influence = c_null_ptr                 ! contact_normal_set_influence
+  end type
+
+  ! How it is solved. Since 0.1.
+  type, bind(C), public :: contact_normal_options
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: method = CONTACT_NORMAL_METHOD_AUTO
+    integer(c_int32_t) :: smoother = CONTACT_NORMAL_SMOOTHER_AUTO
+    integer(c_int32_t) :: pre_sweeps = 0
+    integer(c_int32_t) :: post_sweeps = 0
+    real(c_double) :: relaxation = 0
+    integer(c_int32_t) :: coarsest = 0
+    integer(c_int32_t) :: active_set = CONTACT_NORMAL_ACTIVE_SET_FREE
+    integer(c_int32_t) :: initial_guess = CONTACT_NORMAL_INITIAL_GUESS_NONE
+    integer(c_int32_t) :: criterion = CONTACT_NORMAL_CRITERION_RESIDUAL
+    real(c_double) :: tolerance = 0
+    real(c_double) :: error_ratio = 0
+    integer(c_int32_t) :: max_cycles = 0
+    integer(c_int32_t) :: threads = 0
+    integer(c_int32_t) :: precision = CONTACT_NORMAL_PRECISION_AUTO
+    integer(c_int32_t) :: reserved = 0
+    type(c_funptr) :: progress = c_null_funptr            ! contact_normal_set_progress
+    type(c_ptr) :: user = c_null_ptr                      ! anything; passed to the progress callback
+  end type
+
+  ! What the progress callback is told. Since 0.1.
+  type, bind(C), public :: contact_normal_progress
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: mx = 0
+    integer(c_int32_t) :: my = 0
+    integer(c_int64_t) :: cycles = 0
+    integer(c_int64_t) :: active_set_changes = 0
+    real(c_double) :: seconds = 0
+    real(c_double) :: work_units = 0
+    real(c_double) :: update = 0
+    real(c_double) :: residual = 0
+  end type
+
+  ! The caller's arrays; attached by contact_normal_set_fields. Since 0.1.
+  type, bind(C), public :: contact_normal_fields
+    integer(c_int64_t) :: struct_size = 0
+    type(c_ptr) :: pressure = c_null_ptr
+    type(c_ptr) :: deformed_distance = c_null_ptr
+    type(c_ptr) :: displacement = c_null_ptr
+    type(c_ptr) :: contact = c_null_ptr
+  end type
+
+  ! One row of the ledger. Since 0.1.
+  type, bind(C), public :: contact_normal_ledger_row
+    integer(c_int32_t) :: mx = 0
+    integer(c_int32_t) :: my = 0
+    integer(c_int64_t) :: cycles = 0
+    real(c_double) :: seconds = 0
+    real(c_double) :: work_units = 0
+    real(c_double) :: residual = 0
+    real(c_double) :: approach = 0
+    real(c_double) :: force = 0
+    real(c_double) :: max_pressure = 0
+    real(c_double) :: contact_area = 0
+    real(c_double) :: error_force = 0
+    real(c_double) :: error_max_pressure = 0
+    real(c_double) :: error_contact_area = 0
+  end type
+
+  ! What a solve found and what it cost. Since 0.1.
+  type, bind(C), public :: contact_normal_report
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int64_t) :: cycles = 0
+    integer(c_int64_t) :: active_set_steps = 0
+    integer(c_int64_t) :: active_set_changes = 0
+    integer(c_int64_t) :: matrix_products = 0
+    real(c_double) :: work_units = 0
+    real(c_double) :: update = 0
+    real(c_double) :: residual = 0
+    real(c_double) :: penetration = 0
+    real(c_double) :: complementarity = 0
+    real(c_double) :: min_pressure = 0
+    real(c_double) :: approach = 0
+    real(c_double) :: force = 0
+    real(c_double) :: max_pressure = 0
+    real(c_double) :: contact_area = 0
+    integer(c_int64_t) :: contact_count = 0
+    real(c_double) :: error_force = 0
+    real(c_double) :: error_max_pressure = 0
+    real(c_double) :: error_contact_area = 0
+    real(c_double) :: setup_seconds = 0
+    real(c_double) :: solve_seconds = 0
+    integer(c_int64_t) :: bytes = 0
+    integer(c_int64_t) :: ledger_rows = 0
+    integer(c_int64_t) :: ledger_capacity = 0
+    type(c_ptr) :: ledger = c_null_ptr                    ! contact_normal_set_ledger
+  end type
+
+  ! The exact Hertz solution. Since 0.1.
+  type, bind(C), public :: contact_normal_hertz_solution
+    real(c_double) :: semi_axis_x = 0
+    real(c_double) :: semi_axis_y = 0
+    real(c_double) :: max_pressure = 0
+    real(c_double) :: approach = 0
+    real(c_double) :: force = 0
+    real(c_double) :: area = 0
+  end type
+
+  ! Operators and workspace for many solves. Copies share what they stand for: free one of them. Since 0.1.
+  type, public :: contact_normal_solver
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  end type
+
+  abstract interface
+    ! Called after each cycle; non-zero cancels. `user` is options%user. Since 0.1.
+    function contact_normal_progress_callback(progress, user) bind(C) result(cancel)
+      import :: contact_normal_progress, c_int32_t, c_ptr
+      type(contact_normal_progress), intent(in) :: progress
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: cancel
+    end function
+    ! Called with each log message. Since 0.1.
+    subroutine contact_normal_log_callback(level, message)
+      import :: c_int32_t
+      integer(c_int32_t), intent(in) :: level
+      character(*), intent(in) :: message
+    end subroutine
+  end interface
+  public :: contact_normal_progress_callback, contact_normal_log_callback
+
+  interface
+    ! contact_normal_abi_version of C, whose name is that of the constant here: the library's own. Since 0.1.
+    function contact_normal_library_abi_version() bind(C, name="contact_normal_abi_version") result(version)
+      import :: c_int32_t
+      integer(c_int32_t) :: version
+    end function
+    ! Since 0.1.
+    subroutine contact_normal_scene_init(scene) bind(C, name="contact_normal_scene_init")
+      import :: contact_normal_scene
+      type(contact_normal_scene), intent(out) :: scene
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_influence_init(influence) bind(C, name="contact_normal_influence_init")
+      import :: contact_normal_influence
+      type(contact_normal_influence), intent(out) :: influence
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_options_init(options) bind(C, name="contact_normal_options_init")
+      import :: contact_normal_options
+      type(contact_normal_options), intent(out) :: options
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_fields_init(fields) bind(C, name="contact_normal_fields_init")
+      import :: contact_normal_fields
+      type(contact_normal_fields), intent(out) :: fields
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_report_init(report) bind(C, name="contact_normal_report_init")
+      import :: contact_normal_report
+      type(contact_normal_report), intent(out) :: report
+    end subroutine
+    ! Solves one scene. Without options: the defaults. Since 0.1.
+    function contact_normal_solve(scene, options, fields, report) bind(C, name="contact_normal_solve") result(status)
+      import :: contact_normal_scene, contact_normal_options, contact_normal_fields, contact_normal_report, c_int32_t
+      type(contact_normal_scene), intent(in) :: scene
+      type(contact_normal_options), intent(in), optional :: options
+      type(contact_normal_fields), intent(inout) :: fields
+      type(contact_normal_report), intent(inout), optional :: report
+      integer(c_int32_t) :: status
+    end function
+    ! The exact solution for h = curvature_x x^2 + curvature_y y^2. Since 0.1.
+    function contact_normal_hertz(curvature_x, curvature_y, shear_modulus, poisson_ratio, load, amount, solution) &
+        bind(C, name="contact_normal_hertz") result(status)
+      import :: contact_normal_hertz_solution, c_double, c_int32_t
+      real(c_double), value, intent(in) :: curvature_x, curvature_y
+      real(c_double), intent(in) :: shear_modulus(2), poisson_ratio(2)
+      integer(c_int32_t), value, intent(in) :: load
+      real(c_double), value, intent(in) :: amount
+      type(contact_normal_hertz_solution), intent(inout) :: solution
+      integer(c_int32_t) :: status
+    end function
+    ! The half-space's coefficients(-cx:cx-1, -cy:cy-1). Since 0.1.
+    function contact_normal_influence_half_space(cx, cy, dx, dy, shear_modulus, poisson_ratio, coefficients) &
+        bind(C, name="contact_normal_influence_half_space") result(status)
+      import :: c_double, c_int32_t
+      integer(c_int32_t), value, intent(in) :: cx, cy
+      real(c_double), value, intent(in) :: dx, dy
+      real(c_double), intent(in) :: shear_modulus(2), poisson_ratio(2)
+      real(c_double), intent(inout) :: coefficients(*)
+      integer(c_int32_t) :: status
+    end function
+  end interface
+  public :: contact_normal_library_abi_version, contact_normal_scene_init, contact_normal_influence_init, &
+    contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_solve, &
+    contact_normal_hertz, contact_normal_influence_half_space
+
+  ! Exports that hand out or take C strings, handles or procedures: the wrappers below call them.
+  interface
+    function c_status_text(status) bind(C, name="contact_normal_status_text") result(text)
+      import :: c_ptr, c_int32_t
+      integer(c_int32_t), value, intent(in) :: status
+      type(c_ptr) :: text
+    end function
+    function c_last_error() bind(C, name="contact_normal_last_error") result(text)
+      import :: c_ptr
+      type(c_ptr) :: text
+    end function
+    function c_version() bind(C, name="contact_normal_version") result(text)
+      import :: c_ptr
+      type(c_ptr) :: text
+    end function
+    function c_solver_new(scene, options, solver) bind(C, name="contact_normal_solver_new") result(status)
+      import :: contact_normal_scene, contact_normal_options, c_ptr, c_int32_t
+      type(contact_normal_scene), intent(in) :: scene
+      type(contact_normal_options), intent(in), optional :: options
+      type(c_ptr), intent(inout) :: solver
+      integer(c_int32_t) :: status
+    end function
+    function c_solver_solve(solver, scene, options, fields, report) &
+        bind(C, name="contact_normal_solver_solve") result(status)
+      import :: contact_normal_scene, contact_normal_options, contact_normal_fields, contact_normal_report
+      import :: c_ptr, c_int32_t
+      type(c_ptr), value, intent(in) :: solver
+      type(contact_normal_scene), intent(in) :: scene
+      type(contact_normal_options), intent(in), optional :: options
+      type(contact_normal_fields), intent(inout) :: fields
+      type(contact_normal_report), intent(inout), optional :: report
+      integer(c_int32_t) :: status
+    end function
+    subroutine c_solver_free(solver) bind(C, name="contact_normal_solver_free")
+      import :: c_ptr
+      type(c_ptr), value, intent(in) :: solver
+    end subroutine
+    function c_set_log(callback, level, user) bind(C, name="contact_normal_set_log") result(status)
+      import :: c_ptr, c_funptr, c_int32_t
+      type(c_funptr), value, intent(in) :: callback
+      integer(c_int32_t), value, intent(in) :: level
+      type(c_ptr), value, intent(in) :: user
+      integer(c_int32_t) :: status
+    end function
+    function c_strlen(text) bind(C, name="strlen") result(length)
+      import :: c_ptr, c_size_t
+      type(c_ptr), value, intent(in) :: text
+      integer(c_size_t) :: length
+    end function
+  end interface
+  public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
+    contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
+    contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_log, contact_normal_solver_new, &
+    contact_normal_solver_solve, contact_normal_solver_free, norm_solve
+
+  procedure(contact_normal_log_callback), pointer, save :: log_target => null()
+
+contains
+
+  function fortran_string(text) result(string)
+    type(c_ptr), intent(in) :: text
+    character(:), allocatable :: string
+    character(kind=c_char), pointer :: letters(:)
+    integer :: i
+    call c_f_pointer(text, letters, [c_strlen(text)])
+    allocate (character(size(letters)) :: string)
+    do i = 1, size(letters)
+      string(i:i) = letters(i)
+    end do
+  end function
+
+  ! A short text for a status. Since 0.1.
+  function contact_normal_status_text(status) result(text)
+    integer(c_int32_t), intent(in) :: status
+    character(:), allocatable :: text
+    text = fortran_string(c_status_text(status))
+  end function
+
+  ! The message of the last call on this thread that did not return OK, or "". Since 0.1.
+  function contact_normal_last_error_message() result(message)
+    character(:), allocatable :: message
+    message = fortran_string(c_last_error())
+  end function
+
+  ! The version of the library, as "0.1.0". Since 0.1.
+  function contact_normal_version_string() result(version)
+    character(:), allocatable :: version
+    version = fortran_string(c_version())
+  end function
+
+  ! Attaches h(mx, my). Since 0.1.
+  subroutine contact_normal_set_undeformed_distance(scene, h)
+    type(contact_normal_scene), intent(inout) :: scene
+    real(c_double), pointer, contiguous, intent(in) :: h(..)
+    scene%undeformed_distance = c_loc(h)
+  end subroutine
+
+  ! The scene uses own coefficients(-cx:cx-1, -cy:cy-1) instead of the half-space; `influence` keeps what is said about
+  ! them. Since 0.1.
+  subroutine contact_normal_set_influence(scene, influence, cx, cy, coefficients)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_influence), pointer, intent(in) :: influence
+    integer(c_int32_t), intent(in) :: cx, cy
+    real(c_double), pointer, contiguous, intent(in) :: coefficients(..)
+    call contact_normal_influence_init(influence)
+    influence%cx = cx
+    influence%cy = cy
+    influence%coefficients = c_loc(coefficients)
+    scene%influence = c_loc(influence)
+  end subroutine
+
+  ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.
+  subroutine contact_normal_set_fields(fields, pressure, contact, displacement, deformed_distance)
+    type(contact_normal_fields), intent(inout) :: fields
+    real(c_double), pointer, contiguous, intent(in), optional :: pressure(..), displacement(..), deformed_distance(..)
+    integer(c_int32_t), pointer, contiguous, intent(in), optional :: contact(..)
+    if (present(pressure)) fields%pressure = c_loc(pressure)
+    if (present(contact)) fields%contact = c_loc(contact)
+    if (present(displacement)) fields%displacement = c_loc(displacement)
+    if (present(deformed_distance)) fields%deformed_distance = c_loc(deformed_distance)
+  end subroutine
+
+  ! Attaches room for the ledger. Since 0.1.
+  subroutine contact_normal_set_ledger(report, ledger)
+    type(contact_normal_report), intent(inout) :: report
+    type(contact_normal_ledger_row), pointer, contiguous, intent(in) :: ledger(:)
+    report%ledger = c_loc(ledger)
+    report%ledger_capacity = size(ledger, kind=c_int64_t)
+  end subroutine
+
+  ! Sets the progress callback; without one: none. Since 0.1.
+  subroutine contact_normal_set_progress(options, callback)
+    type(contact_normal_options), intent(inout) :: options
+    procedure(contact_normal_progress_callback), optional :: callback
+    options%progress = c_null_funptr
+    if (present(callback)) options%progress = c_funloc(callback)
+  end subroutine
+
+  ! Sends log messages up to `level` to `callback`; without one: none. For the whole process; call it while no other
+  ! thread is inside the library. Since 0.1.
+  function contact_normal_set_log(callback, level) result(status)
+    procedure(contact_normal_log_callback), optional :: callback
+    integer(c_int32_t), intent(in) :: level
+    integer(c_int32_t) :: status
+    if (present(callback)) then
+      log_target => callback
+      status = c_set_log(c_funloc(forward_log), level, c_null_ptr)
+    else
+      status = c_set_log(c_null_funptr, level, c_null_ptr)
+    end if
+  end function
+
+  subroutine forward_log(level, message, user) bind(C)
+    integer(c_int32_t), value, intent(in) :: level
+    type(c_ptr), value, intent(in) :: message, user
+    if (c_associated(user)) return     ! never: set_log passes none
+    call log_target(level, fortran_string(message))
+  end subroutine
+
+  ! Sets up a solver for the grid, bodies and coefficients of `scene`. `solver` must not hold one already. Since 0.1.
+  function contact_normal_solver_new(scene, options, solver) result(status)
+    type(contact_normal_scene), intent(in) :: scene
+    type(contact_normal_options), intent(in), optional :: options
+    type(contact_normal_solver), intent(inout) :: solver
+    integer(c_int32_t) :: status
+    status = c_solver_new(scene, options, solver%handle)
+  end function
+
+  ! Solves with it. Since 0.1.
+  function contact_normal_solver_solve(solver, scene, options, fields, report) result(status)
+    type(contact_normal_solver), intent(in) :: solver
+    type(contact_normal_scene), intent(in) :: scene
+    type(contact_normal_options), intent(in), optional :: options
+    type(contact_normal_fields), intent(inout) :: fields
+    type(contact_normal_report), intent(inout), optional :: report
+    integer(c_int32_t) :: status
+    status = c_solver_solve(solver%handle, scene, options, fields, report)
+  end function
+
+  ! Frees it; doing so twice is harmless. Since 0.1.
+  subroutine contact_normal_solver_free(solver)
+    type(contact_normal_solver), intent(inout) :: solver
+    call c_solver_free(solver%handle)
+    solver%handle = c_null_ptr
+  end subroutine
+
+  ! Normal contact in one call with plain arrays, in the place of a NORM: finds ps and igs with
+  !     e = hs - pen + A ps,   e = 0, ps >= 0 in contact,   e >= 0, ps = 0 elsewhere,   A_ij = cf(ix-jx, iy-jy).
+  ! Units: any consistent ones, a length L and a pressure P. Since 0.1.
+  !   mx, my   in      elements of the grid in x and y, >= 1
+  !   dx, dy   in      their sizes, > 0 [L]
+  !   cx, cy   in      reach of the table, cx >= mx, cy >= my
+  !   cf       in      influence coefficients, any table [L/P]; only the offsets of the grid are read, never row -cy nor
+  !                    column -cx, which may hold anything
+  !   hs       in      undeformed distance [L]; an element with hs >= 1d20 is excluded
+  !   norm     in      0: pen is given; 1: fn is given
+  !   pen      in/out  approach [L]; norm 1: returned, the mean of hs + u over the contact area
+  !   fn       in/out  normal force, the sum of ps dx dy [P L^2], >= 0; norm 0: returned
+  !   igs      in/out  0 exterior, > 0 contact (less than 0 counts as 0). in: the initial estimate; if it is empty,
+  !                    ps is not read. out: codes of elements that stay in contact are kept, new ones get 1
+  !   ps       in/out  pressure [P]. in: initial estimate, read where igs > 0. out: exactly 0 outside the contact area
+  !   eps      in      stop once the rms of the last update of ps is <= eps times the rms of ps, both over the contact
+  !                    area, and the contact area stays
+  !   maxit    in      iterations (cycles) at most
+  !   itcg     out     iterations
+  !   err      out     rms of the last update of ps [P]. No contact: ps = 0, itcg = 0, err = 0
+  !   ierror   out     the status. < 0: refused, all other arguments are as they were;
+  !                    contact_normal_last_error_message() calls norm `load`, pen `approach`, fn `force`, eps
+  !                    `tolerance`, maxit `max_cycles`, cf `influence.coefficients`, hs `undeformed_distance`
+  subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
+    integer(c_int32_t), intent(in) :: mx, my, cx, cy, norm, maxit
+    real(c_double), intent(in) :: dx, dy, eps
+    real(c_double), intent(in), target :: cf(-cx:cx-1, -cy:cy-1)
+    real(c_double), intent(in) :: hs(mx, my)
+    real(c_double), intent(inout) :: pen, fn
+    integer(c_int32_t), intent(inout) :: igs(mx, my)
+    real(c_double), intent(inout) :: ps(mx, my)
+    integer(c_int32_t), intent(inout) :: itcg
+    real(c_double), intent(inout) :: err
+    integer(c_int32_t), intent(out) :: ierror
+    type(contact_normal_scene) :: scene
+    type(contact_normal_influence), target :: influence
+    type(contact_normal_options) :: options
+    type(contact_normal_fields) :: fields
+    type(contact_normal_report) :: report
+    real(c_double), allocatable, target :: h(:, :), p(:, :)
+    integer(c_int32_t), allocatable, target :: contact(:, :)
+    logical :: has_arrays
+    integer :: ix, iy, failed
+
+    call contact_normal_scene_init(scene)
+    call contact_normal_influence_init(influence)
+    call contact_normal_options_init(options)
+    call contact_normal_fields_init(fields)
+    call contact_normal_report_init(report)
+
+    ! Sizes that make no sense are for the library to refuse; no array is touched before it has seen them.
+    has_arrays = mx > 0 .and. my > 0 .and. cx >= mx .and. cy >= my
+    if (has_arrays) has_arrays = int(mx, c_int64_t)*my <= huge(mx)
+    if (has_arrays) then
+      allocate (h(mx, my), p(mx, my), contact(mx, my), stat=failed)
+      if (failed /= 0) then
+        ierror = CONTACT_NORMAL_OUT_OF_MEMORY
+        return
+      end if
+      do iy = 1, my
+        do ix = 1, mx
+          h(ix, iy) = without_surface(hs(ix, iy))
+          contact(ix, iy) = merge(1_c_int32_t, 0_c_int32_t, igs(ix, iy) > 0)
+          p(ix, iy) = 0
+          if (igs(ix, iy) > 0) p(ix, iy) = ps(ix, iy)
+        end do
+      end do
+      if (any(contact /= 0)) options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN
+      influence%coefficients = c_loc(cf)
+    else
+      allocate (h(1, 1), p(1, 1), contact(1, 1))     ! something to point to; the library refuses before it looks
+      influence%coefficients = c_loc(h)
+      h = 0
+    end if
+    call contact_normal_set_undeformed_distance(scene, h)
+    call contact_normal_set_fields(fields, pressure=p, contact=contact)
+
+    scene%mx = mx
+    scene%my = my
+    scene%dx = dx
+    scene%dy = dy
+    scene%load = norm
+    ! Only the given one is read: the other may be uninitialised.
+    if (norm == 0) scene%approach = pen
+    if (norm == 1) scene%force = fn
+    influence%cx = cx
+    influence%cy = cy
+    scene%influence = c_loc(influence)
+    options%criterion = CONTACT_NORMAL_CRITERION_UPDATE
+    options%tolerance = eps
+    options%max_cycles = maxit
+
+    ierror = contact_normal_solve(scene, options, fields, report)
+    if (ierror < 0) return
+
+    ps = p
+    do iy = 1, my
+      do ix = 1, mx
+        if (contact(ix, iy) == 0) then
+          igs(ix, iy) = 0
+        else
+          igs(ix, iy) = max(1_c_int32_t, igs(ix, iy))
+        end if
+      end do
+    end do
+    if (norm == 0) fn = report%force
+    if (norm == 1) pen = report%approach
+    itcg = int(min(report%cycles, int(huge(itcg), c_int64_t)), c_int32_t)
+    err = report%update
+  end subroutine
+
+  ! hs, or +infinity where hs >= 1d20. By the bits, whose order is that of positive numbers: a comparison of a NaN would
+  ! trap with -ffpe-trap=invalid, and pass for anything with -ffast-math; so it reaches the library, which refuses it.
+  elemental function without_surface(hs) result(h)
+    real(c_double), intent(in) :: hs
+    real(c_double) :: h
+    integer(c_int64_t), parameter :: INFINITE = int(z'7FF0000000000000', c_int64_t)
+    integer(c_int64_t), parameter :: NONE = transfer(1e20_c_double, INFINITE)
+    integer(c_int64_t) :: bits
+    bits = transfer(hs, bits)
+    if (bits >= NONE .and. bits <= INFINITE) bits = INFINITE
+    h = transfer(bits, h)
+  end function
+
+end module contact_normal
+
+! norm_solve for programs that do not use the module, Fortran 77 included: the same arguments, INTEGER and
+! DOUBLE PRECISION (not with -fdefault-integer-8). Since 0.1.
+subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_double
+  use contact_normal, only: solve => norm_solve
+  implicit none
+  integer(c_int32_t), intent(in) :: mx, my, cx, cy, norm, maxit
+  real(c_double), intent(in) :: dx, dy, eps, cf(*), hs(*)
+  real(c_double), intent(inout) :: pen, fn, ps(*), err
+  integer(c_int32_t), intent(inout) :: igs(*), itcg
+  integer(c_int32_t), intent(out) :: ierror
+  call solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
+end subroutine norm_solve

@@ -1,0 +1,147 @@
+! Prints the size of every derived type of the module, and the offset of every component.
+program fortran_layout
+  use, intrinsic :: iso_c_binding
+  use contact_normal
+  implicit none
+  type(contact_normal_influence), target :: influence
+  type(contact_normal_scene), target :: scene
+  type(contact_normal_options), target :: options
+  type(contact_normal_progress), target :: progress
+  type(contact_normal_fields), target :: fields
+  type(contact_normal_ledger_row), target :: row
+  type(contact_normal_report), target :: report
+  type(contact_normal_hertz_solution), target :: solution
+  integer(c_intptr_t) :: base
+
+  base = place(c_loc(influence))
+  print '(a, i0)', "contact_normal_influence ", c_sizeof(influence)
+  call show("contact_normal_influence.struct_size", c_loc(influence%struct_size))
+  call show("contact_normal_influence.cx", c_loc(influence%cx))
+  call show("contact_normal_influence.cy", c_loc(influence%cy))
+  call show("contact_normal_influence.coefficients", c_loc(influence%coefficients))
+
+  base = place(c_loc(scene))
+  print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
+  call show("contact_normal_scene.struct_size", c_loc(scene%struct_size))
+  call show("contact_normal_scene.mx", c_loc(scene%mx))
+  call show("contact_normal_scene.my", c_loc(scene%my))
+  call show("contact_normal_scene.dx", c_loc(scene%dx))
+  call show("contact_normal_scene.dy", c_loc(scene%dy))
+  call show("contact_normal_scene.undeformed_distance", c_loc(scene%undeformed_distance))
+  call show("contact_normal_scene.shear_modulus", c_loc(scene%shear_modulus))
+  call show("contact_normal_scene.poisson_ratio", c_loc(scene%poisson_ratio))
+  call show("contact_normal_scene.load", c_loc(scene%load))
+  call show("contact_normal_scene.reserved", c_loc(scene%reserved))
+  call show("contact_normal_scene.approach", c_loc(scene%approach))
+  call show("contact_normal_scene.force", c_loc(scene%force))
+  call show("contact_normal_scene.influence", c_loc(scene%influence))
+
+  base = place(c_loc(options))
+  print '(a, i0)', "contact_normal_options ", c_sizeof(options)
+  call show("contact_normal_options.struct_size", c_loc(options%struct_size))
+  call show("contact_normal_options.method", c_loc(options%method))
+  call show("contact_normal_options.smoother", c_loc(options%smoother))
+  call show("contact_normal_options.pre_sweeps", c_loc(options%pre_sweeps))
+  call show("contact_normal_options.post_sweeps", c_loc(options%post_sweeps))
+  call show("contact_normal_options.relaxation", c_loc(options%relaxation))
+  call show("contact_normal_options.coarsest", c_loc(options%coarsest))
+  call show("contact_normal_options.active_set", c_loc(options%active_set))
+  call show("contact_normal_options.initial_guess", c_loc(options%initial_guess))
+  call show("contact_normal_options.criterion", c_loc(options%criterion))
+  call show("contact_normal_options.tolerance", c_loc(options%tolerance))
+  call show("contact_normal_options.error_ratio", c_loc(options%error_ratio))
+  call show("contact_normal_options.max_cycles", c_loc(options%max_cycles))
+  call show("contact_normal_options.threads", c_loc(options%threads))
+  call show("contact_normal_options.precision", c_loc(options%precision))
+  call show("contact_normal_options.reserved", c_loc(options%reserved))
+  call show("contact_normal_options.progress", c_loc(options%progress))
+  call show("contact_normal_options.user", c_loc(options%user))
+
+  base = place(c_loc(progress))
+  print '(a, i0)', "contact_normal_progress ", c_sizeof(progress)
+  call show("contact_normal_progress.struct_size", c_loc(progress%struct_size))
+  call show("contact_normal_progress.mx", c_loc(progress%mx))
+  call show("contact_normal_progress.my", c_loc(progress%my))
+  call show("contact_normal_progress.cycles", c_loc(progress%cycles))
+  call show("contact_normal_progress.active_set_changes", c_loc(progress%active_set_changes))
+  call show("contact_normal_progress.seconds", c_loc(progress%seconds))
+  call show("contact_normal_progress.work_units", c_loc(progress%work_units))
+  call show("contact_normal_progress.update", c_loc(progress%update))
+  call show("contact_normal_progress.residual", c_loc(progress%residual))
+
+  base = place(c_loc(fields))
+  print '(a, i0)', "contact_normal_fields ", c_sizeof(fields)
+  call show("contact_normal_fields.struct_size", c_loc(fields%struct_size))
+  call show("contact_normal_fields.pressure", c_loc(fields%pressure))
+  call show("contact_normal_fields.deformed_distance", c_loc(fields%deformed_distance))
+  call show("contact_normal_fields.displacement", c_loc(fields%displacement))
+  call show("contact_normal_fields.contact", c_loc(fields%contact))
+
+  base = place(c_loc(row))
+  print '(a, i0)', "contact_normal_ledger_row ", c_sizeof(row)
+  call show("contact_normal_ledger_row.mx", c_loc(row%mx))
+  call show("contact_normal_ledger_row.my", c_loc(row%my))
+  call show("contact_normal_ledger_row.cycles", c_loc(row%cycles))
+  call show("contact_normal_ledger_row.seconds", c_loc(row%seconds))
+  call show("contact_normal_ledger_row.work_units", c_loc(row%work_units))
+  call show("contact_normal_ledger_row.residual", c_loc(row%residual))
+  call show("contact_normal_ledger_row.approach", c_loc(row%approach))
+  call show("contact_normal_ledger_row.force", c_loc(row%force))
+  call show("contact_normal_ledger_row.max_pressure", c_loc(row%max_pressure))
+  call show("contact_normal_ledger_row.contact_area", c_loc(row%contact_area))
+  call show("contact_normal_ledger_row.error_force", c_loc(row%error_force))
+  call show("contact_normal_ledger_row.error_max_pressure", c_loc(row%error_max_pressure))
+  call show("contact_normal_ledger_row.error_contact_area", c_loc(row%error_contact_area))
+
+  base = place(c_loc(report))
+  print '(a, i0)', "contact_normal_report ", c_sizeof(report)
+  call show("contact_normal_report.struct_size", c_loc(report%struct_size))
+  call show("contact_normal_report.cycles", c_loc(report%cycles))
+  call show("contact_normal_report.active_set_steps", c_loc(report%active_set_steps))
+  call show("contact_normal_report.active_set_changes", c_loc(report%active_set_changes))
+  call show("contact_normal_report.matrix_products", c_loc(report%matrix_products))
+  call show("contact_normal_report.work_units", c_loc(report%work_units))
+  call show("contact_normal_report.update", c_loc(report%update))
+  call show("contact_normal_report.residual", c_loc(report%residual))
+  call show("contact_normal_report.penetration", c_loc(report%penetration))
+  call show("contact_normal_report.complementarity", c_loc(report%complementarity))
+  call show("contact_normal_report.min_pressure", c_loc(report%min_pressure))
+  call show("contact_normal_report.approach", c_loc(report%approach))
+  call show("contact_normal_report.force", c_loc(report%force))
+  call show("contact_normal_report.max_pressure", c_loc(report%max_pressure))
+  call show("contact_normal_report.contact_area", c_loc(report%contact_area))
+  call show("contact_normal_report.contact_count", c_loc(report%contact_count))
+  call show("contact_normal_report.error_force", c_loc(report%error_force))
+  call show("contact_normal_report.error_max_pressure", c_loc(report%error_max_pressure))
+  call show("contact_normal_report.error_contact_area", c_loc(report%error_contact_area))
+  call show("contact_normal_report.setup_seconds", c_loc(report%setup_seconds))
+  call show("contact_normal_report.solve_seconds", c_loc(report%solve_seconds))
+  call show("contact_normal_report.bytes", c_loc(report%bytes))
+  call show("contact_normal_report.ledger_rows", c_loc(report%ledger_rows))
+  call show("contact_normal_report.ledger_capacity", c_loc(report%ledger_capacity))
+  call show("contact_normal_report.ledger", c_loc(report%ledger))
+
+  base = place(c_loc(solution))
+  print '(a, i0)', "contact_normal_hertz_solution ", c_sizeof(solution)
+  call show("contact_normal_hertz_solution.semi_axis_x", c_loc(solution%semi_axis_x))
+  call show("contact_normal_hertz_solution.semi_axis_y", c_loc(solution%semi_axis_y))
+  call show("contact_normal_hertz_solution.max_pressure", c_loc(solution%max_pressure))
+  call show("contact_normal_hertz_solution.approach", c_loc(solution%approach))
+  call show("contact_normal_hertz_solution.force", c_loc(solution%force))
+  call show("contact_normal_hertz_solution.area", c_loc(solution%area))
+
+contains
+
+  function place(pointer) result(address)
+    type(c_ptr), intent(in) :: pointer
+    integer(c_intptr_t) :: address
+    address = transfer(pointer, address)
+  end function
+
+  subroutine show(name, pointer)
+    character(*), intent(in) :: name
+    type(c_ptr), intent(in) :: pointer
+    print '(2a, i0)', name, " ", place(pointer) - base
+  end subroutine
+
+end program fortran_layout

@@ -1,0 +1,129 @@
+! The module's calls and wrappers beyond those of the examples: the solver handle, callbacks, messages, the ledger, own
+! coefficients, optional arguments.
+module callbacks
+  use, intrinsic :: iso_c_binding
+  use contact_normal
+  implicit none
+  integer :: messages = 0
+contains
+  function cancel_at_once(progress, user) bind(C) result(cancel)
+    type(contact_normal_progress), intent(in) :: progress
+    type(c_ptr), value :: user
+    integer(c_int32_t) :: cancel
+    integer(c_int32_t), pointer :: calls
+    call c_f_pointer(user, calls)
+    calls = calls + 1
+    cancel = merge(1, 0, progress%mx > 0 .and. progress%cycles > 0)
+  end function
+  subroutine count_messages(level, message)
+    integer(c_int32_t), intent(in) :: level
+    character(*), intent(in) :: message
+    if (level > 0 .and. len(message) > 0) messages = messages + 1
+  end subroutine
+end module callbacks
+
+program fortran_module
+  use callbacks
+  implicit none
+  integer, parameter :: dp = c_double
+  integer(c_int32_t), parameter :: M = 24
+  type(contact_normal_scene) :: scene
+  type(contact_normal_influence), target :: influence
+  type(contact_normal_options) :: options
+  type(contact_normal_fields) :: fields
+  type(contact_normal_report) :: report
+  type(contact_normal_ledger_row), target :: ledger(8)
+  type(contact_normal_solver) :: solver
+  real(dp), target :: h(M, M), p(M, M), u(M, M), e(M*M), cf(-M:M - 1, -M:M - 1)
+  real(dp) :: half_space(M, M)
+  integer(c_int32_t), target :: contact(M, M), calls
+  integer :: i, j
+
+  print '(a)', contact_normal_version_string()
+  call hold(contact_normal_library_abi_version() >= CONTACT_NORMAL_ABI_VERSION, "the ABI's version")
+  call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by the progress callback", "text")
+
+  ! A structure that has seen no _init is refused, not misread.
+  call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_STRUCT_SIZE, "a scene without _init")
+  call hold(index(contact_normal_last_error_message(), "contact_normal_scene_init") > 0, "its message")
+
+  call contact_normal_scene_init(scene)
+  call contact_normal_options_init(options)
+  call contact_normal_fields_init(fields)
+  call contact_normal_report_init(report)
+  scene%mx = M
+  scene%my = M
+  scene%dx = 1.0_dp/M
+  scene%dy = 1.0_dp/M
+  scene%shear_modulus = [1.0_dp, 2.0_dp]
+  scene%poisson_ratio = [0.25_dp, 0.3_dp]
+  scene%approach = 0.1_dp
+  h = reshape([((((i - 12.5_dp)/M)**2 + ((j - 12.5_dp)/M)**2, i=1, M), j=1, M)], [M, M])
+  call contact_normal_set_undeformed_distance(scene, h)
+  call contact_normal_set_fields(fields, pressure=p, contact=contact, displacement=u, deformed_distance=e)
+  call contact_normal_set_ledger(report, ledger)
+
+  ! Options absent: the defaults; then everything.
+  call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_OK, "a solve without options and report")
+  half_space = p
+  call hold(contact_normal_solve(scene, options, fields, report) == CONTACT_NORMAL_OK, "a solve with all of them")
+  call hold(all(abs(p - half_space) <= 0), "the same pressures")
+  call hold(all(abs(reshape(h, [M*M]) - scene%approach + reshape(u, [M*M]) - e) <= 1e-15_dp), "e = h - approach + u")
+  call hold(report%contact_count == count(contact > 0), "the count of elements in contact")
+  call hold(report%ledger_rows >= 2 .and. ledger(report%ledger_rows)%mx == M .and. ledger(1)%mx < M, "the ledger")
+
+  ! The half-space's own coefficients, as a table.
+  call hold(contact_normal_influence_half_space(M, M, scene%dx, scene%dy, scene%shear_modulus, scene%poisson_ratio, &
+                                                cf) == CONTACT_NORMAL_OK, "coefficients")
+  options%tolerance = 1e-10_dp
+  call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "the half-space")
+  half_space = p
+  call contact_normal_set_influence(scene, influence, M, M, cf)
+  call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "the table")
+  ! Residuals of 1e-10, times the condition of A on 24 x 24 elements, below 100.
+  call hold(all(abs(p - half_space) <= 1e-8_dp*maxval(p)), "the same from the table")
+
+  ! A handle for several solves.
+  call hold(contact_normal_solver_new(scene, options, solver) == CONTACT_NORMAL_OK, "a solver")
+  options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS
+  do i = 1, 3
+    call hold(contact_normal_solver_solve(solver, scene, options, fields, report) == CONTACT_NORMAL_OK, "its solve")
+  end do
+  call hold(report%cycles <= 2, "cycles from its own solution")
+  call contact_normal_solver_free(solver)
+  call contact_normal_solver_free(solver)
+  call hold(contact_normal_solver_solve(solver, scene, options, fields) == CONTACT_NORMAL_NULL_POINTER, "a freed one")
+
+  ! A callback that cancels, and its user pointer.
+  calls = 0
+  options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_NONE
+  options%user = c_loc(calls)
+  call contact_normal_set_progress(options, cancel_at_once)
+  call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_CANCELLED, "a cancelled solve")
+  call hold(calls == 1, "one call")
+  call contact_normal_set_progress(options)
+  call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "no callback any more")
+
+  ! A message: with a table that is not symmetric V-cycles serve, which diverge with plain Jacobi; so NORM takes over.
+  do i = -M, M - 1
+    cf(i, :) = cf(i, :)*(1 + 0.03_dp*i/M)
+  end do
+  call hold(contact_normal_set_log(count_messages, CONTACT_NORMAL_LOG_INFO) == CONTACT_NORMAL_OK, "a log")
+  options%smoother = CONTACT_NORMAL_SMOOTHER_JACOBI
+  options%relaxation = 1.9_dp
+  call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "NORM takes over")
+  call hold(messages > 0, "a message")
+  call hold(contact_normal_set_log(level=CONTACT_NORMAL_LOG_OFF) == CONTACT_NORMAL_OK, "no log any more")
+  print '(a)', "all hold"
+
+contains
+
+  subroutine hold(condition, what)
+    logical, intent(in) :: condition
+    character(*), intent(in) :: what
+    if (condition) return
+    print '(4a)', "FAILED: ", what, " ", contact_normal_last_error_message()
+    error stop 1
+  end subroutine
+
+end program fortran_module

@@ -1,0 +1,113 @@
+//! AUTO and NORM agree on problems of every kind: 200 random ones.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{solve, Method, Options, Stop};
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn size(&mut self) -> usize {
+        1 + (self.next() * 96.0) as usize
+    }
+}
+
+/// Undeformed distances of all kinds, with a depth of order 1, and an approach that suits.
+fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
+    let position = |i: usize| {
+        let x = ((i % grid.mx) as f64 + 0.5) / grid.mx as f64 - 0.5;
+        let y = ((i / grid.mx) as f64 + 0.5) / grid.my as f64 - 0.5;
+        (x, y)
+    };
+    let (ax, ay) = (random.between(1.0, 20.0), random.between(1.0, 20.0));
+    let waves: Vec<[f64; 4]> = (0..8)
+        .map(|k| {
+            let frequency = 3.0 * (1.0 + k as f64);
+            [random.between(-frequency, frequency), random.between(-frequency, frequency), random.between(0.0, 6.3), 0.3 / (1.0 + k as f64)]
+        })
+        .collect();
+    let spots: Vec<[f64; 3]> = (0..5)
+        .map(|_| [random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(0.0, 0.3)])
+        .collect();
+    let h: Vec<f64> = (0..grid.len())
+        .map(|i| {
+            let (x, y) = position(i);
+            match kind {
+                // smooth
+                0 => ax * x * x + ay * y * y,
+                // rough
+                1 => {
+                    let rough: f64 = waves.iter().map(|w| w[3] * (6.3 * (w[0] * x + w[1] * y) + w[2]).cos()).sum();
+                    1.0 - rough
+                }
+                // several spots
+                2 => spots
+                    .iter()
+                    .map(|s| 30.0 * ((x - s[0]).powi(2) + (y - s[1]).powi(2)) + s[2])
+                    .fold(f64::INFINITY, f64::min),
+                // flat: full contact
+                3 => 0.0,
+                // one element far below the others
+                _ => if i == grid.len() / 2 { 0.0 } else { 1e3 },
+            }
+        })
+        .collect();
+    let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    (h, lowest + random.between(0.05, 0.5))
+}
+
+#[test]
+fn auto_and_norm_agree_on_200_random_problems() {
+    let mut random = Random(2026);
+    let tolerance = 1e-8;
+    for number in 0..200 {
+        let (mx, my) = match number % 10 {
+            0 => (1, random.size()),
+            1 => (random.size(), 1),
+            _ => (random.size(), random.size()),
+        };
+        let aspect = 10f64.powf(random.between(-2.0, 2.0));
+        let grid = Grid::new(mx, my, aspect.sqrt(), 1.0 / aspect.sqrt()).unwrap();
+        let (h, approach) = distance(number % 5, &grid, &mut random);
+        let bodies = Bodies { shear_modulus: [random.between(0.1, 10.0), f64::INFINITY], poisson_ratio: [0.3, 0.3] };
+        let by_approach = Scene::new(grid, &h, bodies, Load::Approach(approach));
+        let run = |scene: &Scene<'_>, method, tolerance| {
+            let options = Options { method, tolerance, max_cycles: 20_000, ..Options::default() };
+            let (solver, stop, report) = solve(scene, &options).unwrap();
+            assert_eq!(stop, Stop::Converged, "problem {number}, {method:?}, {:?} on {grid:?}", scene.load);
+            (solver, report)
+        };
+        // NORM, whose residual is rich in the short waves that A hardly sees, is the reference: solved further.
+        let (norm, report) = run(&by_approach, Method::Norm, 1e-3 * tolerance);
+        let by_force = Scene { load: Load::Force(report.measures.force), ..by_approach.clone() };
+        for scene in [&by_approach, &by_force] {
+            let (auto, _) = run(scene, Method::Auto, tolerance);
+            let (a, b) = (auto.state(), norm.state());
+            let size = b.p.iter().map(|p| p * p).sum::<f64>().sqrt();
+            let difference = a.p.iter().zip(&b.p).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            // The condition number of A on the contact area amplifies the residual; the issue allows a factor 10.
+            assert!(
+                difference <= 10.0 * tolerance * size.max(f64::MIN_POSITIVE),
+                "problem {number}, {:?} on {grid:?}: p differs by {:e}",
+                scene.load,
+                difference / size
+            );
+            // Elements on one side only are on the boundary to within the tolerance: hardly any pressure, hardly any gap.
+            let (largest, depth) = (b.p.iter().copied().fold(0.0, f64::max), approach.abs());
+            for i in (0..grid.len()).filter(|&i| a.contact[i] != b.contact[i]) {
+                let on_boundary = a.p[i].max(b.p[i]) <= 100.0 * tolerance * largest
+                    && a.deformed_distance(i).abs().max(b.deformed_distance(i).abs()) <= 100.0 * tolerance * depth;
+                assert!(on_boundary, "problem {number}, {:?} on {grid:?}: element {i}", scene.load);
+            }
+        }
+    }
+}
