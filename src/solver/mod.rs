@@ -127,13 +127,19 @@ impl Solver {
         self.projected.influence()
     }
 
+    /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
+    pub fn has_own_influence(&self) -> bool {
+        self.has_own_influence
+    }
+
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
-        scene.check()?;
+        scene.check_distance_and_load()?;
         options.check()?;
         if scene.grid != self.grid {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
         }
-        if scene.bodies != self.bodies {
+        // Own coefficients know no bodies.
+        if !self.has_own_influence && scene.bodies != self.bodies {
             return invalid(format!("the bodies are {:?}; this solver was set up for {:?}", scene.bodies, self.bodies));
         }
         if scene.influence.is_some() && !self.has_own_influence {
@@ -152,6 +158,14 @@ impl Solver {
         let fixed = options.active_set == ActiveSet::Fixed;
         let state = &mut self.states[0];
         let has_guess = match (options.initial_guess, guess) {
+            (InitialGuess::Previous, Some(guess)) if fixed => {
+                check_guess(guess, &state.grid)?;
+                if !self.solved_before {
+                    state.p.fill(0.0);
+                }
+                state.contact.copy_from_slice(guess.contact);
+                true
+            }
             (InitialGuess::Previous, _) => self.solved_before,
             (InitialGuess::Given, Some(guess)) => {
                 check_guess(guess, &state.grid)?;
