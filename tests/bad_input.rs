@@ -423,7 +423,9 @@ fn a_fixed_area_comes_from_the_fields_whatever_the_guess() {
     let mut call = Call::new();
     call.fix_contact();
     let handle = call.new_handle();
-    for (guess, elements) in [(CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [14, 15]), (CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [8, 9])] {
+    for (guess, elements) in
+        [(CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [14, 15]), (CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [8, 9])]
+    {
         call.options.known.initial_guess = guess;
         call.contact.fill(0);
         elements.iter().for_each(|&i| call.contact[i] = 1);

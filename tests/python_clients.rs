@@ -33,7 +33,9 @@ fn python() -> PathBuf {
         }
         .expect("a string takes it");
     }
-    panic!("no Python with numpy and matplotlib (python3-numpy, python3-matplotlib); name one in PYTHON. Tried:\n{tried}");
+    panic!(
+        "no Python with numpy and matplotlib (python3-numpy, python3-matplotlib); name one in PYTHON. Tried:\n{tried}"
+    );
 }
 
 /// A Python that runs in `folder` and finds the module and the library there.
@@ -98,33 +100,119 @@ fn ctypes_structs_have_the_layout_of_the_library() {
     let mut ours: BTreeMap<String, usize> = BTreeMap::new();
     layout!(ours, "Influence", contact_normal_influence, struct_size, cx, cy, coefficients);
     layout!(
-        ours, "Scene", contact_normal_scene, struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
-        poisson_ratio, load, reserved, approach, force, influence
+        ours,
+        "Scene",
+        contact_normal_scene,
+        struct_size,
+        mx,
+        my,
+        dx,
+        dy,
+        undeformed_distance,
+        shear_modulus,
+        poisson_ratio,
+        load,
+        reserved,
+        approach,
+        force,
+        influence
     );
     layout!(
-        ours, "Options", contact_normal_options, struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
-        coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles, threads, precision, reserved,
-        progress, user
+        ours,
+        "Options",
+        contact_normal_options,
+        struct_size,
+        method,
+        smoother,
+        pre_sweeps,
+        post_sweeps,
+        relaxation,
+        coarsest,
+        active_set,
+        initial_guess,
+        criterion,
+        tolerance,
+        error_ratio,
+        max_cycles,
+        threads,
+        precision,
+        reserved,
+        progress,
+        user
+    );
+    layout!(ours, "Fields", contact_normal_fields, struct_size, pressure, deformed_distance, displacement, contact);
+    layout!(
+        ours,
+        "LedgerRow",
+        contact_normal_ledger_row,
+        mx,
+        my,
+        cycles,
+        seconds,
+        work_units,
+        residual,
+        approach,
+        force,
+        max_pressure,
+        contact_area,
+        error_force,
+        error_max_pressure,
+        error_contact_area
     );
     layout!(
-        ours, "Fields", contact_normal_fields, struct_size, pressure, deformed_distance, displacement, contact
+        ours,
+        "Report",
+        contact_normal_report,
+        struct_size,
+        cycles,
+        active_set_steps,
+        active_set_changes,
+        matrix_products,
+        work_units,
+        update,
+        residual,
+        penetration,
+        complementarity,
+        min_pressure,
+        approach,
+        force,
+        max_pressure,
+        contact_area,
+        contact_count,
+        error_force,
+        error_max_pressure,
+        error_contact_area,
+        setup_seconds,
+        solve_seconds,
+        bytes,
+        ledger_rows,
+        ledger_capacity,
+        ledger
     );
     layout!(
-        ours, "LedgerRow", contact_normal_ledger_row, mx, my, cycles, seconds, work_units, residual, approach, force,
-        max_pressure, contact_area, error_force, error_max_pressure, error_contact_area
+        ours,
+        "Progress",
+        contact_normal_progress,
+        struct_size,
+        mx,
+        my,
+        cycles,
+        active_set_changes,
+        seconds,
+        work_units,
+        update,
+        residual
     );
     layout!(
-        ours, "Report", contact_normal_report, struct_size, cycles, active_set_steps, active_set_changes,
-        matrix_products, work_units, update, residual, penetration, complementarity, min_pressure, approach, force,
-        max_pressure, contact_area, contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds,
-        solve_seconds, bytes, ledger_rows, ledger_capacity, ledger
-    );
-    layout!(
-        ours, "Progress", contact_normal_progress, struct_size, mx, my, cycles, active_set_changes, seconds, work_units,
-        update, residual
-    );
-    layout!(
-        ours, "HertzSolution", contact_normal_hertz_solution, semi_axis_x, semi_axis_y, max_pressure, approach, force, area
+        ours,
+        "HertzSolution",
+        contact_normal_hertz_solution,
+        semi_axis_x,
+        semi_axis_y,
+        max_pressure,
+        approach,
+        force,
+        area
     );
     let script = "
 import ctypes, contact_normal

@@ -79,7 +79,9 @@ impl Call {
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
-            h: (0..N).map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2)).collect(),
+            h: (0..N)
+                .map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2))
+                .collect(),
             table: vec![0.0; 4 * CX * CY],
             pressure: vec![SENTINEL; N],
             contact: vec![SENTINEL_CONTACT; N],
@@ -162,7 +164,9 @@ impl Call {
         for row in &self.ledger {
             // SAFETY: 4-byte and 8-byte members without padding.
             let size = size_of::<contact_normal_ledger_row>();
-            bytes.extend(unsafe { std::slice::from_raw_parts((row as *const contact_normal_ledger_row).cast::<u8>(), size) });
+            bytes.extend(unsafe {
+                std::slice::from_raw_parts((row as *const contact_normal_ledger_row).cast::<u8>(), size)
+            });
         }
         bytes
     }
