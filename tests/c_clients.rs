@@ -122,7 +122,8 @@ fn an_example_fails_with_the_message_of_the_library() {
     let program = compile(compiler("cc", "c99"), "c_examples/wheel_rail.c", &folder);
     let data = folder.join("bad.txt");
     std::fs::write(&data, "#\n#\n#\n1 1 0.2 0.2 0.1 -5 82000 0.28\n0 0 0\n").expect("a writable scratch folder");
-    let output = Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder).output().expect("a program that runs");
+    let output =
+        Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder).output().expect("a program that runs");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("force is -5") && output.stdout.is_empty(), "{said}");
@@ -134,7 +135,8 @@ fn the_header_alone_is_clean_c99_and_cxx11() {
     // As the only include of a source, as a user has it.
     let folder = scratch("header_alone");
     let source = folder.join("header_alone.c");
-    std::fs::write(&source, format!("#include \"{}\"\nint main(void) {{ return 0; }}\n", header.display())).expect("scratch");
+    std::fs::write(&source, format!("#include \"{}\"\nint main(void) {{ return 0; }}\n", header.display()))
+        .expect("scratch");
     let object = folder.join("header_alone.o");
     run(compiler("cc", "c99").arg("-c").arg(&source).arg("-o").arg(&object));
     run(compiler("g++", "c++11").args(["-x", "c++", "-c"]).arg(&source).arg("-o").arg(&object));
