@@ -339,6 +339,15 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
 }
 
 #[test]
+fn a_method_for_symmetric_coefficients_refuses_others() {
+    let row: Row = (&["PROJECTED_CG", "symmetric"], CONTACT_NORMAL_UNSUPPORTED, |c| {
+        c.set_coefficient(1, 0, 0.0);
+        c.options.known.method = CONTACT_NORMAL_METHOD_PROJECTED_CG;
+    });
+    refused(&row, Through::Solve, null_mut());
+}
+
+#[test]
 fn stopping_early_has_a_message() {
     let mut call = Call::new();
     (call.options.known.max_cycles, call.options.known.tolerance) = (1, 1e-14);
