@@ -241,9 +241,12 @@ fn a_larger_struct_is_accepted_if_what_we_do_not_know_is_zero() {
     }
 }
 
+/// A name, and what is changed in a good call.
+type Change = (&'static str, fn(&mut Call));
+
 /// Everything that looks odd but is allowed.
 #[rustfmt::skip]
-const ACCEPTED: &[(&str, fn(&mut Call))] = &[
+const ACCEPTED: &[Change] = &[
     ("default options", |c| c.without = "options"),
     ("no report", |c| c.without = "report"),
     ("no fields wanted", |c| c.fields.known = initialised(contact_normal_fields_init)),
@@ -276,7 +279,7 @@ fn what_is_allowed_is_solved() {
 #[test]
 fn no_contact_is_no_error() {
     #[rustfmt::skip]
-    let scenes: [(&str, fn(&mut Call)); 4] = [
+    let scenes: [Change; 4] = [
         ("bodies apart", |c| c.scene.known.approach = -0.5),
         ("no force", |c| (c.scene.known.load, c.scene.known.force) = (1, 0.0)),
         ("no surface, approach prescribed", |c| c.h.fill(INF)),

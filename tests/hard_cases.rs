@@ -165,6 +165,23 @@ fn a_unit_of_length_or_pressure_changes_no_digit() {
 }
 
 #[test]
+fn units_out_of_range_are_refused() {
+    for (size, modulus, load) in [
+        (1e-160, 1.0, Load::Force(1.0)),
+        (1.0, 1e-200, Load::Force(1e-300)),
+        (1e150, 1e-200, Load::Approach(1.0)),
+        (1e-160, 1e200, Load::Approach(1.0)),
+    ] {
+        for m in [1, 16] {
+            let grid = Grid::new(m, m, size, size).unwrap();
+            let scene_h = vec![0.0; grid.len()];
+            let error = solve(&Scene::new(grid, &scene_h, rigid_on(modulus), load), &Options::default()).err();
+            assert!(matches!(error, Some(Error::InvalidArgument(_))), "{size} {modulus} {load:?}: {error:?}");
+        }
+    }
+}
+
+#[test]
 fn very_tight_tolerances_end() {
     let grid = Grid::new(48, 48, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.1);

@@ -46,7 +46,8 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let max_pressure = approach / (compliance * short * shape.first);
     let (semi_axis_x, semi_axis_y) = if curvature_x <= curvature_y { (long, short) } else { (short, long) };
     let area = PI * long * short;
-    let exact = Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area };
+    let exact =
+        Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area };
     let found = [long, short, area, max_pressure, exact.force];
     if !found.iter().all(|value| *value > 0.0 && value.is_finite()) {
         return invalid(format!(

@@ -96,6 +96,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
+        self.check_range(scene)?;
         let mut monitor = Monitor::new(progress, Vec::with_capacity(self.states.len()));
         let rule = Rule {
             tolerance: options.tolerance,
@@ -149,6 +150,30 @@ impl Solver {
             return invalid(
                 "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
             );
+        }
+        Ok(())
+    }
+
+    /// Refuses units in which pressures, displacements or their squares leave the range of double precision.
+    fn check_range(&self, scene: &Scene<'_>) -> Result<()> {
+        let influence = self.projected.influence().at(0, 0);
+        let (pressure, displacement) = match scene.load {
+            Load::Approach(approach) => {
+                let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
+                let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
+                (depth / influence, depth)
+            }
+            Load::Force(force) => {
+                let pressure = force / scene.grid.element_area();
+                (pressure, pressure * influence)
+            }
+        };
+        let in_range = |value: f64| (1e-140..1e140).contains(&value);
+        if pressure != 0.0 && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
+            return invalid(format!(
+                "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
+                 coefficients of order {influence:e}; all must lie between 1e-140 and 1e140: choose other units"
+            ));
         }
         Ok(())
     }

@@ -86,7 +86,7 @@ pub struct Options {
     pub tolerance: f64,
     /// What has to become small.
     pub criterion: Criterion,
-    /// > 0: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
+    /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
     /// approach, whichever is not prescribed). Needs the coarser grids of full multigrid.
     pub error_ratio: f64,
     /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid at most.
