@@ -78,6 +78,7 @@ static int by_v_cycles(const double *h, double approach, struct solution *s)
     contact_normal_report report;
 
     contact_normal_options_init(&options);
+    options.method = CONTACT_NORMAL_METHOD_MULTIGRID;
     options.active_set = CONTACT_NORMAL_ACTIVE_SET_FIXED;
     options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
     options.tolerance = tolerance;

@@ -115,6 +115,15 @@ impl Solver {
         let mut report = monitor.report();
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
+        log::info!(
+            "{:?} on {} x {}: {stop:?} after {} cycles and {:.1} work units, residual {:e}",
+            options.method,
+            self.grid.mx,
+            self.grid.my,
+            report.cycles,
+            report.work_units,
+            report.measures.certificate.residual
+        );
         Ok((stop, report))
     }
 
@@ -169,7 +178,8 @@ impl Solver {
             }
         };
         let in_range = |value: f64| (1e-140..1e140).contains(&value);
-        if pressure != 0.0 && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
+        let loaded = pressure != 0.0 || displacement != 0.0;
+        if loaded && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
             return invalid(format!(
                 "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
                  coefficients of order {influence:e}; all must lie between 1e-140 and 1e140: choose other units"
