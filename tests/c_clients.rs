@@ -15,8 +15,8 @@ use contact_normal::scene::Bodies;
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
 
-/// The default tolerance (contact_normal_options_init), which the examples leave as it is.
-const DEFAULT_TOLERANCE: f64 = 1e-6;
+/// The tolerance that the examples set.
+const TOLERANCE: f64 = 1e-9;
 
 /// A compiler with the flags of the house.
 fn compiler(name: &str, standard: &str) -> Command {
@@ -73,14 +73,14 @@ fn assert_force(found: f64, prescribed: f64) {
 
 #[test]
 fn hertz() {
-    assert_certified(&check_example("hertz", &["128"]), DEFAULT_TOLERANCE);
+    assert_certified(&check_example("hertz", &["128"]), TOLERANCE);
 }
 
 #[test]
 fn wheel_rail() {
     let data = root().join("data/wheel_rail/y4_82kN.txt");
     let measures = check_example("wheel_rail", &[data.to_str().expect("a path in UTF-8")]);
-    assert_certified(&measures, DEFAULT_TOLERANCE);
+    assert_certified(&measures, TOLERANCE);
     let text = std::fs::read_to_string(&data).expect("the data");
     let prescribed = text.lines().nth(3).and_then(|line| line.split(' ').nth(5)).expect("the fourth line");
     assert_force(measures.force, prescribed.parse().expect("a force"));
@@ -95,7 +95,7 @@ fn norm_inner_solve() {
 #[test]
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
-    assert_certified(&measures, DEFAULT_TOLERANCE);
+    assert_certified(&measures, TOLERANCE);
     // The force of the last step, as the example prescribes it.
     let phase = 2.0 * std::f64::consts::PI * 99.0 / 100.0;
     assert_force(measures.force, 80000.0 * (1.0 + 0.1 * phase.sin()));

@@ -100,6 +100,7 @@ static void the_log_says_what_was_done() {
 
 static void the_ledger_has_a_row_per_grid() {
     Problem problem(64);
+    problem.options.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID;
     std::vector<contact_normal_ledger_row> rows(16);
     problem.report.ledger = rows.data();
     problem.report.ledger_capacity = 16;
