@@ -35,13 +35,13 @@ def _alarm(_signal, _frame):
 
 
 def timed(call, problem, tolerance):
-    """Seconds, pressures."""
+    """Seconds of the processor (one thread: what a quiet machine's clock would say), seconds of the clock, pressures."""
     gc.collect()
     signal.setitimer(signal.ITIMER_REAL, LONGEST)
-    began = time.perf_counter()
+    clock, processor = time.perf_counter(), time.process_time()
     try:
         p = call(problem, tolerance)
-        return time.perf_counter() - began, p
+        return time.process_time() - processor, time.perf_counter() - clock, p
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
 
@@ -54,7 +54,7 @@ def ladder(name, setting, call, tolerances, problem, least):
         if halves and step % 2 == 1 and points and points[-1]["seconds"] > COARSE_STEPS:
             continue
         try:
-            seconds, p = timed(call, problem, tolerance)
+            seconds, _, p = timed(call, problem, tolerance)
         except (TooLong, RuntimeError, ValueError, ArithmeticError, AssertionError) as error:
             print(f"  {name} ({setting}) at {tolerance:.0e}: {type(error).__name__} {error}", flush=True)
             if isinstance(error, TooLong):
@@ -98,11 +98,11 @@ def main():
     for turn in range(REPEATS):
         for (name, setting, tolerance), (first, times) in runs.items():
             if first <= LONGEST and turn < (REPEATS if first <= LONG else REPEATS_OF_LONG):
-                times.append(timed(SOLVERS[name][0][setting], problem, tolerance)[0])
+                times.append(timed(SOLVERS[name][0][setting], problem, tolerance)[:2])
     results = []
     for (name, accuracy), point in chosen.items():
         first, times = runs[name, point["setting"], point["tolerance"]]
-        results.append(dict(solver=name, accuracy=accuracy, **{**point, "times": times or [first]}))
+        results.append(dict(solver=name, accuracy=accuracy, **{**point, "times": times or [(first, None)]}))
     with open(out, "w", encoding="utf-8") as file:
         json.dump(dict(problem=kind, size=size, points=points, results=results), file)
 

@@ -66,7 +66,7 @@ def draw(measured, folder):
         axis.set_title(f"{TITLES[kind]}, {size} x {size}", fontsize=11)
         axis.set_xlabel("checked error (looser to tighter)")
         axis.invert_xaxis()
-    axes[0].set_ylabel("seconds, whole call, one thread")
+    axes[0].set_ylabel("processor seconds, whole call, one thread")
     _finish(figure, axes, os.path.join(folder, "performance_error.png"))
 
     figure, axes = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True)
@@ -74,7 +74,7 @@ def draw(measured, folder):
     for axis, kind in zip(axes, kinds):
         for name, style in STYLES.items():
             at = sorted(
-                (one["size"], median(result["times"]))
+                (one["size"], median(time for time, _ in result["times"]))
                 for one in measured
                 if one["problem"] == kind
                 for result in one["results"]
@@ -88,5 +88,5 @@ def draw(measured, folder):
         axis.xaxis.set_minor_formatter(NullFormatter())
         axis.set_title(TITLES[kind], fontsize=11)
         axis.set_xlabel("elements in each direction")
-    axes[0].set_ylabel("seconds for a checked error of 1e-6")
+    axes[0].set_ylabel("processor seconds for a checked error of 1e-6")
     _finish(figure, axes, os.path.join(folder, "performance_size.png"))
