@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test install tools clean
+.PHONY: all demo test bench bench-peers install tools clean
 .DEFAULT_GOAL := all
 
 all:
@@ -72,6 +72,35 @@ demo: tools all
 test: tools
 	$(CARGO) test --profile checked --locked --all-targets
 	$(CARGO) test --profile checked --locked --doc
+
+# What a solve costs, in products, beside what it may cost. BENCH="--large" goes up to 4096 x 4096; see benches/performance.
+BENCH ?=
+bench:
+	$(CARGO) bench --locked --bench performance -- $(BENCH)
+
+# The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick".
+PEERS ?=
+PEERS_PYTHON := build/peers/bin/python
+bench-peers: all $(PEERS_PYTHON)
+	$(PEERS_PYTHON) benches/peers/run.py $(PEERS)
+
+# aspher is built here, for this machine: C++, CMake and Eigen's headers.
+$(PEERS_PYTHON): benches/peers/requirements.txt
+	@missing=''; \
+	command -v g++ >/dev/null || missing="$$missing g++"; \
+	command -v cmake >/dev/null || missing="$$missing cmake"; \
+	test -d /usr/include/eigen3 || missing="$$missing libeigen3-dev"; \
+	python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; \
+	if test -n "$$missing"; then \
+		command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them:$$missing" >&2; exit 1; }; \
+		sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
+		echo "Missing here:$$missing. Installing with: $$sudo apt-get install"; \
+		$$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $$missing; \
+	fi
+	python3 -m venv build/peers
+	CFLAGS="-O3 -march=native" CXXFLAGS="-O3 -march=native" build/peers/bin/pip install --quiet --no-binary aspher \
+		-r benches/peers/requirements.txt
+	touch $@
 
 install:
 	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all
