@@ -137,6 +137,11 @@
 #define CONTACT_NORMAL_SMOOTHER_JACOBI 3
 
 /*
+ `smoother`: the inverse of a circulant, by FFT, with the step length of least energy.
+ */
+#define CONTACT_NORMAL_SMOOTHER_FFT 4
+
+/*
  `active_set`: the contact conditions decide.
  */
 #define CONTACT_NORMAL_ACTIVE_SET_FREE 0

@@ -4,6 +4,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};
 use contact_normal::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::dense;
+use contact_normal::threads::Threads;
 
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -56,7 +57,7 @@ fn a_fast_sweep_is_the_dense_sweep_to_twelve_digits() {
                     let (mut p, mut residual) = (start.clone(), vec![0.0; grid.len()]);
                     displace(&p, &mut residual);
                     residual.iter_mut().zip(&b).for_each(|(r, b)| *r = b - *r);
-                    let mut smoother = Smoother::new(kind, &influence, &grid).unwrap();
+                    let mut smoother = Smoother::new(kind, &influence, &grid, &Threads::One).unwrap();
                     smoother.sweep(&mut p, &mut residual, &contact, 0.8, displace);
 
                     let size = expected.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -74,7 +75,7 @@ fn a_second_sweep_does_not_remember_the_first() {
     let mut seed = 6;
     let grid = Grid::new(12, 50, 1.0, 1.0).unwrap();
     let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
-    let mut used = Smoother::new(SmootherKind::GaussSeidel, &influence, &grid).unwrap();
+    let mut used = Smoother::new(SmootherKind::GaussSeidel, &influence, &grid, &Threads::One).unwrap();
     for _ in 0..3 {
         let contact: Vec<bool> = (0..grid.len()).map(|_| random(&mut seed) < 0.4).collect();
         let b: Vec<f64> = (0..grid.len()).map(|_| random(&mut seed)).collect();
@@ -83,7 +84,7 @@ fn a_second_sweep_does_not_remember_the_first() {
             smoother.sweep(&mut p, &mut residual, &contact, 1.0, |_, _| {});
             p
         };
-        let fresh = sweep(&mut Smoother::new(SmootherKind::GaussSeidel, &influence, &grid).unwrap());
+        let fresh = sweep(&mut Smoother::new(SmootherKind::GaussSeidel, &influence, &grid, &Threads::One).unwrap());
         assert_eq!(sweep(&mut used), fresh);
     }
 }

@@ -28,6 +28,8 @@ pub const CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL: i32 = 1;
 pub const CONTACT_NORMAL_SMOOTHER_RED_BLACK: i32 = 2;
 /// `smoother`: (damped) Jacobi; does not converge on fine grids.
 pub const CONTACT_NORMAL_SMOOTHER_JACOBI: i32 = 3;
+/// `smoother`: the inverse of a circulant, by FFT, with the step length of least energy.
+pub const CONTACT_NORMAL_SMOOTHER_FFT: i32 = 4;
 
 /// `active_set`: the contact conditions decide.
 pub const CONTACT_NORMAL_ACTIVE_SET_FREE: i32 = 0;
@@ -169,7 +171,8 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
             CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => Some(SmootherKind::GaussSeidel),
             CONTACT_NORMAL_SMOOTHER_RED_BLACK => Some(SmootherKind::RedBlack),
             CONTACT_NORMAL_SMOOTHER_JACOBI => Some(SmootherKind::Jacobi),
-            other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2 or JACOBI 3"),
+            CONTACT_NORMAL_SMOOTHER_FFT => Some(SmootherKind::Fft),
+            other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2, JACOBI 3 or FFT 4"),
         },
         pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
         post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,

@@ -1,7 +1,8 @@
 //! One multigrid V(n1, n2)-cycle for `A v = d` on the contact area (section 4.2 of the paper), from `v = 0`.
 //!
-//! The cycle is linear in d, so the active-set loop applies it to the residual and adds v to p: the same iterates as a
-//! cycle that starts at p.
+//! The active-set loop applies the cycle to the residual and adds v to p. With the smoothers whose sweeps are linear
+//! the cycle is linear in d, and these are the iterates of a cycle that starts at p; the FFT smoother chooses its step
+//! lengths by d.
 
 use super::smoother::{Smoother, SmootherKind};
 use super::{coarsest, transfer, Hierarchy};
@@ -61,7 +62,7 @@ impl Multigrid {
             let n = level.grid.len();
             let array = || zeros(n, "the multigrid levels");
             unknowns.push(Unknowns {
-                smoother: Smoother::new(shape.smoother, &level.influence, &level.grid)?,
+                smoother: Smoother::new(shape.smoother, &level.influence, &level.grid, threads)?,
                 correction: array()?,
                 defect: array()?,
                 residual: array()?,
@@ -89,7 +90,8 @@ impl Multigrid {
         self.products[l] += 1;
     }
 
-    /// One cycle that starts on level `l`: the correction `v` with `A v` near `defect` on the contact area, zero outside.
+    /// One cycle that starts on level `l`: the correction `v` with `A v` near `defect` on the contact area, zero
+    /// outside.
     pub fn cycle(&mut self, l: usize, defect: &[f64], contact: &[bool]) -> &[f64] {
         let unknowns = &mut self.unknowns[l];
         unknowns.contact.copy_from_slice(contact);
@@ -105,6 +107,15 @@ impl Multigrid {
         &self.unknowns[l].correction
     }
 
+    /// `A v` on the whole grid, v being the correction of the last cycle that started on level `l`, if it is a
+    /// by-product of it.
+    pub fn correction_product(&self, l: usize) -> Option<&[f64]> {
+        match &self.unknowns[l].smoother {
+            Smoother::Fft(fft) if l + 1 < self.depth() => Some(fft.product()),
+            _ => None,
+        }
+    }
+
     fn cycle_level(&mut self, l: usize) {
         let level = &self.hierarchy.levels[l];
         if l + 1 == self.depth() {
@@ -117,6 +128,9 @@ impl Multigrid {
         let unknowns = &mut self.unknowns[l];
         unknowns.correction.fill(0.0);
         unknowns.residual.copy_from_slice(&unknowns.defect);
+        if let Smoother::Fft(fft) = &mut unknowns.smoother {
+            fft.start();
+        }
         for sweep in 0..self.shape.pre_sweeps {
             if sweep > 0 {
                 self.update_residual(l);
@@ -138,14 +152,7 @@ impl Multigrid {
             }
         }
         self.cycle_level(l + 1);
-        let (finer, coarser) = self.unknowns.split_at_mut(l + 1);
-        let Unknowns { correction, contact, .. } = &mut finer[l];
-        transfer::interpolate(&fine, &coarse, &coarser[0].correction, correction, |v, coarse| *v += coarse);
-        for (v, &inside) in correction.iter_mut().zip(&*contact) {
-            if !inside {
-                *v = 0.0;
-            }
-        }
+        self.correct(l);
 
         // Post-smoothing.
         for _ in 0..self.shape.post_sweeps {
@@ -154,9 +161,35 @@ impl Multigrid {
         }
     }
 
-    /// `r = d - A v` on the contact area, zero outside.
+    /// Adds the correction of the next coarser level, piecewise constant, zero outside the contact area.
+    fn correct(&mut self, l: usize) {
+        let (level, coarse) = (&self.hierarchy.levels[l], &self.hierarchy.levels[l + 1].grid);
+        let (finer, coarser) = self.unknowns.split_at_mut(l + 1);
+        let Unknowns { smoother, correction, residual, contact, .. } = &mut finer[l];
+        let from = &coarser[0].correction;
+        if let Smoother::Fft(fft) = smoother {
+            let (workspace, products) = (&mut self.hierarchy.workspace, &mut self.products[l]);
+            let fill = |to: &mut [f64]| transfer::interpolate(&level.grid, coarse, from, to, |to, value| *to = value);
+            fft.correct(correction, residual, contact, fill, |changes, product| {
+                level.operator.apply(changes, product, workspace);
+                *products += 1;
+            });
+            return;
+        }
+        transfer::interpolate(&level.grid, coarse, from, correction, |v, coarse| *v += coarse);
+        for (v, &inside) in correction.iter_mut().zip(&*contact) {
+            if !inside {
+                *v = 0.0;
+            }
+        }
+    }
+
+    /// `r = d - A v` on the contact area, zero outside, unless the smoother keeps it so.
     fn update_residual(&mut self, l: usize) {
-        let Unknowns { correction, defect, residual, contact, .. } = &mut self.unknowns[l];
+        let Unknowns { smoother, correction, defect, residual, contact } = &mut self.unknowns[l];
+        if smoother.keeps_residual() {
+            return;
+        }
         self.hierarchy.levels[l].operator.apply(correction, residual, &mut self.hierarchy.workspace);
         self.products[l] += 1;
         for ((r, d), &inside) in residual.iter_mut().zip(&*defect).zip(&*contact) {
@@ -164,7 +197,7 @@ impl Multigrid {
         }
     }
 
-    /// One sweep; the residual is used up.
+    /// One sweep; the residual is used up, or kept up to date.
     fn smooth(&mut self, l: usize) {
         let Unknowns { smoother, correction, residual, contact, .. } = &mut self.unknowns[l];
         let (level, workspace, products) =

@@ -48,9 +48,16 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
         let update = (update / state.contact_count().max(1) as f64).sqrt();
         // 4.1 Elements with p < 0 leave, then u = A p: in this order, or the loop cycles for ever.
         let mut changed = if rule.fixed { 0 } else { truncate(state) };
-        state.balance_force();
-        multigrid.displace(l, &state.p, &mut state.u);
+        let recursive = changed == 0 && unit.displace(multigrid.correction_product(l), &mut state.u);
+        if !recursive {
+            refresh(state, multigrid, l);
+        }
         state.fit_approach();
+        // Only a fresh product certifies.
+        if recursive && rule.holds(state, update) {
+            refresh(state, multigrid, l);
+            state.fit_approach();
+        }
         // 4.2 Elements with e <= 0 enter.
         changed += if rule.fixed { 0 } else { admit(state) };
 
@@ -84,12 +91,22 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
     }
 }
 
-/// With a prescribed force: what one cycle makes of a unit approach, `response = B 1` with B the cycle. The change of the approach
-/// that gives p + B r + amount * response the prescribed force is then a Newton step.
+/// u = A p, of pressures that carry the prescribed force.
+fn refresh(state: &mut State, multigrid: &mut Multigrid, l: usize) {
+    state.balance_force();
+    multigrid.displace(l, &state.p, &mut state.u);
+}
+
+/// With a prescribed force: what one cycle makes of a unit approach, `response = B 1` with B the cycle. The change of
+/// the approach that gives p + B r + amount * response the prescribed force is then a Newton step. A cycle that is not
+/// linear is at least homogeneous, so amount * response is what it makes of that change; and where it lowers the
+/// energy (v, A v)/2 - (1, v) from v = 0, the sum of the response is positive, so the step exists.
 #[derive(Default)]
 struct UnitApproach {
     contact: Vec<bool>,
     response: Vec<f64>,
+    /// A response, if it is a by-product of the cycle.
+    product: Option<Vec<f64>>,
     amount: f64,
 }
 
@@ -97,6 +114,20 @@ impl UnitApproach {
     fn find(&mut self, multigrid: &mut Multigrid, l: usize, contact: &[bool]) {
         self.contact = contact.to_vec();
         self.response = multigrid.cycle(l, &vec![1.0; contact.len()], contact).to_vec();
+        self.product = multigrid.correction_product(l).map(<[f64]>::to_vec);
+    }
+
+    /// u = u + A v + amount * A response, from `A v` if that is known; whether it is.
+    fn displace(&self, product: Option<&[f64]>, u: &mut [f64]) -> bool {
+        let Some(product) = product else { return false };
+        u.iter_mut().zip(product).for_each(|(u, value)| *u += value);
+        match &self.product {
+            Some(product) if self.amount.is_finite() => {
+                u.iter_mut().zip(product).for_each(|(u, value)| *u += self.amount * value);
+            }
+            _ => {}
+        }
+        true
     }
 }
 
