@@ -76,7 +76,8 @@ fn compare(name: &str, scene: &Scene<'_>, contact: Option<&[bool]>, production: 
         }
     }
 
-    let (cycles, production) = runs.split_at_mut(runs.len() - 1);
+    let last = runs.len() - 1;
+    let (cycles, production) = runs.split_at_mut(last);
     for (k, (shape, pair)) in CYCLES.iter().zip(cycles.chunks_exact_mut(2)).enumerate() {
         let label = format!("{name} V({},{})", shape.0, shape.1);
         let beside = if k == 0 { cell(&mut production[0]) } else { String::new() };
