@@ -299,7 +299,9 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
         .map(|i| 0.01 * ((i % 20) as f64 - 9.0).powi(2) + 0.02 * ((i / 20) as f64 - 8.0).powi(2))
         .collect();
     for (what, influence) in &cases[..2] {
-        let inverse = Toeplitz::<f64>::inverse_circulant(influence, &grid, (good_length(21), good_length(17)), &Threads::One).unwrap();
+        let inverse =
+            Toeplitz::<f64>::inverse_circulant(influence, &grid, (good_length(21), good_length(17)), &Threads::One)
+                .unwrap();
         assert!(inverse.is_none(), "{what} was meant to have no positive circulant");
     }
     for (what, influence) in cases {
