@@ -1,4 +1,4 @@
-/* An existing NORM keeps its active set and swaps its inner solver: the same 40 lines run once with their own conjugate
+/* An existing NORM keeps its active set and swaps its inner solver: the same function runs once with their own conjugate
    gradients, once with V-cycles of the library, on the program's own table of influence coefficients.
 
    norm_inner_solve [file]: the solution by V-cycles goes to the file. */
@@ -78,6 +78,7 @@ static int by_v_cycles(const double *h, double approach, struct solution *s)
     contact_normal_report report;
 
     contact_normal_options_init(&options);
+    options.method = CONTACT_NORMAL_METHOD_MULTIGRID;
     options.active_set = CONTACT_NORMAL_ACTIVE_SET_FIXED;
     options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
     options.tolerance = tolerance;
@@ -172,7 +173,8 @@ int main(int argc, char **argv)
         printf("%-22s %12.3f %12.3f\n", "force [N]", force[0], force[1]);
         /* Two inner solutions to 1e-9 differ by that, times some tens for the condition of A. */
         printf("pressures differ by less than 1e-6 of the maximum: %s\n", difference < 1e-6 * largest ? "yes" : "no");
-        ok = difference < 1e-6 * largest && write_solution(argc > 1 ? argv[1] : NULL, &scene, approach, cycles.p, cycles.contact);
+        ok = difference < 1e-6 * largest
+             && write_solution(argc > 1 ? argv[1] : NULL, &scene, approach, cycles.p, cycles.contact);
     }
     contact_normal_solver_free(solver);
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;

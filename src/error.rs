@@ -31,3 +31,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 pub(crate) fn invalid<T>(message: String) -> Result<T> {
     Err(Error::InvalidArgument(message))
 }
+
+/// Refuses a `value` that breaks `rule` (`holds` says whether it does not): NaN and infinities as such.
+pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result<()> {
+    let message = || format!("{name} is {value}; {rule}");
+    match (holds, value.is_finite()) {
+        (true, _) => Ok(()),
+        (false, true) => Err(Error::InvalidArgument(message())),
+        (false, false) => Err(Error::NotFinite(message())),
+    }
+}

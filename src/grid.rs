@@ -1,6 +1,6 @@
 //! The potential contact area: `mx` by `my` rectangular elements of size `dx` by `dy`.
 
-use crate::error::{invalid, Result};
+use crate::error::{invalid, require, Result};
 
 /// A grid of `mx * my` elements of size `dx * dy`. Arrays on it are `[my][mx]`, x fastest: element `(ix, iy)`
 /// has index `iy * mx + ix` (the bytes of a Fortran array `a(mx, my)`).
@@ -32,9 +32,7 @@ impl Grid {
             _ => return invalid(format!("mx * my is {mx} * {my}; a grid has at most {MOST_ELEMENTS} elements")),
         }
         for (name, d) in [("dx", dx), ("dy", dy)] {
-            if !(d > 0.0 && d.is_finite()) {
-                return invalid(format!("{name} is {d}; an element size must be positive and finite"));
-            }
+            require(d > 0.0 && d.is_finite(), name, d, "an element size must be positive and finite")?;
         }
         Ok(Grid { mx, my, dx, dy })
     }

@@ -15,8 +15,8 @@ use contact_normal::scene::Bodies;
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
 
-/// The default tolerance (contact_normal_options_init), which the examples leave as it is.
-const DEFAULT_TOLERANCE: f64 = 1e-6;
+/// The tolerance that the examples set.
+const TOLERANCE: f64 = 1e-9;
 
 /// A compiler with the flags of the house.
 fn compiler(name: &str, standard: &str) -> Command {
@@ -73,14 +73,14 @@ fn assert_force(found: f64, prescribed: f64) {
 
 #[test]
 fn hertz() {
-    assert_certified(&check_example("hertz", &["128"]), DEFAULT_TOLERANCE);
+    assert_certified(&check_example("hertz", &["128"]), TOLERANCE);
 }
 
 #[test]
 fn wheel_rail() {
     let data = root().join("data/wheel_rail/y4_82kN.txt");
     let measures = check_example("wheel_rail", &[data.to_str().expect("a path in UTF-8")]);
-    assert_certified(&measures, DEFAULT_TOLERANCE);
+    assert_certified(&measures, TOLERANCE);
     let text = std::fs::read_to_string(&data).expect("the data");
     let prescribed = text.lines().nth(3).and_then(|line| line.split(' ').nth(5)).expect("the fourth line");
     assert_force(measures.force, prescribed.parse().expect("a force"));
@@ -95,7 +95,7 @@ fn norm_inner_solve() {
 #[test]
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
-    assert_certified(&measures, DEFAULT_TOLERANCE);
+    assert_certified(&measures, TOLERANCE);
     // The force of the last step, as the example prescribes it.
     let phase = 2.0 * std::f64::consts::PI * 99.0 / 100.0;
     assert_force(measures.force, 80000.0 * (1.0 + 0.1 * phase.sin()));
@@ -122,7 +122,8 @@ fn an_example_fails_with_the_message_of_the_library() {
     let program = compile(compiler("cc", "c99"), "c_examples/wheel_rail.c", &folder);
     let data = folder.join("bad.txt");
     std::fs::write(&data, "#\n#\n#\n1 1 0.2 0.2 0.1 -5 82000 0.28\n0 0 0\n").expect("a writable scratch folder");
-    let output = Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder).output().expect("a program that runs");
+    let output =
+        Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder).output().expect("a program that runs");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("force is -5") && output.stdout.is_empty(), "{said}");
@@ -134,7 +135,8 @@ fn the_header_alone_is_clean_c99_and_cxx11() {
     // As the only include of a source, as a user has it.
     let folder = scratch("header_alone");
     let source = folder.join("header_alone.c");
-    std::fs::write(&source, format!("#include \"{}\"\nint main(void) {{ return 0; }}\n", header.display())).expect("scratch");
+    std::fs::write(&source, format!("#include \"{}\"\nint main(void) {{ return 0; }}\n", header.display()))
+        .expect("scratch");
     let object = folder.join("header_alone.o");
     run(compiler("cc", "c99").arg("-c").arg(&source).arg("-o").arg(&object));
     run(compiler("g++", "c++11").args(["-x", "c++", "-c"]).arg(&source).arg("-o").arg(&object));

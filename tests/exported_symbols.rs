@@ -9,7 +9,8 @@ use clients::{root, run, scratch};
 
 /// The committed list.
 fn committed() -> Vec<String> {
-    let list = std::fs::read_to_string(root().join("include/exported_symbols.txt")).expect("include/exported_symbols.txt");
+    let list =
+        std::fs::read_to_string(root().join("include/exported_symbols.txt")).expect("include/exported_symbols.txt");
     list.lines().map(String::from).collect()
 }
 
@@ -29,8 +30,12 @@ fn the_header_declares_each_export_and_since_when() {
     let header = std::fs::read_to_string(root().join("include/contact_normal.h")).expect("the header");
     let (_, functions) = header.split_once("extern \"C\" {").expect("functions");
     // Each declaration follows its comment, "/* ... */ declaration;".
-    let declarations: Vec<(&str, &str)> =
-        functions.split("/*").skip(1).filter_map(|part| part.split_once("*/")).filter(|(_, code)| code.contains('(')).collect();
+    let declarations: Vec<(&str, &str)> = functions
+        .split("/*")
+        .skip(1)
+        .filter_map(|part| part.split_once("*/"))
+        .filter(|(_, code)| code.contains('('))
+        .collect();
     let mut declared: Vec<String> = Vec::new();
     for (comment, code) in declarations {
         // "contact_normal_status contact_normal_solve(const ...": the word before the first parenthesis.

@@ -319,10 +319,10 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                 assert!(state.p.iter().all(|p| p.is_finite() && *p >= 0.0));
                 if stop == Stop::Converged {
                     let (mut rr, mut hh) = (0.0, 0.0);
-                    for i in 0..grid.len() {
+                    for (i, distance) in h.iter().enumerate() {
                         if state.contact[i] {
                             rr += e(i).powi(2);
-                            hh += (h[i] - state.approach).powi(2);
+                            hh += (distance - state.approach).powi(2);
                         } else {
                             assert!(state.p[i] == 0.0 && e(i) > -1e-6, "{what}: {} at {i}", e(i));
                         }

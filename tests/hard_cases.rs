@@ -4,8 +4,10 @@ use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{
+    solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Precision, Solver, Stop,
+};
 use contact_normal::threads::Threads;
-use contact_normal::solver::{solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Precision, Solver, Stop};
 
 const METHODS: [Method; 5] =
     [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg];
@@ -163,6 +165,23 @@ fn a_unit_of_length_or_pressure_changes_no_digit() {
 }
 
 #[test]
+fn units_out_of_range_are_refused() {
+    for (size, modulus, load) in [
+        (1e-160, 1.0, Load::Force(1.0)),
+        (1.0, 1e-200, Load::Force(1e-300)),
+        (1e150, 1e-200, Load::Approach(1.0)),
+        (1e-160, 1e200, Load::Approach(1.0)),
+    ] {
+        for m in [1, 16] {
+            let grid = Grid::new(m, m, size, size).unwrap();
+            let scene_h = vec![0.0; grid.len()];
+            let error = solve(&Scene::new(grid, &scene_h, rigid_on(modulus), load), &Options::default()).err();
+            assert!(matches!(error, Some(Error::InvalidArgument(_))), "{size} {modulus} {load:?}: {error:?}");
+        }
+    }
+}
+
+#[test]
 fn very_tight_tolerances_end() {
     let grid = Grid::new(48, 48, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.1);
@@ -216,7 +235,8 @@ fn a_table_without_symmetry_is_solved_as_it_is() {
     let h = paraboloid(&grid, 0.3);
     // 10 % more influence to one side than to the other
     let influence = table_of(&grid, 24, 20, |kx, _, value| value * (1.0 + 0.05 * (kx.signum() as f64)));
-    let scene = Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.1)) };
+    let scene =
+        Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.1)) };
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
         let solver = certified(&scene, &Options { method, tolerance: 1e-9, ..Options::default() });
         let state = solver.state();
@@ -239,7 +259,8 @@ fn a_table_whose_circulant_is_not_positive_is_solved_all_the_same() {
     let grid = Grid::new(16, 16, 1.0, 1.0).unwrap();
     let h = paraboloid(&grid, 0.01);
     let wave = |k: i64| (0.9 * k as f64).cos() * (-0.05 * k.abs() as f64).exp();
-    let influence = table_of(&grid, 16, 16, |kx, ky, _| wave(kx) * wave(ky) + if (kx, ky) == (0, 0) { 0.5 } else { 0.0 });
+    let influence =
+        table_of(&grid, 16, 16, |kx, ky, _| wave(kx) * wave(ky) + if (kx, ky) == (0, 0) { 0.5 } else { 0.0 });
     let full = Influence::Table(influence.clone());
     let circulant = contact_normal::operator::Toeplitz::<f64>::inverse_circulant(&full, &grid, (18, 18), &Threads::One);
     assert!(circulant.unwrap().is_none(), "the table does not test what it should");
@@ -260,7 +281,8 @@ fn an_indefinite_table_is_refused() {
     let h = vec![0.0; grid.len()];
     let influence = table_of(&grid, 12, 12, |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { -2.0 });
     for method in [Method::Auto, Method::Norm] {
-        let scene = Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(1.0)) };
+        let scene =
+            Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(1.0)) };
         let error = solve(&scene, &Options { method, ..Options::default() }).err();
         assert!(matches!(error, Some(Error::NotPositiveDefinite(_))), "{method:?}: {error:?}");
     }
@@ -363,7 +385,11 @@ fn limits_and_cancellation_return_the_best_iterate() {
             let (stop, _) = solver.solve(&scene, &options, None, Some(&mut cancel)).unwrap();
             assert_eq!((stop, calls), (Stop::Cancelled, after), "{method:?}");
             assert!(solver.state().p.iter().all(|p| *p >= 0.0));
-            assert!((solver.state().force() - 1.0).abs() <= 1e-12, "{method:?} after {after}: {}", solver.state().force());
+            assert!(
+                (solver.state().force() - 1.0).abs() <= 1e-12,
+                "{method:?} after {after}: {}",
+                solver.state().force()
+            );
         }
     }
 }

@@ -32,12 +32,16 @@ fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
     let waves: Vec<[f64; 4]> = (0..8)
         .map(|k| {
             let frequency = 3.0 * (1.0 + k as f64);
-            [random.between(-frequency, frequency), random.between(-frequency, frequency), random.between(0.0, 6.3), 0.3 / (1.0 + k as f64)]
+            [
+                random.between(-frequency, frequency),
+                random.between(-frequency, frequency),
+                random.between(0.0, 6.3),
+                0.3 / (1.0 + k as f64),
+            ]
         })
         .collect();
-    let spots: Vec<[f64; 3]> = (0..5)
-        .map(|_| [random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(0.0, 0.3)])
-        .collect();
+    let spots: Vec<[f64; 3]> =
+        (0..5).map(|_| [random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(0.0, 0.3)]).collect();
     let h: Vec<f64> = (0..grid.len())
         .map(|i| {
             let (x, y) = position(i);
@@ -57,7 +61,13 @@ fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
                 // flat: full contact
                 3 => 0.0,
                 // one element far below the others
-                _ => if i == grid.len() / 2 { 0.0 } else { 1e3 },
+                _ => {
+                    if i == grid.len() / 2 {
+                        0.0
+                    } else {
+                        1e3
+                    }
+                }
             }
         })
         .collect();

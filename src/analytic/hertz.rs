@@ -12,7 +12,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{invalid, Result};
+use crate::error::{invalid, require, Result};
 
 /// The exact solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,9 +36,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let named =
         [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
     for (name, value) in named {
-        if !(value > 0.0 && value.is_finite()) {
-            return invalid(format!("{name} is {value}; it must be positive and finite"));
-        }
+        require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")?;
     }
     // The long axis lies along the smaller curvature.
     let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
@@ -48,14 +46,20 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let max_pressure = approach / (compliance * short * shape.first);
     let (semi_axis_x, semi_axis_y) = if curvature_x <= curvature_y { (long, short) } else { (short, long) };
     let area = PI * long * short;
-    Ok(Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area })
+    let exact =
+        Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area };
+    let found = [long, short, area, max_pressure, exact.force];
+    if !found.iter().all(|value| *value > 0.0 && value.is_finite()) {
+        return invalid(format!(
+            "curvature_x {curvature_x}, curvature_y {curvature_y} and approach {approach} give a contact out of range: {exact:?}"
+        ));
+    }
+    Ok(exact)
 }
 
 /// The same with the force given: `F` grows with the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
-    if !(force > 0.0 && force.is_finite()) {
-        return invalid(format!("force is {force}; it must be positive and finite"));
-    }
+    require(force > 0.0 && force.is_finite(), "force", force, "it must be positive and finite")?;
     let unit = hertz(curvature_x, curvature_y, 1.0, compliance)?;
     hertz(curvature_x, curvature_y, (force / unit.force).powf(2.0 / 3.0), compliance)
 }

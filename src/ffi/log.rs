@@ -1,8 +1,9 @@
 //! Log messages to a callback of the caller's.
 
-use std::ffi::{c_char, c_void, CString};
+use std::ffi::CString;
 use std::sync::{Mutex, PoisonError};
 
+use libc::{c_char, c_void};
 use log::{LevelFilter, Log, Metadata, Record};
 
 use super::guard::guard;

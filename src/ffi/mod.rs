@@ -1,6 +1,5 @@
-//! The C ABI: translation only, no numerics. Each export goes through [`guard`].
+//! The C ABI: translation only, no numerics. Each export goes through `guard.rs`.
 
-#![allow(unsafe_code)]
 #![allow(non_camel_case_types)]
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 

@@ -1,6 +1,6 @@
 //! `contact_normal_options`.
 
-use std::ffi::c_void;
+use libc::c_void;
 
 use super::report::contact_normal_progress;
 use super::scene::count;

@@ -1,6 +1,6 @@
 //! `contact_normal_scene` and its effects.
 
-use super::status::{Refusal, CONTACT_NORMAL_NOT_FINITE};
+use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
 use crate::influence::Table;
@@ -116,14 +116,20 @@ pub(super) fn count(name: &str, value: i32) -> Result<usize, Refusal> {
 
 /// Translates a scene. The caller's arrays must live as long as the result is used.
 pub(super) unsafe fn translate<'a>(scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
+    // SAFETY: by the caller.
+    let scene = unsafe { translate_for(scene, false)? };
+    scene.check()?;
+    Ok(scene)
+}
+
+/// The same for a solver that may have coefficients of its own: then those of the scene are not read. The solver checks the
+/// rest.
+pub(super) unsafe fn translate_for<'a>(
+    scene: *const contact_normal_scene,
+    has_own_influence: bool,
+) -> Result<Scene<'a>, Refusal> {
     // SAFETY: NULL or a struct that declares its size.
     let scene = unsafe { structs::read(scene, "scene")? };
-    for (name, value) in [("dx", scene.dx), ("dy", scene.dy)] {
-        if !value.is_finite() {
-            let message = format!("{name} is {value}; an element size must be positive and finite");
-            return Err(Refusal::new(CONTACT_NORMAL_NOT_FINITE, message));
-        }
-    }
     let grid = Grid::new(count("mx", scene.mx)?, count("my", scene.my)?, scene.dx, scene.dy)?;
     if scene.reserved != 0 {
         return Err(Refusal::invalid(format!("scene->reserved is {}; it must be 0", scene.reserved)));
@@ -143,15 +149,19 @@ pub(super) unsafe fn translate<'a>(scene: *const contact_normal_scene) -> Result
     // SAFETY: the caller passes my * mx values, by the conventions of the ABI.
     let h = unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) };
     let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
-    let influence = if scene.influence.is_null() {
+    let influence = if scene.influence.is_null() || has_own_influence {
         None
     } else {
         // SAFETY: not null: a struct that declares its size.
         Some(unsafe { translate_influence(scene.influence, &grid)? })
     };
-    let scene = Scene { grid, undeformed_distance: h, bodies, load, influence };
-    scene.check()?;
-    Ok(scene)
+    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence })
+}
+
+/// Number of values in a table of coefficients.
+pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
+    let size = cx.checked_mul(cy).and_then(|n| n.checked_mul(4)).filter(|n| *n <= isize::MAX as usize / 8);
+    size.ok_or_else(|| Refusal::invalid(format!("cx * cy is {cx} * {cy}; no influence table is that large")))
 }
 
 unsafe fn translate_influence(influence: *const contact_normal_influence, grid: &Grid) -> Result<Table, Refusal> {
@@ -161,10 +171,7 @@ unsafe fn translate_influence(influence: *const contact_normal_influence, grid: 
     if influence.coefficients.is_null() {
         return Err(Refusal::null("scene->influence->coefficients"));
     }
-    let size = cx.checked_mul(cy).and_then(|n| n.checked_mul(4)).filter(|n| *n <= isize::MAX as usize / 8);
-    let Some(size) = size else {
-        return Err(Refusal::invalid(format!("influence->cx * cy is {cx} * {cy}; no table is that large")));
-    };
+    let size = table_size(cx, cy)?;
     // SAFETY: the caller passes 2 cy by 2 cx values, by the conventions of the ABI.
     let values = unsafe { std::slice::from_raw_parts(influence.coefficients, size) };
     Ok(Table::new(cx, cy, values, grid)?)

@@ -6,6 +6,7 @@ use super::report::{contact_normal_fields, contact_normal_report};
 use super::scene::{self, contact_normal_scene};
 use super::solve::{run, Outputs};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use crate::scene::Scene;
 use crate::solver::Solver;
 
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
@@ -54,9 +55,20 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let solver = unsafe { &mut (*solver).solver };
         // SAFETY: as in contact_normal_solver_new.
         let (scene, options, outputs) =
-            unsafe { (scene::translate(scene)?, options::translate(options)?, Outputs::of(fields, report)?) };
+            unsafe { (scene_for(solver, scene)?, options::translate(options)?, Outputs::of(fields, report)?) };
         run(solver, &scene, &options, &outputs)
     })
+}
+
+/// Translates a scene for a solver that is set up.
+unsafe fn scene_for<'a>(solver: &Solver, scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
+    let own = solver.has_own_influence();
+    // SAFETY: by the caller.
+    let scene = unsafe { scene::translate_for(scene, own)? };
+    if !own {
+        scene.check()?;
+    }
+    Ok(scene)
 }
 
 /// Frees a solver; NULL is ignored. Since 0.1.

@@ -1,9 +1,10 @@
 //! Closed forms and coefficient tables.
 
 use super::guard::guard;
-use super::scene::count;
-use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_NOT_FINITE, CONTACT_NORMAL_OK};
+use super::scene::{count, table_size};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::analytic;
+use crate::error::require;
 use crate::grid::Grid;
 use crate::influence::HalfSpace;
 use crate::scene::Bodies;
@@ -61,17 +62,17 @@ pub unsafe extern "C" fn contact_normal_hertz(
         }
         // SAFETY: NULL or two values each, by the conventions of the ABI.
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
-        let exact = match load {
-            super::CONTACT_NORMAL_PRESCRIBED_APPROACH => analytic::hertz(curvature_x, curvature_y, amount, compliance)?,
-            super::CONTACT_NORMAL_PRESCRIBED_FORCE => {
-                analytic::hertz_by_force(curvature_x, curvature_y, amount, compliance)?
-            }
+        let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load {
+            super::CONTACT_NORMAL_PRESCRIBED_APPROACH => ("amount, the approach,", analytic::hertz),
+            super::CONTACT_NORMAL_PRESCRIBED_FORCE => ("amount, the force,", analytic::hertz_by_force),
             other => {
                 return Err(Refusal::invalid(format!(
                     "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
                 )))
             }
         };
+        require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;
+        let exact = exact(curvature_x, curvature_y, amount, compliance)?;
         let value = contact_normal_hertz_solution {
             semi_axis_x: exact.semi_axis_x,
             semi_axis_y: exact.semi_axis_y,
@@ -101,13 +102,9 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
     guard(|| {
         // SAFETY: NULL or two values each, by the conventions of the ABI.
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
-        for (name, value) in [("dx", dx), ("dy", dy)] {
-            if !value.is_finite() {
-                let message = format!("{name} is {value}; an element size must be positive and finite");
-                return Err(Refusal::new(CONTACT_NORMAL_NOT_FINITE, message));
-            }
-        }
-        let grid = Grid::new(count("cx", cx)?, count("cy", cy)?, dx, dy)?;
+        let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
+        table_size(cx, cy)?;
+        let grid = Grid { mx: cx, my: cy, ..Grid::new(1, 1, dx, dy)? };
         if coefficients.is_null() {
             return Err(Refusal::null("coefficients"));
         }

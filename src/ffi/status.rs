@@ -1,7 +1,9 @@
 //! Statuses, their texts, the last error message, versions.
 
 use std::cell::RefCell;
-use std::ffi::{c_char, CStr, CString};
+use std::ffi::{CStr, CString};
+
+use libc::c_char;
 
 use crate::error::Error;
 use crate::solver::Stop;

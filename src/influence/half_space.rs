@@ -27,8 +27,8 @@ const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
 /// Nodes and weights of the 9-point Gauss-Legendre rule on [-1, 1], non-negative half (Abramowitz & Stegun 25.4).
 const GAUSS: [(f64, f64); 5] = [
-    (0.0, 0.330_239_355_001_259_76),
-    (0.324_253_423_403_808_93, 0.312_347_077_040_002_84),
+    (0.0, 0.330_239_355_001_259_8),
+    (0.324_253_423_403_808_9, 0.312_347_077_040_002_84),
     (0.613_371_432_700_590_4, 0.260_610_696_402_935_46),
     (0.836_031_107_326_635_8, 0.180_648_160_694_857_4),
     (0.968_160_239_507_626_1, 0.081_274_388_361_574_41),
@@ -42,7 +42,7 @@ pub struct HalfSpace {
     /// `1/(pi E*)`.
     compliance: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
-    series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
+    series: Box<[[f64; MOST_TERMS + 1]; MOST_TERMS + 1]>,
 }
 
 impl HalfSpace {
@@ -146,12 +146,12 @@ fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.
-fn multipole_series(dx: f64, dy: f64) -> [[f64; MOST_TERMS + 1]; MOST_TERMS + 1] {
+fn multipole_series(dx: f64, dy: f64) -> Box<[[f64; MOST_TERMS + 1]; MOST_TERMS + 1]> {
     let diagonal = dx.hypot(dy);
     let (hx, hy) = (dx / diagonal, dy / diagonal);
     // mean of s^(2i) over |s| <= h
     let moment = |h: f64, i: usize| h.powi(2 * i as i32) / (2 * i + 1) as f64;
-    let mut series = [[0.0; MOST_TERMS + 1]; MOST_TERMS + 1];
+    let mut series = Box::new([[0.0; MOST_TERMS + 1]; MOST_TERMS + 1]);
     for (k, q) in series.iter_mut().enumerate() {
         let n = 2 * k;
         for l in 0..=k {

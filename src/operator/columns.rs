@@ -2,72 +2,91 @@
 //! several threads at once. The only file with unsafe code outside `ffi/`.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use super::fft::{Complex, Real};
+use crate::threads::Threads;
 
 /// Columns in a block: 8 double-precision complex numbers are two cache lines.
 pub const BLOCK: usize = 8;
 
-/// A row-major complex matrix whose column blocks may be read and written by different threads.
-pub struct Columns<'a, T> {
+/// One block of columns of a row-major matrix: no two of them overlap.
+pub struct Block<'a, T> {
     data: *mut Complex<T>,
     rows: usize,
     width: usize,
+    first: usize,
     owner: PhantomData<&'a mut [Complex<T>]>,
 }
 
-// SAFETY: the matrix is borrowed exclusively for 'a, and `Columns` gives access to it only by block; callers of the
-// unsafe methods promise that no two threads work on the same block.
-unsafe impl<T: Send> Sync for Columns<'_, T> {}
+/// A pointer that several threads may hold: each derives blocks of its own from it.
+struct Shared<T>(*mut Complex<T>);
 
-impl<'a, T: Real> Columns<'a, T> {
-    /// The matrix `data`, `rows` by `width`.
-    pub fn new(data: &'a mut [Complex<T>], width: usize) -> Columns<'a, T> {
-        assert_eq!(data.len() % width, 0);
-        Columns { rows: data.len() / width, width, data: data.as_mut_ptr(), owner: PhantomData }
+// SAFETY: `for_each_block` is the only user, and gives each block of the matrix behind it to one thread at a time.
+unsafe impl<T: Send> Sync for Shared<T> {}
+
+impl<T> Shared<T> {
+    fn pointer(&self) -> *mut Complex<T> {
+        self.0
+    }
+}
+
+/// Runs `work` on each block of columns of the matrix `data`, `width` columns wide, a run of blocks per piece of scratch.
+pub fn for_each_block<T: Real, S: Send>(
+    data: &mut [Complex<T>],
+    width: usize,
+    threads: &Threads,
+    scratch: &mut [S],
+    work: impl Fn(&mut Block<'_, T>, &mut S) + Sync + Send,
+) {
+    assert_eq!(data.len() % width, 0);
+    let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
+    let blocks = width.div_ceil(BLOCK);
+    let blocks_per_piece = blocks.div_ceil(scratch.len());
+    threads.for_each(scratch, |k, s| {
+        for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(blocks) {
+            let block = &mut Block { data: shared.pointer(), rows, width, first: b * BLOCK, owner: PhantomData };
+            work(block, s);
+        }
+    });
+}
+
+impl<T: Real> Block<'_, T> {
+    /// The first column.
+    pub fn first(&self) -> usize {
+        self.first
     }
 
-    /// Number of blocks.
-    pub fn blocks(&self) -> usize {
-        self.width.div_ceil(BLOCK)
+    /// Number of columns: all blocks but the last have [`BLOCK`].
+    pub fn columns(&self) -> usize {
+        (self.width - self.first).min(BLOCK)
     }
 
-    /// Columns in block `b`: all but the last have [`BLOCK`].
-    pub fn columns(&self, b: usize) -> usize {
-        (self.width - b * BLOCK).min(BLOCK)
-    }
-
-    /// Copies rows `rows` of block `b` to `out`, whose columns are `length` long and zero elsewhere.
-    ///
-    /// # Safety
-    /// No other thread may be writing block `b`.
-    pub unsafe fn gather(&self, b: usize, rows: std::ops::Range<usize>, length: usize, out: &mut [Complex<T>]) {
-        let columns = self.columns(b);
-        assert!(b * BLOCK < self.width && rows.end <= self.rows.min(length) && out.len() >= columns * length);
+    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
+    pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>]) {
+        let columns = self.columns();
+        assert!(rows.end <= self.rows.min(length) && out.len() >= columns * length);
         for column in out.chunks_exact_mut(length).take(columns) {
             column[..rows.start].fill(Complex::default());
             column[rows.end..].fill(Complex::default());
         }
         for row in rows {
-            // SAFETY: row < self.rows and the block lies within the row, so the slice is inside the matrix that this
-            // value borrows; nobody writes it meanwhile, by the caller's promise.
-            let from = unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + b * BLOCK), columns) };
+            // SAFETY: row < rows of the matrix, and the block lies within the row: the slice is inside the matrix, which
+            // `for_each_block` borrows exclusively, and no other block overlaps this one.
+            let from = unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), columns) };
             for (c, &value) in from.iter().enumerate() {
                 out[c * length + row] = value;
             }
         }
     }
 
-    /// Copies the columns in `from`, each `length` long, to rows `rows` of block `b`.
-    ///
-    /// # Safety
-    /// No other thread may be reading or writing block `b`.
-    pub unsafe fn scatter(&self, b: usize, rows: std::ops::Range<usize>, length: usize, from: &[Complex<T>]) {
-        let columns = self.columns(b);
-        assert!(b * BLOCK < self.width && rows.end <= self.rows.min(length) && from.len() >= columns * length);
+    /// Copies the columns in `from`, each `length` long, to rows `rows`.
+    pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>]) {
+        let columns = self.columns();
+        assert!(rows.end <= self.rows.min(length) && from.len() >= columns * length);
         for row in rows {
-            // SAFETY: as in `gather`; exclusive by the caller's promise.
-            let to = unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + b * BLOCK), columns) };
+            // SAFETY: as in `gather`; this block is borrowed mutably.
+            let to = unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), columns) };
             for (c, value) in to.iter_mut().enumerate() {
                 *value = from[c * length + row];
             }

@@ -1,5 +1,6 @@
 //! The operator of the contact problem: `u = A p`.
 
+#[allow(unsafe_code)] // the kernel
 pub mod columns;
 pub mod dense;
 pub mod fft;

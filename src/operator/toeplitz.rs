@@ -12,7 +12,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::columns::{Columns, BLOCK};
+use super::columns::{for_each_block, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -197,20 +197,14 @@ impl<T: Real> Toeplitz<T> {
     fn convolve_columns(&self, loaded: Range<usize>, wanted: Range<usize>, workspace: &mut Workspace<T>) {
         let Workspace { bins, pieces } = workspace;
         let nb = self.rows.bins();
-        let columns = Columns::new(&mut bins[..self.my * nb], nb);
-        let blocks_per_piece = columns.blocks().div_ceil(pieces.len());
-        self.threads.for_each(pieces, |k, piece| {
-            for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(columns.blocks()) {
-                // SAFETY: each block belongs to one piece, and each piece is worked on by one thread.
-                unsafe { columns.gather(b, loaded.clone(), self.columns.length(), &mut piece.columns) };
-                let block = &mut piece.columns[..columns.columns(b) * self.columns.length()];
-                let scratch = &mut piece.scratch[..];
-                self.columns.forward(block, scratch);
-                self.multiply(b * BLOCK, block);
-                self.columns.inverse(block, scratch);
-                // SAFETY: as above.
-                unsafe { columns.scatter(b, wanted.clone(), self.columns.length(), block) };
-            }
+        let length = self.columns.length();
+        for_each_block(&mut bins[..self.my * nb], nb, &self.threads, pieces, |block, piece| {
+            let columns = &mut piece.columns[..block.columns() * length];
+            block.gather(loaded.clone(), length, columns);
+            self.columns.forward(columns, &mut piece.scratch);
+            self.multiply(block.first(), columns);
+            self.columns.inverse(columns, &mut piece.scratch);
+            block.scatter(wanted.clone(), length, columns);
         });
     }
 

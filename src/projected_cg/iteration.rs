@@ -21,7 +21,6 @@
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
-use super::sums::sums;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -44,6 +43,8 @@ pub struct Iteration<T: Real> {
     t: Vec<T>,
     q: Vec<T>,
     z: Vec<T>,
+    /// The elements in contact, in order: contact is often a small part of the grid.
+    elements: Vec<u32>,
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
 }
@@ -119,6 +120,7 @@ impl<T: Real> Iteration<T> {
             t: directions()?,
             q: directions()?,
             z: directions()?,
+            elements: Vec::with_capacity(n),
             debts: Vec::with_capacity(n.min(1 << 16)),
         })
     }
@@ -127,7 +129,7 @@ impl<T: Real> Iteration<T> {
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Toeplitz::bytes);
         let workspaces = self.workspace.bytes() + self.preconditioner_workspace.as_ref().map_or(0, Workspace::bytes);
-        self.operator.bytes() + preconditioner + workspaces + 3 * self.t.len() * size_of::<T>()
+        self.operator.bytes() + preconditioner + workspaces + self.t.len() * (3 * size_of::<T>() + size_of::<u32>())
     }
 
     /// `u = A p` in the iteration's precision.
@@ -154,6 +156,9 @@ impl<T: Real> Iteration<T> {
         loop {
             // 4.2, and r = -e on C
             let entered = if stop.fixed { 0 } else { admit(state) };
+            if entered > 0 || iterations == 0 {
+                self.list_contact(state);
+            }
             let residual = self.residual(state);
             if let Some(cycle) = &mut cycle {
                 cycle.changes += entered as u64;
@@ -176,8 +181,7 @@ impl<T: Real> Iteration<T> {
             }
 
             // t = z + beta t, and the debts
-            let (beta, mean) = self.conjugate(state, tq, by_force);
-            self.direct(state, beta, mean, by_force);
+            self.direct(tq, by_force);
             for &(i, d) in &self.debts {
                 self.t[i] += T::of(d / forecast);
             }
@@ -193,10 +197,9 @@ impl<T: Real> Iteration<T> {
 
             // p = p + alpha t, u = u + alpha q, 4.1
             for debt in &mut self.debts {
-                if state.contact[debt.0] {
-                    // It entered again: what it is owed is no part of its step.
-                    self.t[debt.0] = self.t[debt.0] - T::of(debt.1 / forecast);
-                }
+                // What it is owed is no part of its direction.
+                let owed = T::of(debt.1 / forecast);
+                self.t[debt.0] = if state.contact[debt.0] { self.t[debt.0] - owed } else { T::zero() };
                 debt.1 *= 1.0 - alpha / forecast;
             }
             forecast = alpha;
@@ -207,10 +210,13 @@ impl<T: Real> Iteration<T> {
                 self.settle(state);
                 products += 1;
             }
-            if left > 0 && by_force {
-                self.carry_force(state);
+            if left > 0 {
+                self.list_contact(state);
+                if by_force {
+                    self.carry_force(state);
+                }
             }
-            state.fit_approach();
+            self.fit_approach(state);
             let mean_square = |sum: f64| (sum / step.count).sqrt();
             cycle = Some(Cycle {
                 changes: left,
@@ -222,16 +228,31 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = r = -e on C; the relative residual.
+    fn list_contact(&mut self, state: &State) {
+        self.elements.clear();
+        self.elements.extend((0u32..).zip(&state.contact).filter(|(_, &inside)| inside).map(|(i, _)| i));
+    }
+
+    /// With a prescribed force: the approach is the mean of h + u over C.
+    fn fit_approach(&self, state: &mut State) {
+        if let (Load::Force(_), false) = (state.load, self.elements.is_empty()) {
+            let sum: f64 = self.elements.iter().map(|&i| state.h[i as usize] + state.u[i as usize]).sum();
+            state.approach = sum / self.elements.len() as f64;
+        }
+    }
+
+    /// z = r = -e on C, 0 outside; the relative residual.
     fn residual(&mut self, state: &State) -> f64 {
-        let n = state.p.len();
-        let (h, u, contact, z) = (&state.h[..n], &state.u[..n], &state.contact[..n], &mut self.z[..n]);
-        let [rr, hh] = sums(n, |i| {
-            let distance = if contact[i] { h[i] - state.approach } else { 0.0 };
-            let e = if contact[i] { distance + u[i] } else { 0.0 };
-            z[i] = T::of(-e);
-            [e * e, distance * distance]
-        });
+        self.z.fill(T::zero());
+        let (mut rr, mut hh) = (0.0, 0.0);
+        for &i in &self.elements {
+            let i = i as usize;
+            let distance = state.h[i] - state.approach;
+            let e = distance + state.u[i];
+            self.z[i] = T::of(-e);
+            rr += e * e;
+            hh += distance * distance;
+        }
         if rr == 0.0 {
             0.0
         } else {
@@ -239,80 +260,67 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// beta, and the mean of z over C that a prescribed force takes out.
-    fn conjugate(&self, state: &State, tq: f64, by_force: bool) -> (f64, f64) {
-        let n = state.p.len();
-        let (z, q, contact) = (&self.z[..n], &self.q[..n], &state.contact[..n]);
-        let [zq, z1, q1, count] = sums(n, |i| {
-            let inside = if contact[i] { 1.0 } else { 0.0 };
-            let (z, q) = (inside * z[i].to_double(), inside * q[i].to_double());
-            [z * q, z, q, inside]
-        });
+    /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C. `tq` is (t, q) of the last direction.
+    fn direct(&mut self, tq: f64, by_force: bool) {
+        let (mut zq, mut z1, mut q1) = (0.0, 0.0, 0.0);
+        for &i in &self.elements {
+            let (z, q) = (self.z[i as usize].to_double(), self.q[i as usize].to_double());
+            zq += z * q;
+            z1 += z;
+            q1 += q;
+        }
+        let count = self.elements.len() as f64;
         let mean = if by_force { z1 / count } else { 0.0 };
         let beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
-        (beta, mean)
-    }
-
-    /// t = z - mean + beta t on C, 0 outside; with a prescribed force of mean zero over C.
-    fn direct(&mut self, state: &State, beta: f64, mean: f64, by_force: bool) {
-        let n = state.p.len();
-        let (z, contact, t) = (&self.z[..n], &state.contact[..n], &mut self.t[..n]);
         let (beta, mean) = (T::of(beta), T::of(mean));
-        for i in 0..n {
-            t[i] = if contact[i] { z[i] - mean + beta * t[i] } else { T::zero() };
+        let mut t1 = 0.0;
+        for &i in &self.elements {
+            let i = i as usize;
+            self.t[i] = self.z[i] - mean + beta * self.t[i];
+            t1 += self.t[i].to_double();
         }
         if by_force {
-            let [t1, count] = sums(n, |i| [t[i].to_double(), if contact[i] { 1.0 } else { 0.0 }]);
             let mean = T::of(t1 / count);
-            for i in 0..n {
-                t[i] = if contact[i] { t[i] - mean } else { T::zero() };
+            for &i in &self.elements {
+                self.t[i as usize] = self.t[i as usize] - mean;
             }
         }
     }
 
-    /// The products over C that the step length needs.
+    /// The sums over C that the step length needs.
     fn step(&self, state: &State) -> Step {
-        let n = state.p.len();
-        let (h, u, contact) = (&state.h[..n], &state.u[..n], &state.contact[..n]);
-        let (t, q) = (&self.t[..n], &self.q[..n]);
-        let p = &state.p[..n];
-        let [rt, tq, tt, t1, pp, count] = sums(n, |i| {
-            let inside = if contact[i] { 1.0 } else { 0.0 };
-            let t = inside * t[i].to_double();
-            let e = if contact[i] { h[i] - state.approach + u[i] } else { 0.0 };
-            [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i], inside]
-        });
-        Step { rt, tq, tt, t1, pp, count }
+        let mut step = Step { rt: 0.0, tq: 0.0, tt: 0.0, t1: 0.0, pp: 0.0, count: self.elements.len() as f64 };
+        for &i in &self.elements {
+            let i = i as usize;
+            let t = self.t[i].to_double();
+            step.rt -= state.deformed_distance(i) * t;
+            step.tq += t * self.q[i].to_double();
+            step.tt += t * t;
+            step.t1 += t.abs();
+            step.pp += state.p[i] * state.p[i];
+        }
+        step
     }
 
     /// p = p + alpha t, u = u + alpha q, and 4.1. Returns how many elements leave; what they gain is owed.
     fn update(&mut self, state: &mut State, alpha: f64, fixed: bool) -> u64 {
-        let mx = state.grid.mx;
-        let mut left = 0;
-        for row in 0..state.grid.my {
-            let elements = row * mx..(row + 1) * mx;
-            let (p, u) = (&mut state.p[elements.clone()], &mut state.u[elements.clone()]);
-            let contact = &mut state.contact[elements.clone()];
-            let (t, q) = (&self.t[elements.clone()], &self.q[elements]);
-            let mut negative = false;
-            for i in 0..mx {
-                u[i] += alpha * q[i].to_double();
-                p[i] += if contact[i] { alpha * t[i].to_double() } else { 0.0 };
-                negative |= p[i] < 0.0;
-            }
-            if !negative || fixed {
-                continue;
-            }
-            for i in 0..mx {
-                if p[i] < 0.0 {
-                    self.debts.push((row * mx + i, -p[i]));
-                    p[i] = 0.0;
-                    contact[i] = false;
-                    left += 1;
-                }
-            }
+        for (u, q) in state.u.iter_mut().zip(&self.q) {
+            *u += alpha * q.to_double();
         }
         self.debts.retain(|debt| debt.1 != 0.0);
+        let mut left = 0;
+        for &i in &self.elements {
+            let i = i as usize;
+            let p = &mut state.p[i];
+            *p += alpha * self.t[i].to_double();
+            if *p < 0.0 && !fixed {
+                self.debts.push((i, -*p));
+                *p = 0.0;
+                self.t[i] = T::zero();
+                state.contact[i] = false;
+                left += 1;
+            }
+        }
         left
     }
 
@@ -331,12 +339,14 @@ impl<T: Real> Iteration<T> {
     /// Scales p, and u and the debts with it, to carry the prescribed force.
     fn carry_force(&mut self, state: &mut State) {
         let Load::Force(force) = state.load else { return };
-        let [carried] = sums(state.p.len(), |i| [state.p[i]]);
+        let carried: f64 = self.elements.iter().map(|&i| state.p[i as usize]).sum();
         let factor = force / (carried * state.grid.element_area());
         if !factor.is_finite() {
             return;
         }
-        state.p.iter_mut().for_each(|p| *p *= factor);
+        for &i in &self.elements {
+            state.p[i as usize] *= factor;
+        }
         state.u.iter_mut().for_each(|u| *u *= factor);
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
     }
@@ -344,13 +354,24 @@ impl<T: Real> Iteration<T> {
 
 /// 4.2: exterior elements with e < 0 enter. Returns how many.
 fn admit(state: &mut State) -> usize {
-    let n = state.p.len();
-    let (h, u, contact) = (&state.h[..n], &state.u[..n], &mut state.contact[..n]);
+    let (mx, approach) = (state.grid.mx, state.approach);
+    let rows = state.h.chunks_exact(mx).zip(state.u.chunks_exact(mx)).zip(state.contact.chunks_exact_mut(mx));
     let mut entered = 0;
-    for i in 0..n {
-        let enters = !contact[i] & (h[i] - state.approach + u[i] < 0.0);
-        contact[i] |= enters;
-        entered += usize::from(enters);
+    for ((h, u), contact) in rows {
+        // Most rows have no element with e < 0, and this the compiler can vectorise.
+        let mut any = false;
+        for (h, u) in h.iter().zip(u) {
+            any |= h - approach + u < 0.0;
+        }
+        if !any {
+            continue;
+        }
+        for ((h, u), inside) in h.iter().zip(u).zip(contact) {
+            if !*inside && h - approach + u < 0.0 {
+                *inside = true;
+                entered += 1;
+            }
+        }
     }
     entered
 }

@@ -2,7 +2,6 @@
 //! iteration over the grids.
 
 mod iteration;
-mod sums;
 mod window;
 
 pub use iteration::{Cycle, End, Iteration, Stopping};

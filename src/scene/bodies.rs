@@ -1,6 +1,6 @@
 //! The elasticity of the two bodies.
 
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, require, Error, Result};
 
 /// Shear modulus G and Poisson ratio nu of the two bodies; `G = +infinity`: rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,19 +26,15 @@ impl Bodies {
     pub fn check(&self) -> Result<()> {
         for i in 0..2 {
             let (modulus, ratio) = (self.shear_modulus[i], self.poisson_ratio[i]);
-            if modulus.is_nan() || ratio.is_nan() {
-                let (name, value) =
-                    if modulus.is_nan() { ("shear_modulus", modulus) } else { ("poisson_ratio", ratio) };
-                return Err(Error::NotFinite(format!("{name}[{i}] is {value}; it must be a number")));
+            if modulus.is_nan() {
+                return Err(Error::NotFinite(format!("shear_modulus[{i}] is {modulus}; it must be a number")));
             }
             if modulus <= 0.0 {
                 return invalid(format!(
                     "shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"
                 ));
             }
-            if !(ratio > -1.0 && ratio <= 0.5) {
-                return invalid(format!("poisson_ratio[{i}] is {ratio}; it must lie in (-1, 0.5]"));
-            }
+            require(ratio > -1.0 && ratio <= 0.5, &format!("poisson_ratio[{i}]"), ratio, "it must lie in (-1, 0.5]")?;
         }
         if self.shear_modulus.iter().all(|modulus| modulus.is_infinite()) {
             return invalid("shear_modulus is infinite for both bodies; at least one of them must be elastic".into());

@@ -41,6 +41,15 @@ impl<'a> Scene<'a> {
 
     /// Checks everything the solver relies on.
     pub fn check(&self) -> Result<()> {
+        self.check_distance_and_load()?;
+        match self.influence {
+            Some(_) => Ok(()),
+            None => self.bodies.check(),
+        }
+    }
+
+    /// Checks what changes from solve to solve.
+    pub fn check_distance_and_load(&self) -> Result<()> {
         let h = self.undeformed_distance;
         if h.len() != self.grid.len() {
             return invalid(format!(
@@ -56,9 +65,6 @@ impl<'a> Scene<'a> {
                 i / self.grid.mx,
                 h[i]
             )));
-        }
-        if self.influence.is_none() {
-            self.bodies.check()?;
         }
         self.load.check()?;
         if let Load::Force(force) = self.load {

@@ -96,6 +96,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
+        self.check_range(scene)?;
         let mut monitor = Monitor::new(progress, Vec::with_capacity(self.states.len()));
         let rule = Rule {
             tolerance: options.tolerance,
@@ -114,6 +115,15 @@ impl Solver {
         let mut report = monitor.report();
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
+        log::info!(
+            "{:?} on {} x {}: {stop:?} after {} cycles and {:.1} work units, residual {:e}",
+            options.method,
+            self.grid.mx,
+            self.grid.my,
+            report.cycles,
+            report.work_units,
+            report.measures.certificate.residual
+        );
         Ok((stop, report))
     }
 
@@ -127,13 +137,19 @@ impl Solver {
         self.projected.influence()
     }
 
+    /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
+    pub fn has_own_influence(&self) -> bool {
+        self.has_own_influence
+    }
+
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
-        scene.check()?;
+        scene.check_distance_and_load()?;
         options.check()?;
         if scene.grid != self.grid {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
         }
-        if scene.bodies != self.bodies {
+        // Own coefficients know no bodies.
+        if !self.has_own_influence && scene.bodies != self.bodies {
             return invalid(format!("the bodies are {:?}; this solver was set up for {:?}", scene.bodies, self.bodies));
         }
         if scene.influence.is_some() && !self.has_own_influence {
@@ -147,11 +163,44 @@ impl Solver {
         Ok(())
     }
 
+    /// Refuses units in which pressures, displacements or their squares leave the range of double precision.
+    fn check_range(&self, scene: &Scene<'_>) -> Result<()> {
+        let influence = self.projected.influence().at(0, 0);
+        let (pressure, displacement) = match scene.load {
+            Load::Approach(approach) => {
+                let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
+                let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
+                (depth / influence, depth)
+            }
+            Load::Force(force) => {
+                let pressure = force / scene.grid.element_area();
+                (pressure, pressure * influence)
+            }
+        };
+        let in_range = |value: f64| (1e-140..1e140).contains(&value);
+        let loaded = pressure != 0.0 || displacement != 0.0;
+        if loaded && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
+            return invalid(format!(
+                "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
+                 coefficients of order {influence:e}; all must lie between 1e-140 and 1e140: choose other units"
+            ));
+        }
+        Ok(())
+    }
+
     /// Takes over the undeformed distance, the load and the initial guess; whether there is one.
     fn start(&mut self, scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<bool> {
         let fixed = options.active_set == ActiveSet::Fixed;
         let state = &mut self.states[0];
         let has_guess = match (options.initial_guess, guess) {
+            (InitialGuess::Previous, Some(guess)) if fixed => {
+                check_guess(guess, &state.grid)?;
+                if !self.solved_before {
+                    state.p.fill(0.0);
+                }
+                state.contact.copy_from_slice(guess.contact);
+                true
+            }
             (InitialGuess::Previous, _) => self.solved_before,
             (InitialGuess::Given, Some(guess)) => {
                 check_guess(guess, &state.grid)?;

@@ -23,8 +23,8 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
             return Stop::IterationLimit;
         }
         // 2. p = 0 in E, and the system restricted to C.
-        for i in 0..residual.len() {
-            residual[i] = if state.contact[i] { -state.deformed_distance(i) } else { 0.0 };
+        for (i, r) in residual.iter_mut().enumerate() {
+            *r = if state.contact[i] { -state.deformed_distance(i) } else { 0.0 };
         }
         // 3. One multigrid cycle.
         if let Load::Force(force) = state.load {

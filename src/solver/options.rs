@@ -1,6 +1,6 @@
 //! How a scene is solved. The defaults suit everybody.
 
-use crate::error::{invalid, Result};
+use crate::error::{invalid, require, Result};
 use crate::multigrid::{CycleShape, SmootherKind};
 
 /// The method.
@@ -86,7 +86,7 @@ pub struct Options {
     pub tolerance: f64,
     /// What has to become small.
     pub criterion: Criterion,
-    /// > 0: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
+    /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
     /// approach, whichever is not prescribed). Needs the coarser grids of full multigrid.
     pub error_ratio: f64,
     /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid at most.
@@ -122,22 +122,19 @@ impl Default for Options {
 const LARGEST_COARSEST: usize = 64;
 /// More sweeps than this are a mistake.
 const MOST_SWEEPS: usize = 100;
+/// More threads than this are a mistake, and starting them might take the machine down.
+const MOST_THREADS: usize = 1024;
 
 impl Options {
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
-        if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
-            return invalid(format!("tolerance is {}; it must be positive and finite", self.tolerance));
-        }
+        let tolerance = self.tolerance;
+        require(tolerance > 0.0 && tolerance.is_finite(), "tolerance", tolerance, "it must be positive and finite")?;
         if self.max_cycles == 0 {
             return invalid("max_cycles is 0; at least one cycle must be allowed".into());
         }
-        if !(self.relaxation >= 0.0 && self.relaxation < 2.0) {
-            return invalid(format!(
-                "relaxation is {}; it must lie in (0, 2), or be 0 for the default",
-                self.relaxation
-            ));
-        }
+        let omega = self.relaxation;
+        require((0.0..2.0).contains(&omega), "relaxation", omega, "it must lie in (0, 2), or be 0 for the default")?;
         if self.pre_sweeps + self.post_sweeps == 0 {
             return invalid("pre_sweeps and post_sweeps are both 0; a cycle needs at least one sweep".into());
         }
@@ -149,8 +146,10 @@ impl Options {
         if !(1..=LARGEST_COARSEST).contains(&self.coarsest) {
             return invalid(format!("coarsest is {}; it must lie in 1..{LARGEST_COARSEST}", self.coarsest));
         }
-        if !(self.error_ratio >= 0.0 && self.error_ratio.is_finite()) {
-            return invalid(format!("error_ratio is {}; it must be positive and finite, or 0", self.error_ratio));
+        let ratio = self.error_ratio;
+        require(ratio >= 0.0 && ratio.is_finite(), "error_ratio", ratio, "it must be positive and finite, or 0")?;
+        if self.threads > MOST_THREADS {
+            return invalid(format!("threads is {}; at most {MOST_THREADS} are allowed", self.threads));
         }
         Ok(())
     }

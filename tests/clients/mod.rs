@@ -59,7 +59,14 @@ pub struct Recomputed {
 }
 
 /// Recomputes the measures with a fresh product (tested against direct summation in tests/operator.rs).
-pub fn recompute(grid: &Grid, influence: &Influence, h: &[f64], approach: f64, p: &[f64], contact: &[bool]) -> Recomputed {
+pub fn recompute(
+    grid: &Grid,
+    influence: &Influence,
+    h: &[f64],
+    approach: f64,
+    p: &[f64],
+    contact: &[bool],
+) -> Recomputed {
     let operator = Toeplitz::new(influence, grid, &Threads::One).expect("an operator");
     let mut u = vec![0.0; grid.len()];
     operator.apply(p, &mut u, &mut operator.workspace().expect("memory"));

@@ -1,0 +1,67 @@
+//! What a solve costs: `cargo bench` or `make bench`.
+//!
+//! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
+//!
+//! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
+//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps force growth norm memory methods.
+
+mod case;
+mod measure;
+mod methods;
+mod targets;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    if let [first, name, m] = &arguments[..] {
+        if first == targets::SOLVE_ONCE {
+            return targets::solve_once(name, m.parse().expect("a size"));
+        }
+    }
+    let (mut quick, mut large, mut processor, mut threads, mut tables) = (false, false, false, 2, Vec::new());
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "--quick" => quick = true,
+            "--large" => large = true,
+            "--processor" => processor = true,
+            "--threads" => threads = rest.next().and_then(|n| n.parse().ok()).expect("--threads N"),
+            table => tables.push(table),
+        }
+    }
+    let wanted = |table: &str| tables.is_empty() || tables.contains(&table);
+    let sizes: &[usize] = if quick { &[256, 512] } else { &[256, 512, 1024, 2048] };
+    let mut thread_counts = vec![1, threads];
+    thread_counts.dedup();
+
+    println!("## Targets: tolerance 1e-6; a product is one u = A p on the full grid in double precision");
+    if processor {
+        println!("\nTimes with one thread are those of the processor.");
+    }
+    for threads in thread_counts {
+        measure::by_processor(processor && threads == 1);
+        if wanted("cold") {
+            targets::cold_calls(threads, sizes);
+        }
+        if wanted("steps") {
+            targets::time_steps(threads);
+        }
+    }
+    measure::by_processor(processor);
+    if wanted("force") {
+        targets::force_against_approach(1);
+    }
+    if wanted("growth") {
+        let largest = [512, 1024, 2048, 4096];
+        targets::growth(1, if large { &largest } else { &largest[..if quick { 2 } else { 3 }] });
+    }
+    if wanted("norm") {
+        targets::norm_against_auto(1);
+    }
+    if wanted("memory") {
+        targets::memory(if large { &[1024, 4096] } else { &[1024] });
+    }
+    measure::by_processor(false);
+    if wanted("methods") {
+        methods::methods(if quick { &[128] } else { &[128, 256, 512] });
+    }
+}

@@ -1,0 +1,110 @@
+//! Times of several things taken in turns, and their medians: what disturbs a shared machine disturbs all of them.
+
+use std::hint::black_box;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use contact_normal::grid::Grid;
+use contact_normal::operator::{Toeplitz, Workspace};
+use contact_normal::scene::Scene;
+use contact_normal::solver::{solve, Options, Report, Stop};
+use contact_normal::threads::Threads;
+
+/// How long one row of a table may take, and how often at least and at most things are measured for it.
+const SECONDS_PER_ROW: f64 = 3.0;
+const FEWEST: usize = 5;
+const MOST: usize = 400;
+
+/// Whether times are those of the processor (all threads together) instead of the clock's.
+static PROCESSOR: AtomicBool = AtomicBool::new(false);
+
+/// From now on times are those of the processor, for work of one thread: on a machine that others use too, the clock also counts
+/// what they do, in long calls more than in short ones.
+pub fn by_processor(yes: bool) {
+    PROCESSOR.store(yes, Ordering::Relaxed);
+}
+
+/// Seconds since some time.
+fn now() -> f64 {
+    let which = if PROCESSOR.load(Ordering::Relaxed) { libc::CLOCK_PROCESS_CPUTIME_ID } else { libc::CLOCK_MONOTONIC };
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the call writes to `time`, which lives.
+    unsafe { libc::clock_gettime(which, &mut time) };
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Runs all of `things` in turns; the times of each.
+pub fn in_turns(things: &mut [&mut dyn FnMut()]) -> Vec<Vec<f64>> {
+    let mut times = vec![Vec::new(); things.len()];
+    things.iter_mut().for_each(|thing| thing());
+    let began = Instant::now();
+    for turn in 0..MOST {
+        if turn >= FEWEST && began.elapsed().as_secs_f64() > SECONDS_PER_ROW {
+            break;
+        }
+        for (thing, times) in things.iter_mut().zip(&mut times) {
+            let began = now();
+            thing();
+            times.push(now() - began);
+        }
+    }
+    times
+}
+
+/// The median.
+pub fn median(times: &[f64]) -> f64 {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    if sorted.len() % 2 == 1 {
+        sorted[middle]
+    } else {
+        0.5 * (sorted[middle - 1] + sorted[middle])
+    }
+}
+
+/// The unit of the targets: one u = A p in double precision, pressures on all of the grid.
+pub struct Product {
+    operator: Toeplitz<f64>,
+    workspace: Workspace<f64>,
+    p: Vec<f64>,
+    u: Vec<f64>,
+}
+
+impl Product {
+    /// Of a scene, with so many threads.
+    pub fn new(scene: &Scene<'_>, threads: usize) -> Product {
+        let threads = Threads::new(threads).expect("threads");
+        let operator = Toeplitz::new(&scene.influence(), &scene.grid, &threads).expect("an operator");
+        let workspace = operator.workspace().expect("a workspace");
+        let p = (0..scene.grid.len()).map(|i| 1.0 + (i % 7) as f64).collect();
+        Product { operator, workspace, p, u: vec![0.0; scene.grid.len()] }
+    }
+
+    /// Multiplies.
+    pub fn run(&mut self) {
+        self.operator.apply(black_box(&self.p), &mut self.u, &mut self.workspace);
+        black_box(&self.u);
+    }
+}
+
+/// One cold call, set-up and the release of memory included.
+pub fn cold(scene: &Scene<'_>, options: &Options) -> (Stop, Report) {
+    let (solver, stop, report) = solve(black_box(scene), options).expect("a solvable scene");
+    black_box(solver.state().p.first());
+    (stop, report)
+}
+
+/// Seconds in a unit that suits them.
+pub fn shown(seconds: f64) -> String {
+    match seconds {
+        s if s >= 1.0 => format!("{s:.3} s"),
+        s if s >= 1e-3 => format!("{:.3} ms", s * 1e3),
+        s => format!("{:.1} us", s * 1e6),
+    }
+}
+
+/// Sizes as in "512 x 512".
+pub fn size(grid: &Grid) -> String {
+    format!("{} x {}", grid.mx, grid.my)
+}

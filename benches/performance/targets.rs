@@ -1,0 +1,208 @@
+//! The table of targets: what a solve costs in products, beside what it may cost.
+
+use std::process::Command;
+
+use contact_normal::scene::Load;
+use contact_normal::solver::{InitialGuess, Method, Options, Solver, Stop};
+
+use crate::case::{ellipse, rough, wheel_rail, Case};
+use crate::measure::{cold, in_turns, median, shown, size, Product};
+
+/// What the small grids may cost on top of their products.
+const SMALL_GRID_EXTRA: f64 = 50e-6;
+
+fn mark(measured: f64, at_most: f64) -> &'static str {
+    if measured <= at_most {
+        "met"
+    } else {
+        "MISSED"
+    }
+}
+
+fn options(threads: usize) -> Options {
+    Options { threads, ..Options::default() }
+}
+
+/// Cold calls against products.
+pub fn cold_calls(threads: usize, sizes: &[usize]) {
+    println!("\n### Cold calls, {threads} thread(s)\n");
+    println!("| case | elements | in contact | call | product | products | of them counted | at most | |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let ellipses = sizes.iter().map(|&m| (ellipse(m), 12.0));
+    let roughs = sizes.iter().map(|&m| (rough(m), 24.0));
+    let as_given = ["y0_10kN", "y4_82kN", "y10_10kN"].map(|name| (wheel_rail(name, 1), 20.0));
+    let refined = [2, 4].map(|by| (wheel_rail("y4_82kN", by), 20.0));
+    for (case, at_most) in ellipses.chain(roughs).chain(as_given).chain(refined) {
+        cold_row(&case, threads, |product| at_most * product, at_most);
+    }
+    for m in [16, 32, 64] {
+        cold_row(&ellipse(m), threads, |product| 25.0 * product + SMALL_GRID_EXTRA, 25.0);
+    }
+    println!("\n16, 32, 64: the limit is 25 products and 50 microseconds.");
+}
+
+fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most: f64) {
+    let (scene, options) = (case.scene(), options(threads));
+    let mut product = Product::new(&scene, threads);
+    let (stop, report) = cold(&scene, &options);
+    assert_eq!(stop, Stop::Converged, "{}", case.name);
+    let call = &mut || drop(cold(&scene, &options));
+    let times = in_turns(&mut [call, &mut || product.run()]);
+    let (call, product) = (median(&times[0]), median(&times[1]));
+    println!(
+        "| {} | {} | {:.1} % | {} | {} | {:.1} | {:.1} | {at_most} | {} |",
+        case.name,
+        size(&case.grid),
+        100.0 * report.measures.contact_count as f64 / case.grid.len() as f64,
+        shown(call),
+        shown(product),
+        call / product,
+        report.work_units,
+        mark(call, limit(product))
+    );
+}
+
+/// The next solve after the approach changed by 1 %.
+pub fn time_steps(threads: usize) {
+    println!("\n### Time stepping: the approach changes by 1 %, the solver starts from its previous result, {threads} thread(s)\n");
+    println!("| case | step up | step down | product | products up / down | at most | |");
+    println!("|---|---|---|---|---|---|---|");
+    let cases = [ellipse(64), ellipse(256), ellipse(512), ellipse(1024), rough(256), rough(512), rough(1024)];
+    for case in cases.into_iter().chain([wheel_rail("y4_82kN", 1), wheel_rail("y4_82kN", 2)]) {
+        let mut first = Solver::new(&case.scene(), &options(threads)).expect("a solver");
+        first.solve(&case.scene(), &options(threads), None, None).expect("a solvable scene");
+        let approach = first.state().approach;
+        drop(first);
+        let next = Options { initial_guess: InitialGuess::Previous, ..options(threads) };
+        let (low, high) = (case.scene_with(Load::Approach(approach)), case.scene_with(Load::Approach(1.01 * approach)));
+        let solver = std::cell::RefCell::new(Solver::new(&low, &next).expect("a solver"));
+        let solve = |scene| {
+            let (stop, _) = solver.borrow_mut().solve(scene, &next, None, None).expect("a solvable scene");
+            assert_eq!(stop, Stop::Converged, "{}", case.name);
+        };
+        solve(&low);
+        let mut product = Product::new(&low, threads);
+        let times = in_turns(&mut [&mut || solve(&high), &mut || solve(&low), &mut || product.run()]);
+        let [up, down, product] = [0, 1, 2].map(|i| median(&times[i]));
+        println!(
+            "| {} | {} | {} | {} | {:.1} / {:.1} | 5 | {} |",
+            case.name,
+            shown(up),
+            shown(down),
+            shown(product),
+            up / product,
+            down / product,
+            mark(up.max(down), 5.0 * product)
+        );
+    }
+}
+
+/// Prescribed force against the approach that it leads to.
+pub fn force_against_approach(threads: usize) {
+    println!("\n### Prescribed force against prescribed approach, cold, {threads} thread(s)\n");
+    println!("| case | approach | force | ratio | at most | |");
+    println!("|---|---|---|---|---|---|");
+    let cases = [ellipse(64), ellipse(512), ellipse(1024), rough(512), rough(1024), wheel_rail("y4_82kN", 1)];
+    for case in cases {
+        let options = options(threads);
+        let (_, report) = cold(&case.scene(), &options);
+        let by_approach = case.scene_with(Load::Approach(report.measures.approach));
+        let by_force = case.scene_with(Load::Force(report.measures.force));
+        let times =
+            in_turns(&mut [&mut || drop(cold(&by_approach, &options)), &mut || drop(cold(&by_force, &options))]);
+        let (approach, force) = (median(&times[0]), median(&times[1]));
+        let ratio = force / approach;
+        println!(
+            "| {} | {} | {} | {ratio:.2} | 1.3 | {} |",
+            case.name,
+            shown(approach),
+            shown(force),
+            mark(ratio, 1.3)
+        );
+    }
+}
+
+/// How the time grows with the number of elements.
+pub fn growth(threads: usize, sizes: &[usize]) {
+    println!("\n### Growth of the time on the rough surface, {threads} thread(s)\n");
+    println!("| size | call | exponent from the size before | from the first | at most | |");
+    println!("|---|---|---|---|---|---|");
+    let mut calls: Vec<(usize, f64)> = Vec::new();
+    for &m in sizes {
+        let (case, options) = (rough(m), options(threads));
+        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &options))]);
+        let call = median(&times[0]);
+        let exponent = |&(m0, call0): &(usize, f64)| (call / call0).ln() / (2.0 * (m as f64 / m0 as f64).ln());
+        match (calls.last(), calls.first()) {
+            (Some(last), Some(first)) => println!(
+                "| {m} | {} | {:.2} | {:.2} | 1.15 | {} |",
+                shown(call),
+                exponent(last),
+                exponent(first),
+                mark(exponent(first), 1.15)
+            ),
+            _ => println!("| {m} | {} | | | | |", shown(call)),
+        }
+        calls.push((m, call));
+    }
+}
+
+/// NORM against AUTO.
+pub fn norm_against_auto(threads: usize) {
+    println!("\n### NORM (by FFT) against AUTO at 512, {threads} thread(s)\n");
+    println!("| case | NORM | AUTO | ratio | at least | |");
+    println!("|---|---|---|---|---|---|");
+    for case in [ellipse(512), rough(512)] {
+        let auto = options(threads);
+        let norm = Options { method: Method::Norm, ..auto };
+        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &norm)), &mut || drop(cold(&case.scene(), &auto))]);
+        let (norm, auto) = (median(&times[0]), median(&times[1]));
+        println!(
+            "| {} | {} | {} | {:.1} | 15 | {} |",
+            case.name,
+            shown(norm),
+            shown(auto),
+            norm / auto,
+            mark(15.0, norm / auto)
+        );
+    }
+}
+
+/// The argument that makes a process do nothing but [`solve_once`].
+pub const SOLVE_ONCE: &str = "--solve-once";
+
+/// Peak memory of cold solves, each in a process of its own.
+pub fn memory(sizes: &[usize]) {
+    println!("\n### Peak memory of one cold solve, bytes per element\n");
+    println!("| case | before the call (h, the program) | peak | at most | |");
+    println!("|---|---|---|---|---|");
+    for &m in sizes {
+        for name in ["ellipse", "rough"] {
+            let program = std::env::current_exe().expect("this program's path");
+            let out = Command::new(program).args([SOLVE_ONCE, name, &m.to_string()]).output().expect("a process");
+            assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+            let text = String::from_utf8_lossy(&out.stdout);
+            let bytes: Vec<f64> = text.split_whitespace().map(|x| x.parse().expect("a number")).collect();
+            let [before, peak] = [bytes[0], bytes[1]].map(|bytes| bytes / (m * m) as f64);
+            println!("| {name} {m} | {before:.0} | {peak:.0} | 120 | {} |", mark(peak, 120.0));
+        }
+    }
+}
+
+/// One cold solve; prints the bytes held before it and the most that were held.
+pub fn solve_once(name: &str, m: usize) {
+    let case = if name == "rough" { rough(m) } else { ellipse(m) };
+    // What making the surface took must not count.
+    std::fs::write("/proc/self/clear_refs", "5").expect("the peak can be reset (Linux)");
+    let before = status_of_memory("VmRSS:");
+    let (stop, _) = cold(&case.scene(), &options(1));
+    assert_eq!(stop, Stop::Converged);
+    println!("{before} {}", status_of_memory("VmHWM:"));
+}
+
+/// Bytes, from what Linux tells of this process.
+fn status_of_memory(what: &str) -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
+    let line = status.lines().find(|line| line.starts_with(what)).expect("its line");
+    1024 * line.split_whitespace().nth(1).and_then(|kib| kib.parse::<u64>().ok()).expect("a number")
+}

@@ -1,0 +1,519 @@
+"""contact-normal by ctypes: the elastic normal contact problem on numpy arrays.
+
+    import contact_normal
+    result = contact_normal.solve(h, dx, dy, force=82.0e3, shear_modulus=82000.0, poisson_ratio=0.28)
+    result.pressure, result.contact, result.approach, result.report["residual"], result.ledger
+
+One file and nothing to install but numpy. The library is the one that the environment variable CONTACT_NORMAL_LIBRARY
+names, else the one built in this project (target/release), else the system's. The prototypes and structs below mirror
+include/contact_normal.h; version and struct sizes are compared with the library's at import.
+
+Arrays are (my, mx), C order: x fastest.
+"""
+
+import ctypes
+import ctypes.util
+import os
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
+
+import numpy as np
+
+# Statuses: 0: solved; > 0: stopped early, usable; < 0: refused.
+OK, ITERATION_LIMIT, CANCELLED, STAGNATED = 0, 1, 2, 3
+NULL_POINTER, INVALID_ARGUMENT, NOT_FINITE, STRUCT_SIZE, UNSUPPORTED = -1, -2, -3, -4, -5
+INFEASIBLE, NOT_POSITIVE_DEFINITE, OUT_OF_MEMORY, INTERNAL = -6, -7, -8, -99
+
+ABI_VERSION = 1
+
+PRESCRIBED_APPROACH, PRESCRIBED_FORCE = 0, 1
+METHOD_AUTO, METHOD_NORM, METHOD_MULTIGRID, METHOD_FULL_MULTIGRID, METHOD_PROJECTED_CG = 0, 1, 2, 3, 4
+SMOOTHER_AUTO, SMOOTHER_GAUSS_SEIDEL, SMOOTHER_RED_BLACK, SMOOTHER_JACOBI = 0, 1, 2, 3
+ACTIVE_SET_FREE, ACTIVE_SET_FIXED = 0, 1
+INITIAL_GUESS_NONE, INITIAL_GUESS_GIVEN, INITIAL_GUESS_PREVIOUS = 0, 1, 2
+CRITERION_RESIDUAL, CRITERION_UPDATE = 0, 1
+PRECISION_AUTO, PRECISION_DOUBLE, PRECISION_MIXED = 0, 1, 2
+LOG_OFF, LOG_WARNING, LOG_INFO = 0, 1, 2
+
+
+class Influence(ctypes.Structure):
+    """contact_normal_influence."""
+
+    _fields_ = [("struct_size", c_int64), ("cx", c_int32), ("cy", c_int32), ("coefficients", POINTER(c_double))]
+
+
+class Scene(ctypes.Structure):
+    """contact_normal_scene."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("undeformed_distance", POINTER(c_double)),
+        ("shear_modulus", c_double * 2),
+        ("poisson_ratio", c_double * 2),
+        ("load", c_int32),
+        ("reserved", c_int32),
+        ("approach", c_double),
+        ("force", c_double),
+        ("influence", POINTER(Influence)),
+    ]
+
+
+class Progress(ctypes.Structure):
+    """contact_normal_progress."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("cycles", c_int64),
+        ("active_set_changes", c_int64),
+        ("seconds", c_double),
+        ("work_units", c_double),
+        ("update", c_double),
+        ("residual", c_double),
+    ]
+
+
+ProgressCallback = CFUNCTYPE(c_int32, POINTER(Progress), c_void_p)
+LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
+
+
+class Options(ctypes.Structure):
+    """contact_normal_options."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("method", c_int32),
+        ("smoother", c_int32),
+        ("pre_sweeps", c_int32),
+        ("post_sweeps", c_int32),
+        ("relaxation", c_double),
+        ("coarsest", c_int32),
+        ("active_set", c_int32),
+        ("initial_guess", c_int32),
+        ("criterion", c_int32),
+        ("tolerance", c_double),
+        ("error_ratio", c_double),
+        ("max_cycles", c_int32),
+        ("threads", c_int32),
+        ("precision", c_int32),
+        ("reserved", c_int32),
+        ("progress", ProgressCallback),
+        ("user", c_void_p),
+    ]
+
+
+class Fields(ctypes.Structure):
+    """contact_normal_fields."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("pressure", POINTER(c_double)),
+        ("deformed_distance", POINTER(c_double)),
+        ("displacement", POINTER(c_double)),
+        ("contact", POINTER(c_int32)),
+    ]
+
+
+class LedgerRow(ctypes.Structure):
+    """contact_normal_ledger_row."""
+
+    _fields_ = [
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("cycles", c_int64),
+        ("seconds", c_double),
+        ("work_units", c_double),
+        ("residual", c_double),
+        ("approach", c_double),
+        ("force", c_double),
+        ("max_pressure", c_double),
+        ("contact_area", c_double),
+        ("error_force", c_double),
+        ("error_max_pressure", c_double),
+        ("error_contact_area", c_double),
+    ]
+
+
+class Report(ctypes.Structure):
+    """contact_normal_report."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("cycles", c_int64),
+        ("active_set_steps", c_int64),
+        ("active_set_changes", c_int64),
+        ("matrix_products", c_int64),
+        ("work_units", c_double),
+        ("update", c_double),
+        ("residual", c_double),
+        ("penetration", c_double),
+        ("complementarity", c_double),
+        ("min_pressure", c_double),
+        ("approach", c_double),
+        ("force", c_double),
+        ("max_pressure", c_double),
+        ("contact_area", c_double),
+        ("contact_count", c_int64),
+        ("error_force", c_double),
+        ("error_max_pressure", c_double),
+        ("error_contact_area", c_double),
+        ("setup_seconds", c_double),
+        ("solve_seconds", c_double),
+        ("bytes", c_int64),
+        ("ledger_rows", c_int64),
+        ("ledger_capacity", c_int64),
+        ("ledger", POINTER(LedgerRow)),
+    ]
+
+
+class HertzSolution(ctypes.Structure):
+    """contact_normal_hertz_solution: the exact solution."""
+
+    _fields_ = [
+        ("semi_axis_x", c_double),
+        ("semi_axis_y", c_double),
+        ("max_pressure", c_double),
+        ("approach", c_double),
+        ("force", c_double),
+        ("area", c_double),
+    ]
+
+
+# Result and arguments of every export.
+_PROTOTYPES = {
+    "status_text": (c_char_p, [c_int32]),
+    "last_error": (c_char_p, []),
+    "version": (c_char_p, []),
+    "abi_version": (c_int32, []),
+    "scene_init": (None, [POINTER(Scene)]),
+    "influence_init": (None, [POINTER(Influence)]),
+    "options_init": (None, [POINTER(Options)]),
+    "fields_init": (None, [POINTER(Fields)]),
+    "report_init": (None, [POINTER(Report)]),
+    "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
+    "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "solver_free": (None, [c_void_p]),
+    "hertz": (
+        c_int32,
+        [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
+    ),
+    "influence_half_space": (
+        c_int32,
+        [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
+    ),
+    "set_log": (c_int32, [LogCallback, c_int32, c_void_p]),
+}
+
+# The structs that begin with their size, by the name of their _init.
+_SIZED = {"scene": Scene, "influence": Influence, "options": Options, "fields": Fields, "report": Report}
+
+
+class ContactNormalError(Exception):
+    """A refusal: `status` (negative) and `message`, which names the argument, its value and the rule."""
+
+    def __init__(self, status, message):
+        text = _library.contact_normal_status_text(status).decode()
+        super().__init__(f"{message or text} (status {status}: {text})")
+        self.status, self.message = status, message
+
+
+def _find():
+    named = os.environ.get("CONTACT_NORMAL_LIBRARY")
+    if named:
+        return named
+    here = os.path.dirname(os.path.abspath(__file__))
+    built = os.path.join(here, "..", "target", "release", "libcontact_normal.so")
+    if os.path.exists(built):
+        return built
+    return ctypes.util.find_library("contact_normal") or "libcontact_normal.so.0"
+
+
+def _load():
+    path = _find()
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise ImportError(f"{path}: {error}; name the library in CONTACT_NORMAL_LIBRARY") from error
+    for name, (result, arguments) in _PROTOTYPES.items():
+        function = getattr(library, "contact_normal_" + name)
+        function.restype, function.argtypes = result, arguments
+    version = library.contact_normal_abi_version()
+    if version < ABI_VERSION:
+        raise ImportError(f"{path} has ABI version {version}; this module needs {ABI_VERSION} or newer")
+    for name, kind in _SIZED.items():
+        # Larger than we think: room for a struct that has grown, so that finding out does no harm.
+        room = ctypes.create_string_buffer(4096)
+        struct = ctypes.cast(room, POINTER(kind))
+        getattr(library, f"contact_normal_{name}_init")(struct)
+        size = struct.contents.struct_size
+        if size != ctypes.sizeof(kind):
+            raise ImportError(f"{path}: contact_normal_{name} has {size} bytes, here {ctypes.sizeof(kind)}")
+    return library
+
+
+_library = _load()
+
+VERSION = _library.contact_normal_version().decode()
+
+
+def _initialised(name):
+    struct = _SIZED[name]()
+    getattr(_library, f"contact_normal_{name}_init")(ctypes.byref(struct))
+    return struct
+
+
+def _check(status):
+    if status < 0:
+        raise ContactNormalError(status, _library.contact_normal_last_error().decode())
+    return status
+
+
+def _pointer(array, kind=c_double):
+    return array.ctypes.data_as(POINTER(kind))
+
+
+def _array(name, values, dtype, shape=None):
+    """Contiguous `values` of `dtype`, 2-D; copied only where they are not that already."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"{name} has dtype {array.dtype}; it must hold real numbers")
+    if array.ndim != 2:
+        raise ValueError(f"{name} has shape {array.shape}; it must be (my, mx)")
+    if shape is not None and array.shape != shape:
+        raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
+    return np.ascontiguousarray(array, dtype=dtype)
+
+
+def _pair(value):
+    """One value for both bodies, or two."""
+    return (c_double * 2)(*np.broadcast_to(np.asarray(value, dtype=float), (2,)))
+
+
+def _options(names, progress=None):
+    options = _initialised("options")
+    known = {name for name, _ in Options._fields_} - {"struct_size", "reserved", "progress", "user"}
+    for name, value in names.items():
+        if name not in known:
+            raise TypeError(f"no option {name}; there are: {', '.join(sorted(known))}")
+        setattr(options, name, value)
+    if progress is not None:
+        options.progress = progress
+    return options
+
+
+class _Watched:
+    """A Python callable as the progress callback; an exception in it cancels the solve and is raised after it."""
+
+    def __init__(self, progress):
+        self.progress, self.error = progress, None
+        self.callback = ProgressCallback(self._call) if progress else None
+
+    def _call(self, told, _user):
+        try:
+            return 1 if self.progress(told.contents) else 0
+        except BaseException as error:  # noqa: B902 - it must not cross the C frames
+            self.error = error
+            return 1
+
+    def check(self):
+        if self.error is not None:
+            raise self.error
+
+
+class Result:
+    """What a solve found: arrays (my, mx), the report's numbers, the ledger (one dict per grid, coarsest first)."""
+
+    def __init__(self, status, message, arrays, report, rows):
+        self.status, self.message = status, message
+        self.pressure, self.deformed_distance, self.displacement = arrays[:3]
+        self.contact = arrays[3] != 0
+        hidden = ("struct_size", "ledger", "ledger_capacity")
+        self.report = {name: getattr(report, name) for name, _ in Report._fields_ if name not in hidden}
+        count = min(report.ledger_rows, len(rows))
+        self.ledger = [{name: getattr(row, name) for name, _ in LedgerRow._fields_} for row in rows[:count]]
+
+    @property
+    def approach(self):
+        """Approach of the bodies."""
+        return self.report["approach"]
+
+    @property
+    def force(self):
+        """Normal force."""
+        return self.report["force"]
+
+
+def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
+    """A scene, and the arrays that must live as long as it is used."""
+    if (approach is None) == (force is None):
+        raise TypeError("give either approach or force")
+    h = _array("h", h, np.float64)
+    scene = _initialised("scene")
+    scene.my, scene.mx = h.shape
+    scene.dx, scene.dy = dx, dy
+    scene.undeformed_distance = _pointer(h)
+    scene.shear_modulus, scene.poisson_ratio = _pair(shear_modulus), _pair(poisson_ratio)
+    if force is None:
+        scene.load, scene.approach = PRESCRIBED_APPROACH, approach
+    else:
+        scene.load, scene.force = PRESCRIBED_FORCE, force
+    kept = [h]
+    if influence is not None:
+        table = _array("influence", influence, np.float64)
+        if table.shape[0] % 2 or table.shape[1] % 2:
+            raise ValueError(f"influence has shape {table.shape}; it must be (2 cy, 2 cx)")
+        effect = _initialised("influence")
+        effect.cy, effect.cx = table.shape[0] // 2, table.shape[1] // 2
+        effect.coefficients = _pointer(table)
+        scene.influence = ctypes.pointer(effect)
+        kept += [table, effect]
+    return scene, kept
+
+
+_LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
+
+
+def _run(call, shape, pressure, contact, options):
+    """Calls `call(fields, report)` with new arrays; `pressure` and `contact` are the initial guess."""
+    arrays = [np.zeros(shape) for _ in range(3)] + [np.zeros(shape, dtype=np.int32)]
+    if pressure is not None:
+        arrays[0][:] = _array("pressure", pressure, np.float64, shape)
+        if contact is None:
+            arrays[3][:] = arrays[0] > 0
+    if contact is not None:
+        arrays[3][:] = _array("contact", contact, np.int32, shape)
+    if pressure is not None and options.initial_guess == INITIAL_GUESS_NONE:
+        options.initial_guess = INITIAL_GUESS_GIVEN
+    fields, report = _initialised("fields"), _initialised("report")
+    fields.pressure, fields.deformed_distance, fields.displacement = map(_pointer, arrays[:3])
+    fields.contact = _pointer(arrays[3], c_int32)
+    rows = (LedgerRow * _LEDGER_ROOM)()
+    report.ledger, report.ledger_capacity = rows, _LEDGER_ROOM
+    status = _check(call(ctypes.byref(fields), ctypes.byref(report)))
+    message = _library.contact_normal_last_error().decode() if status > 0 else ""
+    return Result(status, message, arrays, report, rows)
+
+
+def solve(
+    h,
+    dx,
+    dy,
+    *,
+    approach=None,
+    force=None,
+    shear_modulus,
+    poisson_ratio,
+    influence=None,
+    pressure=None,
+    contact=None,
+    progress=None,
+    **options,
+):
+    """Solves one scene: undeformed distance `h` (my, mx), prescribed approach or prescribed force.
+
+    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); pressure, contact:
+    initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
+    a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
+    Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
+    """
+    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence)
+    watched = _Watched(progress)
+    struct = _options(options, watched.callback)
+
+    def call(fields, report):
+        return _library.contact_normal_solve(ctypes.byref(scene), ctypes.byref(struct), fields, report)
+
+    result = _run(call, kept[0].shape, pressure, contact, struct)
+    watched.check()
+    return result
+
+
+class Solver:
+    """A handle for many solves on one grid and one pair of bodies; `with` frees it.
+
+    with Solver(my, mx, dx, dy, shear_modulus=..., poisson_ratio=..., threads=2) as solver:
+        first = solver.solve(h, force=1e4)
+        next = solver.solve(h2, force=1e4, initial_guess=INITIAL_GUESS_PREVIOUS)
+    """
+
+    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, **options):
+        self._handle = c_void_p()
+        self._grid = (dx, dy, shear_modulus, poisson_ratio)
+        self._shape, self._set_up = (my, mx), options
+        # The set-up reads neither the undeformed distance nor the load, but checks them.
+        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, 0.0, None, shear_modulus, poisson_ratio, influence)
+        struct = _options(options)
+        _check(_library.contact_normal_solver_new(ctypes.byref(scene), ctypes.byref(struct), ctypes.byref(self._handle)))
+
+    def solve(self, h, *, approach=None, force=None, pressure=None, contact=None, progress=None, **options):
+        """Solves for `h` and the load, with the options of the set-up and further ones."""
+        if not self._handle:
+            raise ValueError("this solver is closed")
+        dx, dy, shear_modulus, poisson_ratio = self._grid
+        scene, kept = _scene(_array("h", h, np.float64, self._shape), dx, dy, approach, force, shear_modulus,
+                             poisson_ratio, None)
+        watched = _Watched(progress)
+        struct = _options({**self._set_up, **options}, watched.callback)
+
+        def call(fields, report):
+            return _library.contact_normal_solver_solve(
+                self._handle, ctypes.byref(scene), ctypes.byref(struct), fields, report
+            )
+
+        result = _run(call, kept[0].shape, pressure, contact, struct)
+        watched.check()
+        return result
+
+    def close(self):
+        """Frees the handle; a second call does nothing."""
+        handle, self._handle = self._handle, c_void_p()
+        _library.contact_normal_solver_free(handle)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def hertz(curvature_x, curvature_y, *, approach=None, force=None, shear_modulus, poisson_ratio):
+    """The exact solution for h = curvature_x x^2 + curvature_y y^2."""
+    if (approach is None) == (force is None):
+        raise TypeError("give either approach or force")
+    load, amount = (PRESCRIBED_APPROACH, approach) if force is None else (PRESCRIBED_FORCE, force)
+    solution = HertzSolution()
+    _check(
+        _library.contact_normal_hertz(
+            curvature_x, curvature_y, _pair(shear_modulus), _pair(poisson_ratio), load, amount, ctypes.byref(solution)
+        )
+    )
+    return solution
+
+
+def influence_half_space(cx, cy, dx, dy, *, shear_modulus, poisson_ratio):
+    """The coefficients of the half-space over offsets -cx..cx-1 by -cy..cy-1, as an array (2 cy, 2 cx)."""
+    # Sizes that are no sizes are left to the library, whose message says so.
+    table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
+    _check(
+        _library.contact_normal_influence_half_space(
+            cx, cy, dx, dy, _pair(shear_modulus), _pair(poisson_ratio), _pointer(table)
+        )
+    )
+    return table
+
+
+def set_log(callback, level=LOG_INFO):
+    """Sends log messages to `callback(level, message)`; None: none."""
+    global _log_callback  # the library keeps the pointer: the object must live
+
+    new = LogCallback(lambda level, message, _user: callback(level, message.decode())) if callback else LogCallback()
+    _check(_library.contact_normal_set_log(new, level, None))
+    _log_callback = new
+
+
+_log_callback = None

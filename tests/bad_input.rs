@@ -1,0 +1,450 @@
+//! The table of bad input: each row gets its status, a message that names the argument and its value, and untouched outputs.
+
+#[path = "bad_input/call.rs"]
+mod call;
+
+use std::ptr::{null, null_mut};
+
+use call::{initialised, last_error, Call, Through, CX, CY, MX};
+use contact_normal::ffi::*;
+
+const NULL: i32 = CONTACT_NORMAL_NULL_POINTER;
+const INVALID: i32 = CONTACT_NORMAL_INVALID_ARGUMENT;
+const NOT_FINITE: i32 = CONTACT_NORMAL_NOT_FINITE;
+const SIZE: i32 = CONTACT_NORMAL_STRUCT_SIZE;
+const INFEASIBLE: i32 = CONTACT_NORMAL_INFEASIBLE;
+const NOT_POSITIVE: i32 = CONTACT_NORMAL_NOT_POSITIVE_DEFINITE;
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+/// The argument and its value as the message says them, the status, and what makes a valid call bad.
+type Row = (&'static [&'static str], i32, fn(&mut Call));
+
+/// Scene and options: refused by a solve, with or without a handle, and by the set-up of a handle.
+#[rustfmt::skip]
+const SET_UP: &[Row] = &[
+    (&["scene"], NULL, |c| c.without = "scene"),
+    (&["undeformed_distance"], NULL, |c| c.scene.known.undeformed_distance = null()),
+    (&["coefficients"], NULL, |c| c.use_table().coefficients = null()),
+
+    (&["mx", "0"], INVALID, |c| c.scene.known.mx = 0),
+    (&["mx", "-6"], INVALID, |c| c.scene.known.mx = -6),
+    (&["my", "0"], INVALID, |c| c.scene.known.my = 0),
+    (&["my", "-2147483648"], INVALID, |c| c.scene.known.my = i32::MIN),
+    (&["mx * my", "65536 * 32768"], INVALID, |c| (c.scene.known.mx, c.scene.known.my) = (65536, 32768)),
+    (&["mx * my", "2147483647"], INVALID, |c| (c.scene.known.mx, c.scene.known.my) = (i32::MAX, i32::MAX)),
+    (&["dx", "0"], INVALID, |c| c.scene.known.dx = 0.0),
+    (&["dx", "-0.2"], INVALID, |c| c.scene.known.dx = -0.2),
+    (&["dx", "NaN"], NOT_FINITE, |c| c.scene.known.dx = NAN),
+    (&["dx", "inf"], NOT_FINITE, |c| c.scene.known.dx = INF),
+    (&["dy", "0"], INVALID, |c| c.scene.known.dy = 0.0),
+    (&["dy", "-0.2"], INVALID, |c| c.scene.known.dy = -0.2),
+    (&["dy", "NaN"], NOT_FINITE, |c| c.scene.known.dy = NAN),
+    (&["dy", "-inf"], NOT_FINITE, |c| c.scene.known.dy = -INF),
+    (&["undeformed_distance", "(0, 0)", "NaN"], NOT_FINITE, |c| c.h[0] = NAN),
+    (&["undeformed_distance", "(5, 4)", "NaN"], NOT_FINITE, |c| *c.h.last_mut().unwrap() = NAN),
+    (&["undeformed_distance", "(1, 1)", "-inf"], NOT_FINITE, |c| c.h[MX + 1] = -INF),
+    (&["shear_modulus[0]", "0"], INVALID, |c| c.scene.known.shear_modulus[0] = 0.0),
+    (&["shear_modulus[1]", "-1"], INVALID, |c| c.scene.known.shear_modulus[1] = -1.0),
+    (&["shear_modulus[1]", "-inf"], INVALID, |c| c.scene.known.shear_modulus[1] = -INF),
+    (&["shear_modulus[0]", "NaN"], NOT_FINITE, |c| c.scene.known.shear_modulus[0] = NAN),
+    (&["shear_modulus[1]", "NaN"], NOT_FINITE, |c| c.scene.known.shear_modulus[1] = NAN),
+    (&["shear_modulus", "infinite", "both"], INVALID, |c| c.scene.known.shear_modulus = [INF; 2]),
+    (&["poisson_ratio[0]", "-1"], INVALID, |c| c.scene.known.poisson_ratio[0] = -1.0),
+    (&["poisson_ratio[1]", "0.51"], INVALID, |c| c.scene.known.poisson_ratio[1] = 0.51),
+    (&["poisson_ratio[0]", "NaN"], NOT_FINITE, |c| c.scene.known.poisson_ratio[0] = NAN),
+    (&["poisson_ratio[1]", "inf"], NOT_FINITE, |c| c.scene.known.poisson_ratio[1] = INF),
+    // A rigid body's ratio has no effect, but a NaN is still a mistake.
+    (&["poisson_ratio[1]", "NaN"], NOT_FINITE, |c| {
+        (c.scene.known.shear_modulus[1], c.scene.known.poisson_ratio[1]) = (INF, NAN);
+    }),
+    (&["load", "7"], INVALID, |c| c.scene.known.load = 7),
+    (&["load", "-1"], INVALID, |c| c.scene.known.load = -1),
+    (&["reserved", "3"], INVALID, |c| c.scene.known.reserved = 3),
+    (&["approach", "NaN"], NOT_FINITE, |c| c.scene.known.approach = NAN),
+    (&["approach", "inf"], NOT_FINITE, |c| c.scene.known.approach = INF),
+    (&["force", "-5"], INVALID, |c| (c.scene.known.load, c.scene.known.force) = (1, -5.0)),
+    (&["force", "NaN"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (1, NAN)),
+    (&["force", "inf"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (1, INF)),
+    (&["force", "100", "undeformed_distance"], INFEASIBLE, |c| {
+        c.scene.known.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
+        c.h.fill(INF);
+    }),
+
+    (&["influence", "cx", "0"], INVALID, |c| c.use_table().cx = 0),
+    (&["influence", "cy", "-7"], INVALID, |c| c.use_table().cy = -7),
+    (&["influence", "cx", "5", "mx = 6"], INVALID, |c| c.use_table().cx = 5),
+    (&["influence", "cy", "4", "my = 5"], INVALID, |c| c.use_table().cy = 4),
+    (&["influence", "cx * cy", "2147483647"], INVALID, |c| (c.use_table().cx, c.use_table().cy) = (i32::MAX, i32::MAX)),
+    (&["coefficients", "(-3, 2)", "NaN"], NOT_FINITE, |c| c.set_coefficient(-3, 2, NAN)),
+    (&["coefficients", "(5, -4)", "inf"], NOT_FINITE, |c| c.set_coefficient(5, -4, INF)),
+    (&["coefficients", "(0, 0)", "-0.001"], NOT_POSITIVE, |c| c.set_coefficient(0, 0, -0.001)),
+    (&["coefficients", "(0, 0)", "0"], NOT_POSITIVE, |c| c.set_coefficient(0, 0, 0.0)),
+
+    (&["method", "17"], INVALID, |c| c.options.known.method = 17),
+    (&["smoother", "-1"], INVALID, |c| c.options.known.smoother = -1),
+    (&["active_set", "2"], INVALID, |c| c.options.known.active_set = 2),
+    (&["initial_guess", "3"], INVALID, |c| c.options.known.initial_guess = 3),
+    (&["criterion", "2"], INVALID, |c| c.options.known.criterion = 2),
+    (&["precision", "3"], INVALID, |c| c.options.known.precision = 3),
+    (&["reserved", "-1"], INVALID, |c| c.options.known.reserved = -1),
+    (&["tolerance", "0"], INVALID, |c| c.options.known.tolerance = 0.0),
+    (&["tolerance", "-0.000001"], INVALID, |c| c.options.known.tolerance = -1e-6),
+    (&["tolerance", "NaN"], NOT_FINITE, |c| c.options.known.tolerance = NAN),
+    (&["tolerance", "inf"], NOT_FINITE, |c| c.options.known.tolerance = INF),
+    (&["error_ratio", "-1"], INVALID, |c| c.options.known.error_ratio = -1.0),
+    (&["error_ratio", "NaN"], NOT_FINITE, |c| c.options.known.error_ratio = NAN),
+    (&["max_cycles", "0"], INVALID, |c| c.options.known.max_cycles = 0),
+    (&["max_cycles", "-3"], INVALID, |c| c.options.known.max_cycles = -3),
+    (&["relaxation", "-0.5"], INVALID, |c| c.options.known.relaxation = -0.5),
+    (&["relaxation", "2"], INVALID, |c| c.options.known.relaxation = 2.0),
+    (&["relaxation", "NaN"], NOT_FINITE, |c| c.options.known.relaxation = NAN),
+    (&["pre_sweeps", "-1"], INVALID, |c| c.options.known.pre_sweeps = -1),
+    (&["post_sweeps", "-2"], INVALID, |c| c.options.known.post_sweeps = -2),
+    (&["post_sweeps", "2147483647"], INVALID, |c| c.options.known.post_sweeps = i32::MAX),
+    (&["pre_sweeps", "post_sweeps", "0"], INVALID, |c| {
+        (c.options.known.pre_sweeps, c.options.known.post_sweeps) = (0, 0);
+    }),
+    (&["coarsest", "0"], INVALID, |c| c.options.known.coarsest = 0),
+    (&["coarsest", "65"], INVALID, |c| c.options.known.coarsest = 65),
+    (&["threads", "-1"], INVALID, |c| c.options.known.threads = -1),
+    // Refused, not tried: a million threads would be started, or take the machine down.
+    (&["threads", "1025"], INVALID, |c| c.options.known.threads = 1025),
+    (&["threads", "2147483647"], INVALID, |c| c.options.known.threads = i32::MAX),
+];
+
+/// Outputs and initial guesses: refused by a solve, with or without a handle.
+#[rustfmt::skip]
+const SOLVES: &[Row] = &[
+    (&["fields"], NULL, |c| c.without = "fields"),
+    (&["ledger", "ledger_capacity"], NULL, |c| c.report.known.ledger = null_mut()),
+    (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
+    (&["contact", "FIXED"], NULL, |c| { c.fix_contact(); c.fields.known.contact = null_mut(); }),
+    (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact.fill(0); }),
+    // In contact only where there is no surface.
+    (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact[1..].fill(0); c.h[0] = INF; }),
+    (&["pressure", "GIVEN"], NULL, |c| { c.options.known.initial_guess = 1; c.fields.known.pressure = null_mut(); }),
+    (&["pressure", "NaN"], NOT_FINITE, |c| { c.options.known.initial_guess = 1; c.pressure[7] = NAN; }),
+    (&["pressure", "-inf"], NOT_FINITE, |c| { c.options.known.initial_guess = 1; c.pressure[0] = -INF; }),
+];
+
+fn refused(row: &Row, through: Through, handle: *mut contact_normal_solver) {
+    let (words, status, change) = row;
+    let mut call = Call::new();
+    change(&mut call);
+    let before = call.outputs();
+    let (got, message) = call.run(through, handle);
+    assert_eq!(got, *status, "{words:?} through {through:?}: {message}");
+    for word in *words {
+        assert!(message.contains(word), "{words:?} through {through:?}: \"{message}\" does not say {word}");
+    }
+    assert!(call.outputs() == before, "{words:?} through {through:?}: outputs were written");
+}
+
+#[test]
+fn a_valid_call_writes_every_output() {
+    let mut call = Call::new();
+    let before = call.outputs();
+    assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
+    call.assert_all_written();
+    assert!(call.outputs() != before);
+}
+
+#[test]
+fn every_bad_scene_and_option_is_refused() {
+    let handle = Call::new().new_handle();
+    for row in SET_UP {
+        for through in [Through::Solve, Through::SolverNew, Through::SolverSolve] {
+            refused(row, through, handle);
+        }
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+#[test]
+fn every_bad_guess_and_output_is_refused() {
+    let handle = Call::new().new_handle();
+    for row in SOLVES {
+        for through in [Through::Solve, Through::SolverSolve] {
+            refused(row, through, handle);
+        }
+    }
+    // The handle is as good as before.
+    let mut call = Call::new();
+    assert_eq!(call.run(Through::SolverSolve, handle).0, CONTACT_NORMAL_OK);
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+/// Sets the size that a struct declares; its own size is what `_init` wrote.
+fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
+    call.use_table();
+    let declared = match name {
+        "scene" => &mut call.scene.known.struct_size,
+        "influence" => &mut call.influence.known.struct_size,
+        "options" => &mut call.options.known.struct_size,
+        "fields" => &mut call.fields.known.struct_size,
+        _ => &mut call.report.known.struct_size,
+    };
+    *declared = size(*declared);
+    *declared
+}
+
+fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
+    match name {
+        "scene" => &mut call.scene.excess,
+        "influence" => &mut call.influence.excess,
+        "options" => &mut call.options.excess,
+        "fields" => &mut call.fields.excess,
+        _ => &mut call.report.excess,
+    }
+}
+
+const STRUCTS: [&str; 5] = ["scene", "influence", "options", "fields", "report"];
+
+#[test]
+fn a_struct_of_no_known_size_is_refused() {
+    let sizes: [fn(i64) -> i64; 7] = [|_| 0, |_| 7, |_| -1, |_| i64::MIN, |own| own - 1, |_| 4097, |_| i64::MAX];
+    for name in STRUCTS {
+        for size in sizes {
+            let mut call = Call::new();
+            let declared = declare(&mut call, name, size);
+            let before = call.outputs();
+            let (status, message) = call.run(Through::Solve, null_mut());
+            assert_eq!(status, SIZE, "{name} of {declared} bytes: {message}");
+            for word in [name, "struct_size", &declared.to_string(), "_init"] {
+                assert!(message.contains(word), "\"{message}\" does not say {word}");
+            }
+            assert!(call.outputs() == before, "{name} of {declared} bytes: outputs were written");
+        }
+    }
+}
+
+#[test]
+fn a_larger_struct_is_accepted_if_what_we_do_not_know_is_zero() {
+    for name in STRUCTS {
+        let mut call = Call::new();
+        declare(&mut call, name, |own| own + 64);
+        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+        assert_eq!(*excess(&mut call, name), [0; 64], "{name}: unknown members were written");
+        for byte in [0, 63] {
+            let mut call = Call::new();
+            declare(&mut call, name, |own| own + 64);
+            excess(&mut call, name)[byte] = 1;
+            let before = call.outputs();
+            let (status, message) = call.run(Through::Solve, null_mut());
+            assert_eq!(status, SIZE, "{name}, byte {byte}: {message}");
+            assert!(message.contains(name), "{message}");
+            assert!(call.outputs() == before, "{name}, byte {byte}: outputs were written");
+        }
+    }
+}
+
+/// A name, and what is changed in a good call.
+type Change = (&'static str, fn(&mut Call));
+
+/// Everything that looks odd but is allowed.
+#[rustfmt::skip]
+const ACCEPTED: &[Change] = &[
+    ("default options", |c| c.without = "options"),
+    ("no report", |c| c.without = "report"),
+    ("no fields wanted", |c| c.fields.known = initialised(contact_normal_fields_init)),
+    ("no ledger", |c| (c.report.known.ledger, c.report.known.ledger_capacity) = (null_mut(), 0)),
+    ("an element without surface", |c| c.h[3] = INF),
+    ("one rigid body", |c| c.scene.known.shear_modulus[1] = INF),
+    ("incompressible", |c| c.scene.known.poisson_ratio = [0.5; 2]),
+    ("a force that is not the load", |c| c.scene.known.force = NAN),
+    ("an approach that is not the load", |c| (c.scene.known.load, c.scene.known.approach) = (1, NAN)),
+    ("a table larger than the grid", |c| { c.use_table(); }),
+    ("elastic constants beside a table", |c| { c.use_table(); c.scene.known.shear_modulus = [NAN; 2]; }),
+    ("garbage in row -cy and column -cx", |c| {
+        (-(CX as i64)..CX as i64).for_each(|kx| c.set_coefficient(kx, -(CY as i64), NAN));
+        (-(CY as i64)..CY as i64).for_each(|ky| c.set_coefficient(-(CX as i64), ky, INF));
+    }),
+];
+
+#[test]
+fn what_is_allowed_is_solved() {
+    for (name, change) in ACCEPTED {
+        let mut call = Call::new();
+        change(&mut call);
+        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+        // What is in the table's last row and column cannot be seen in the pressures.
+        let pressures = call.pressure.iter();
+        assert!(pressures.clone().all(|p| p.is_finite()) && call.contact.iter().all(|&c| c == -77 || c == 0 || c == 1));
+    }
+}
+
+#[test]
+fn no_contact_is_no_error() {
+    #[rustfmt::skip]
+    let scenes: [Change; 4] = [
+        ("bodies apart", |c| c.scene.known.approach = -0.5),
+        ("no force", |c| (c.scene.known.load, c.scene.known.force) = (1, 0.0)),
+        ("no surface, approach prescribed", |c| c.h.fill(INF)),
+        ("no surface, no force", |c| { c.h.fill(INF); (c.scene.known.load, c.scene.known.force) = (1, 0.0); }),
+    ];
+    for (name, change) in scenes {
+        for method in [CONTACT_NORMAL_METHOD_AUTO, CONTACT_NORMAL_METHOD_NORM, CONTACT_NORMAL_METHOD_MULTIGRID] {
+            let mut call = Call::new();
+            change(&mut call);
+            call.options.known.method = method;
+            assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+            assert!(call.pressure.iter().all(|&p| p == 0.0) && call.contact.iter().all(|&c| c == 0), "{name}");
+            let report = &call.report.known;
+            assert_eq!((report.force, report.contact_count, report.contact_area, report.residual), (0.0, 0, 0.0, 0.0));
+            assert!(report.approach.is_finite() && report.max_pressure == 0.0, "{name}: {}", report.approach);
+        }
+    }
+}
+
+#[test]
+fn a_handle_is_for_its_own_grid_and_bodies() {
+    #[rustfmt::skip]
+    let rows: &[Row] = &[
+        (&["solver"], NULL, |_| {}),
+        (&["grid", "mx: 5", "mx: 6"], INVALID, |c| c.scene.known.mx = 5),
+        (&["grid", "my: 4", "my: 5"], INVALID, |c| c.scene.known.my = 4),
+        (&["grid", "dx: 0.75"], INVALID, |c| c.scene.known.dx = 0.75),
+        (&["bodies", "80000"], INVALID, |c| c.scene.known.shear_modulus[1] = 80000.0),
+        (&["influence"], INVALID, |c| { c.use_table(); }),
+        (&["smoother"], INVALID, |c| c.options.known.smoother = CONTACT_NORMAL_SMOOTHER_JACOBI),
+        (&["threads"], INVALID, |c| c.options.known.threads = 2),
+    ];
+    let handle = Call::new().new_handle();
+    refused(&rows[0], Through::SolverSolve, null_mut());
+    rows[1..].iter().for_each(|row| refused(row, Through::SolverSolve, handle));
+    // SAFETY: made above; NULL is ignored.
+    unsafe {
+        contact_normal_solver_free(handle);
+        contact_normal_solver_free(null_mut());
+        let call = Call::new();
+        let status = contact_normal_solver_new(&call.scene.known, null(), null_mut());
+        assert_eq!((status, last_error().contains("solver")), (NULL, true));
+    }
+}
+
+#[test]
+fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
+    let mut call = Call::new();
+    call.use_table();
+    call.scene.known.shear_modulus = [NAN; 2];
+    let handle = call.new_handle();
+    for keep_table in [true, false] {
+        if !keep_table {
+            call.scene.known.influence = null();
+        }
+        assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()), "{keep_table}");
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+#[test]
+fn a_method_for_symmetric_coefficients_refuses_others() {
+    let row: Row = (&["PROJECTED_CG", "symmetric"], CONTACT_NORMAL_UNSUPPORTED, |c| {
+        c.set_coefficient(1, 0, 0.0);
+        c.options.known.method = CONTACT_NORMAL_METHOD_PROJECTED_CG;
+    });
+    refused(&row, Through::Solve, null_mut());
+}
+
+#[test]
+fn stopping_early_has_a_message() {
+    let mut call = Call::new();
+    (call.options.known.max_cycles, call.options.known.tolerance) = (1, 1e-14);
+    call.options.known.method = CONTACT_NORMAL_METHOD_NORM;
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_ITERATION_LIMIT);
+    assert!(message.contains("max_cycles") && message.contains('1'), "\"{message}\"");
+    call.assert_all_written();
+}
+
+#[test]
+fn closed_forms_refuse_bad_input() {
+    let (g, nu) = ([82000.0; 2], [0.28; 2]);
+    let hertz = |x, y, g: *const f64, nu: *const f64, load, amount, words: &[&str], expected: i32| {
+        let untouched = contact_normal_hertz_solution { force: -77.0, ..Default::default() };
+        let mut solution = untouched;
+        // SAFETY: NULL or two values; room for a solution.
+        let status = unsafe { contact_normal_hertz(x, y, g, nu, load, amount, &mut solution) };
+        assert_eq!((status, solution.force), (expected, untouched.force), "{words:?}: {}", last_error());
+        assert!(words.iter().all(|word| last_error().contains(word)), "{words:?}: {}", last_error());
+    };
+    let (g, nu) = (g.as_ptr(), nu.as_ptr());
+    hertz(1.0, 2.0, null(), nu, 0, 0.1, &["shear_modulus"], NULL);
+    hertz(1.0, 2.0, g, null(), 0, 0.1, &["poisson_ratio"], NULL);
+    hertz(1.0, 2.0, [1.0, NAN].as_ptr(), nu, 0, 0.1, &["shear_modulus[1]", "NaN"], NOT_FINITE);
+    hertz(1.0, 2.0, [INF, INF].as_ptr(), nu, 0, 0.1, &["shear_modulus"], INVALID);
+    hertz(1.0, 2.0, g, [0.6, 0.3].as_ptr(), 0, 0.1, &["poisson_ratio[0]", "0.6"], INVALID);
+    hertz(0.0, 2.0, g, nu, 0, 0.1, &["curvature_x", "0"], INVALID);
+    hertz(1.0, -2.0, g, nu, 0, 0.1, &["curvature_y", "-2"], INVALID);
+    hertz(NAN, 2.0, g, nu, 0, 0.1, &["curvature_x", "NaN"], NOT_FINITE);
+    hertz(1.0, INF, g, nu, 1, 0.1, &["curvature_y", "inf"], NOT_FINITE);
+    hertz(1.0, 2.0, g, nu, 2, 0.1, &["load", "2"], INVALID);
+    hertz(1.0, 2.0, g, nu, 0, -0.1, &["amount", "approach", "-0.1"], INVALID);
+    hertz(1.0, 2.0, g, nu, 1, 0.0, &["amount", "force", "0"], INVALID);
+    hertz(1.0, 2.0, g, nu, 1, NAN, &["amount", "force", "NaN"], NOT_FINITE);
+    hertz(1e-300, 1e300, g, nu, 1, 1e300, &["curvature_x", "curvature_y", "range"], INVALID);
+    // SAFETY: as above, and a NULL result.
+    let status = unsafe { contact_normal_hertz(1.0, 2.0, g, nu, 0, 0.1, null_mut()) };
+    assert_eq!((status, last_error().contains("solution")), (NULL, true));
+
+    let table = |cx, cy, dx, dy, g: *const f64, nu: *const f64, words: &[&str], expected: i32| {
+        let mut values = vec![-77.0; 4 * CX * CY];
+        // SAFETY: NULL or two values; room for the one valid size, which no row has.
+        let status = unsafe { contact_normal_influence_half_space(cx, cy, dx, dy, g, nu, values.as_mut_ptr()) };
+        assert_eq!(status, expected, "{words:?}: {}", last_error());
+        assert!(words.iter().all(|word| last_error().contains(word)), "{words:?}: {}", last_error());
+        assert!(values.iter().all(|&value| value == -77.0), "{words:?}: written");
+    };
+    table(0, 3, 1.0, 1.0, g, nu, &["cx", "0"], INVALID);
+    table(3, -1, 1.0, 1.0, g, nu, &["cy", "-1"], INVALID);
+    table(i32::MAX, i32::MAX, 1.0, 1.0, g, nu, &["cx * cy", "2147483647"], INVALID);
+    table(3, 3, 0.0, 1.0, g, nu, &["dx", "0"], INVALID);
+    table(3, 3, 1.0, -1.0, g, nu, &["dy", "-1"], INVALID);
+    table(3, 3, 1.0, NAN, g, nu, &["dy", "NaN"], NOT_FINITE);
+    table(3, 3, 1.0, 1.0, null(), nu, &["shear_modulus"], NULL);
+    table(3, 3, 1.0, 1.0, g, null(), &["poisson_ratio"], NULL);
+    table(3, 3, 1.0, 1.0, [0.0, 1.0].as_ptr(), nu, &["shear_modulus[0]", "0"], INVALID);
+    // SAFETY: a NULL result.
+    let status = unsafe { contact_normal_influence_half_space(3, 3, 1.0, 1.0, g, nu, null_mut()) };
+    assert_eq!((status, last_error().contains("coefficients")), (NULL, true));
+}
+
+#[test]
+fn inits_ignore_null_and_levels_are_checked() {
+    // SAFETY: NULL is allowed; no callback.
+    unsafe {
+        contact_normal_scene_init(null_mut());
+        contact_normal_influence_init(null_mut());
+        contact_normal_options_init(null_mut());
+        contact_normal_fields_init(null_mut());
+        contact_normal_report_init(null_mut());
+        let status = contact_normal_set_log(None, 9, null_mut());
+        assert_eq!((status, last_error().contains("level is 9")), (INVALID, true));
+        let text = std::ffi::CStr::from_ptr(contact_normal_status_text(12345)).to_str().expect("UTF-8");
+        assert!(!text.is_empty());
+    }
+}
+
+#[test]
+fn a_fixed_area_comes_from_the_fields_whatever_the_guess() {
+    // Two elements, then two others with the pressures of the first solve as the guess.
+    let mut call = Call::new();
+    call.fix_contact();
+    let handle = call.new_handle();
+    for (guess, elements) in
+        [(CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [14, 15]), (CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [8, 9])]
+    {
+        call.options.known.initial_guess = guess;
+        call.contact.fill(0);
+        elements.iter().for_each(|&i| call.contact[i] = 1);
+        assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()));
+        let found: Vec<usize> = (0..call.pressure.len()).filter(|&i| call.pressure[i] != 0.0).collect();
+        assert_eq!(found, elements);
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}

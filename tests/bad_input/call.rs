@@ -1,0 +1,187 @@
+//! One call of the C ABI with everything it may read or write, filled so that a write anywhere shows.
+
+use std::ffi::CStr;
+use std::ptr::{null, null_mut};
+
+use contact_normal::ffi::*;
+
+/// Elements of the scene.
+pub const MX: usize = 6;
+pub const MY: usize = 5;
+const N: usize = MX * MY;
+/// Offsets of the table: more than the grid has.
+pub const CX: usize = 8;
+pub const CY: usize = 7;
+/// What outputs hold before a call. No solution has this value.
+const SENTINEL: f64 = -12345.678;
+const SENTINEL_CONTACT: i32 = -77;
+
+/// A struct as a later version may have it: with members that this one does not know.
+#[repr(C)]
+pub struct Grown<T> {
+    pub known: T,
+    pub excess: [u8; 64],
+}
+
+impl<T> Grown<T> {
+    fn new(known: T) -> Box<Self> {
+        Box::new(Grown { known, excess: [0; 64] })
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        // SAFETY: the structs of the ABI have no padding (tests/python_clients.rs compares all offsets).
+        unsafe { std::slice::from_raw_parts((self as *const Self).cast::<u8>(), size_of::<Self>()) }.to_vec()
+    }
+}
+
+/// Which exports a row goes through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Through {
+    Solve,
+    SolverNew,
+    SolverSolve,
+}
+
+/// The arguments of a call; as made by `new`, a valid one.
+pub struct Call {
+    pub scene: Box<Grown<contact_normal_scene>>,
+    pub influence: Box<Grown<contact_normal_influence>>,
+    pub options: Box<Grown<contact_normal_options>>,
+    pub fields: Box<Grown<contact_normal_fields>>,
+    pub report: Box<Grown<contact_normal_report>>,
+    pub h: Vec<f64>,
+    pub table: Vec<f64>,
+    pub pressure: Vec<f64>,
+    pub contact: Vec<i32>,
+    /// The argument that is NULL instead.
+    pub without: &'static str,
+    others: Vec<f64>,
+    ledger: Vec<contact_normal_ledger_row>,
+    handle: *mut contact_normal_solver,
+}
+
+/// `T` as its `_init` leaves it.
+pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
+    let mut value = std::mem::MaybeUninit::uninit();
+    // SAFETY: `_init` fills a whole struct.
+    unsafe {
+        init(value.as_mut_ptr());
+        value.assume_init()
+    }
+}
+
+impl Call {
+    /// A ball on a plane, approach prescribed, all outputs wanted.
+    pub fn new() -> Call {
+        let mut call = Call {
+            scene: Grown::new(initialised(contact_normal_scene_init)),
+            influence: Grown::new(initialised(contact_normal_influence_init)),
+            options: Grown::new(initialised(contact_normal_options_init)),
+            fields: Grown::new(initialised(contact_normal_fields_init)),
+            report: Grown::new(initialised(contact_normal_report_init)),
+            h: (0..N)
+                .map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2))
+                .collect(),
+            table: vec![0.0; 4 * CX * CY],
+            pressure: vec![SENTINEL; N],
+            contact: vec![SENTINEL_CONTACT; N],
+            without: "",
+            others: vec![SENTINEL; 2 * N],
+            ledger: vec![contact_normal_ledger_row { mx: SENTINEL_CONTACT, ..Default::default() }; 4],
+            handle: null_mut(),
+        };
+        let scene = &mut call.scene.known;
+        (scene.mx, scene.my, scene.dx, scene.dy) = (MX as i32, MY as i32, 0.5, 0.25);
+        (scene.shear_modulus, scene.poisson_ratio) = ([82000.0; 2], [0.28; 2]);
+        (scene.approach, scene.force) = (0.03, 100.0);
+        scene.undeformed_distance = call.h.as_ptr();
+        let (g, nu) = (scene.shear_modulus.as_ptr(), scene.poisson_ratio.as_ptr());
+        let (cx, cy) = (CX as i32, CY as i32);
+        // SAFETY: room for 2 cy by 2 cx values.
+        let status = unsafe { contact_normal_influence_half_space(cx, cy, 0.5, 0.25, g, nu, call.table.as_mut_ptr()) };
+        assert_eq!(status, CONTACT_NORMAL_OK);
+        (call.influence.known.cx, call.influence.known.cy) = (cx, cy);
+        call.influence.known.coefficients = call.table.as_ptr();
+        let fields = &mut call.fields.known;
+        (fields.pressure, fields.contact) = (call.pressure.as_mut_ptr(), call.contact.as_mut_ptr());
+        fields.deformed_distance = call.others.as_mut_ptr();
+        fields.displacement = call.others[N..].as_mut_ptr();
+        let report = &mut call.report.known;
+        (report.ledger, report.ledger_capacity) = (call.ledger.as_mut_ptr(), call.ledger.len() as i64);
+        (report.force, report.cycles) = (SENTINEL, -77);
+        call
+    }
+
+    /// Names the table of coefficients in the scene, and the table to change.
+    pub fn use_table(&mut self) -> &mut contact_normal_influence {
+        self.scene.known.influence = &raw const self.influence.known;
+        &mut self.influence.known
+    }
+
+    /// Sets the coefficient at an offset.
+    pub fn set_coefficient(&mut self, kx: i64, ky: i64, value: f64) {
+        self.use_table();
+        self.table[(ky + CY as i64) as usize * 2 * CX + (kx + CX as i64) as usize] = value;
+    }
+
+    /// Solves the equations on the given elements; by default on all.
+    pub fn fix_contact(&mut self) {
+        self.options.known.active_set = CONTACT_NORMAL_ACTIVE_SET_FIXED;
+        self.contact.fill(1);
+    }
+
+    /// Makes the call; status and message.
+    pub fn run(&mut self, through: Through, handle: *mut contact_normal_solver) -> (i32, String) {
+        let scene = if self.without == "scene" { null() } else { &raw const self.scene.known };
+        let options = if self.without == "options" { null() } else { &raw const self.options.known };
+        let fields = if self.without == "fields" { null_mut() } else { &raw mut self.fields.known };
+        let report = if self.without == "report" { null_mut() } else { &raw mut self.report.known };
+        // SAFETY: pointers to structs with room for what they declare; a wrong size or NULL is what is tested.
+        unsafe {
+            let status = match through {
+                Through::Solve => contact_normal_solve(scene, options, fields, report),
+                Through::SolverNew => contact_normal_solver_new(scene, options, &raw mut self.handle),
+                Through::SolverSolve => contact_normal_solver_solve(handle, scene, options, fields, report),
+            };
+            // After OK the message is still that of the last call that had one.
+            (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
+        }
+    }
+
+    /// A handle for this scene.
+    pub fn new_handle(&mut self) -> *mut contact_normal_solver {
+        let (status, message) = self.run(Through::SolverNew, null_mut());
+        assert_eq!(status, CONTACT_NORMAL_OK, "{message}");
+        std::mem::replace(&mut self.handle, null_mut())
+    }
+
+    /// Every byte that a call may write.
+    pub fn outputs(&self) -> Vec<u8> {
+        let mut bytes = [self.fields.bytes(), self.report.bytes()].concat();
+        bytes.extend((self.handle as usize).to_ne_bytes());
+        bytes.extend(self.pressure.iter().chain(&self.others).flat_map(|value| value.to_ne_bytes()));
+        bytes.extend(self.contact.iter().flat_map(|value| value.to_ne_bytes()));
+        for row in &self.ledger {
+            // SAFETY: 4-byte and 8-byte members without padding.
+            let size = size_of::<contact_normal_ledger_row>();
+            bytes.extend(unsafe {
+                std::slice::from_raw_parts((row as *const contact_normal_ledger_row).cast::<u8>(), size)
+            });
+        }
+        bytes
+    }
+
+    /// That a valid call wrote every output, or `outputs` would show nothing.
+    pub fn assert_all_written(&self) {
+        assert!(self.pressure.iter().chain(&self.others).all(|&value| value != SENTINEL));
+        assert!(self.contact.iter().all(|&value| value == 0 || value == 1));
+        assert!(self.report.known.force != SENTINEL && self.report.known.cycles >= 0);
+        assert!(self.ledger[0].mx > 0);
+    }
+}
+
+/// The message of the last call on this thread.
+pub fn last_error() -> String {
+    // SAFETY: never NULL, valid until the next call.
+    unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().expect("UTF-8").to_owned()
+}
