@@ -1,12 +1,13 @@
 //! Gauss-Seidel and the FFT smoother in V-cycles, and the production method beside them, on the paper's ellipse and on a
 //! rough surface: cycles on the finest grid, products on it, work units on all grids, seconds of the whole call (set-up
-//! included, one thread; medians of interleaved runs).
+//! included, one thread; medians of interleaved runs). Then what is wrong with red-black order.
 //!
 //! `cargo run --release --example smoothers [-- SIZE...]`; the sizes are 128 256 512 1024 if none are given.
 
 #[path = "../paper_tables/case.rs"]
 #[allow(dead_code)] // the paper's runs, of which this example uses the scene
 mod case;
+mod red_black;
 mod rough;
 
 use std::time::Instant;
@@ -38,6 +39,7 @@ fn main() {
         let h = rough::undeformed_distance(m);
         problem("rough", &rough::scene(m, &h), m);
     }
+    red_black::study();
 }
 
 /// The whole problem by full multigrid, then the equations on the contact area that it found, from p = 0.
