@@ -39,7 +39,8 @@ def _finish(figure, axes, path):
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             handles.setdefault(label, handle)
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=len(handles), frameon=False)
+    labels = [name for name in STYLES if name in handles]
+    figure.legend([handles[name] for name in labels], labels, loc="lower center", ncol=len(labels), frameon=False)
     figure.savefig(path, dpi=140)
     plt.close(figure)
 
