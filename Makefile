@@ -70,7 +70,7 @@ demo: tools all
 
 # Optimised, with debug assertions and overflow checks on.
 test: tools
-	$(CARGO) test --profile checked --locked --all-targets
+	$(CARGO) test --profile checked --locked --lib --tests --examples
 	$(CARGO) test --profile checked --locked --doc
 
 # What a solve costs, in products, beside what it may cost. BENCH="--large" goes up to 4096 x 4096; see benches/performance.

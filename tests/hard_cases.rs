@@ -364,6 +364,31 @@ fn the_update_criterion_means_the_last_change_of_the_pressures() {
 }
 
 #[test]
+fn an_error_ratio_stops_at_a_part_of_the_discretisation_error() {
+    let grid = Grid::new(128, 128, 0.05, 0.05).unwrap();
+    let h = paraboloid(&grid, 0.1);
+    for load in [Load::Approach(0.2), Load::Force(1.0)] {
+        let scene = Scene::new(grid, &h, rigid_on(1.0), load);
+        for method in [Method::Auto, Method::FullMultigrid] {
+            let run = |error_ratio| {
+                let options = Options { method, tolerance: 1e-9, error_ratio, ..Options::default() };
+                let (_, stop, report) = solve(&scene, &options).unwrap();
+                assert_eq!(stop, Stop::Converged);
+                report
+            };
+            let (exact, enough) = (run(0.0), run(0.1));
+            assert!(enough.cycles < exact.cycles, "{method:?}: {} and {} cycles", enough.cycles, exact.cycles);
+            // what is found is off by less than the discretisation error that was estimated for it
+            let off = match load {
+                Load::Approach(_) => enough.measures.force - exact.measures.force,
+                Load::Force(_) => enough.measures.approach - exact.measures.approach,
+            };
+            assert!(off.abs() <= exact.error.force, "{method:?} {load:?}: {off} of {}", exact.error.force);
+        }
+    }
+}
+
+#[test]
 fn limits_and_cancellation_return_the_best_iterate() {
     let grid = Grid::new(64, 64, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.1);

@@ -85,7 +85,7 @@ fn interpolate(coarse: &State, fine: &mut State) {
 
 /// Relative discretisation error of the force, or of the approach if the force is prescribed, as the step between the
 /// last two coarser grids suggests it for this one: half of it, by first-order convergence.
-fn discretisation_error(monitor: &Monitor<'_>, state: &State) -> f64 {
+pub(super) fn discretisation_error(monitor: &Monitor<'_>, state: &State) -> f64 {
     let Some(row) = monitor.ledger().last() else { return 0.0 };
     let value = match state.load {
         Load::Approach(_) => row.measures.force,

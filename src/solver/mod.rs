@@ -289,10 +289,12 @@ impl Solver {
             Method::ProjectedCg if !self.symmetric => Err(Error::Unsupported(
                 "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
             )),
-            Method::ProjectedCg => self.projected.solve(&mut self.states[0], rule, has_start, monitor),
+            Method::ProjectedCg => {
+                self.projected.solve(&mut self.states[0], rule, has_start, options.error_ratio, monitor)
+            }
             Method::Auto => {
                 let stop = if self.symmetric {
-                    self.projected.solve(&mut self.states[0], rule, has_start, monitor)?
+                    self.projected.solve(&mut self.states[0], rule, has_start, options.error_ratio, monitor)?
                 } else {
                     self.full_multigrid(options, rule, has_start, monitor)?
                 };

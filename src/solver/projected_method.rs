@@ -4,6 +4,7 @@
 //! and in single precision directions; then u = A p on the full grid, in double precision: the certificate. If it does not
 //! hold, the iteration goes on from there.
 
+use super::full_multigrid::discretisation_error;
 use super::monitor::{Monitor, Rule};
 use super::options::Precision;
 use super::report::Stop;
@@ -135,11 +136,13 @@ impl Projected {
     }
 
     /// Solves from `state`: from its pressures and contact area if `has_start` (then its u must be A p), or else from nothing.
+    /// `error_ratio` is that of the options; it needs the coarser grids of a start from nothing.
     pub fn solve(
         &mut self,
         state: &mut State,
         rule: &Rule,
         has_start: bool,
+        error_ratio: f64,
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
         let mut u_is_known = has_start;
@@ -148,6 +151,11 @@ impl Projected {
             self.certify(state, rule, monitor);
             return Ok(Stop::Cancelled);
         }
+        let mut rule = *rule;
+        if !has_start && error_ratio > 0.0 {
+            rule.tolerance = rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
+        }
+        let rule = &rule;
         let (mut best, mut rounds_without_progress) = (f64::INFINITY, 0);
         loop {
             let before = if rule.by_update { state.p.clone() } else { Vec::new() };
