@@ -41,7 +41,7 @@ def _finish(figure, axes, path):
             handles.setdefault(label, handle)
     labels = [name for name in STYLES if name in handles]
     figure.legend([handles[name] for name in labels], labels, loc="lower center", ncol=len(labels), frameon=False)
-    figure.savefig(path, dpi=140)
+    figure.savefig(path, dpi=140, bbox_inches="tight", pad_inches=0.1)
     plt.close(figure)
 
 
