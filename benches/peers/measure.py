@@ -19,6 +19,7 @@ from problems import PROBLEMS
 from solvers import SOLVERS
 
 ACCURACIES = [1e-4, 1e-6]
+TIGHTEST = 1e-7  # the ladders of fast settings go down to this error, for the picture
 REPEATS = 5
 LONG, REPEATS_OF_LONG = 8.0, 2  # seconds
 LONGEST = 120.0  # a call that takes longer ends its setting's ladder, and is not repeated
@@ -47,7 +48,7 @@ def timed(call, problem, tolerance):
 
 
 def ladder(name, setting, call, tolerances, problem, least):
-    """Points (tolerance, seconds, error), until the tightest accuracy is reached, or `least` seconds are far exceeded."""
+    """Points (tolerance, seconds, error), until they are accurate enough, or `least` seconds are far exceeded."""
     points = []
     halves = len(tolerances) > 1 and tolerances[0] / tolerances[1] < 5
     for step, tolerance in enumerate(tolerances):
@@ -65,7 +66,8 @@ def ladder(name, setting, call, tolerances, problem, least):
         error = problem.error(p)
         print(f"  {name:16} {setting:24} {tolerance:8.1e} {seconds:9.4f} s  error {error:.1e}", flush=True)
         points.append(dict(setting=setting, tolerance=tolerance, seconds=seconds, error=error))
-        if error <= min(ACCURACIES) or seconds > min(LONGEST, HOPELESS * least):
+        enough = TIGHTEST if seconds < COARSE_STEPS else min(ACCURACIES)
+        if error <= enough or seconds > min(LONGEST, HOPELESS * least):
             break
     return points
 

@@ -39,8 +39,9 @@ def _finish(figure, axes, path):
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             handles.setdefault(label, handle)
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=len(handles), frameon=False)
-    figure.savefig(path, dpi=140)
+    labels = [name for name in STYLES if name in handles]
+    figure.legend([handles[name] for name in labels], labels, loc="lower center", ncol=len(labels), frameon=False)
+    figure.savefig(path, dpi=140, bbox_inches="tight", pad_inches=0.1)
     plt.close(figure)
 
 
@@ -48,9 +49,12 @@ def draw(measured, folder):
     """Both pictures."""
     kinds = [kind for kind in TITLES if any(one["problem"] == kind for one in measured)]
     size = 512
-    figure, axes = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True)
+    at_size = [kind for kind in kinds if any((one["problem"], one["size"]) == (kind, size) for one in measured)]
+    figure, axes = plt.subplots(
+        1, len(at_size), figsize=(4.2 * len(at_size), 4.4), sharey=True, squeeze=False
+    )
     figure.subplots_adjust(left=0.07, right=0.985, top=0.91, bottom=0.24, wspace=0.08)
-    for axis, kind in zip(axes, kinds):
+    for axis, kind in zip(axes[0], at_size):
         for one in measured:
             if (one["problem"], one["size"]) != (kind, size):
                 continue
@@ -66,8 +70,8 @@ def draw(measured, folder):
         axis.set_title(f"{TITLES[kind]}, {size} x {size}", fontsize=11)
         axis.set_xlabel("checked error (looser to tighter)")
         axis.invert_xaxis()
-    axes[0].set_ylabel("processor seconds, whole call, one thread")
-    _finish(figure, axes, os.path.join(folder, "performance_error.png"))
+    axes[0, 0].set_ylabel("processor seconds, whole call, one thread")
+    _finish(figure, axes[0], os.path.join(folder, "performance_error.png"))
 
     figure, axes = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True)
     figure.subplots_adjust(left=0.07, right=0.985, top=0.91, bottom=0.24, wspace=0.08)

@@ -41,7 +41,8 @@ pub fn cold_calls(threads: usize, sizes: &[usize]) {
     println!("\n16, 32, 64: the limit is 25 products and 50 microseconds.");
 }
 
-fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most: f64) {
+/// One case: its call against products.
+pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most: f64) {
     let (scene, options) = (case.scene(), options(threads));
     let mut product = Product::new(&scene, threads);
     let (stop, report) = cold(&scene, &options);
@@ -189,9 +190,40 @@ pub fn memory(sizes: &[usize]) {
     }
 }
 
+/// The argument that makes a process do nothing but [`solve_again`], for a profiler.
+pub const SOLVE_AGAIN: &str = "--solve-again";
+
+/// Cold solves, or time steps, for so many seconds.
+pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
+    let case = by_name(name, m);
+    let began = std::time::Instant::now();
+    let next = Options { initial_guess: InitialGuess::Previous, ..options(1) };
+    let approach = cold(&case.scene(), &options(1)).1.measures.approach;
+    let mut solver = Solver::new(&case.scene(), &next).expect("a solver");
+    let scenes = [1.0, 1.01].map(|factor| case.scene_with(Load::Approach(factor * approach)));
+    for scene in scenes.iter().cycle() {
+        if began.elapsed().as_secs_f64() > seconds {
+            break;
+        }
+        if steps {
+            solver.solve(scene, &next, None, None).expect("a solvable scene");
+        } else {
+            cold(&case.scene(), &options(1));
+        }
+    }
+}
+
+fn by_name(name: &str, m: usize) -> Case {
+    match name {
+        "ellipse" => ellipse(m),
+        "rough" => rough(m),
+        _ => wheel_rail(name, m),
+    }
+}
+
 /// One cold solve; prints the bytes held before it and the most that were held.
 pub fn solve_once(name: &str, m: usize) {
-    let case = if name == "rough" { rough(m) } else { ellipse(m) };
+    let case = by_name(name, m);
     // What making the surface took must not count.
     std::fs::write("/proc/self/clear_refs", "5").expect("the peak can be reset (Linux)");
     let before = status_of_memory("VmRSS:");

@@ -1,0 +1,70 @@
+"""Where the time of a solve goes: `python3 benches/profile.py`, after `cargo bench --no-run`; needs Linux' perf.
+
+Samples the stacks of a process that solves the same problem again and again, and sorts them by what the solve was doing.
+"""
+
+import collections
+import glob
+import os
+import re
+import subprocess
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+RUNS = [
+    ("ellipse", "512", "cold"),
+    ("ellipse", "64", "cold"),
+    ("y4_82kN", "1", "cold"),
+    ("rough", "512", "cold"),
+    ("rough", "1024", "cold"),
+    ("ellipse", "512", "steps"),
+    ("rough", "512", "steps"),
+]
+SECONDS = "8"
+# The first that some function of the stack matches.
+PARTS = [
+    ("", r"performance::case|heights|wheel_rail\b"),
+    ("estimate of the approach", r"State::start|estimate_approach"),
+    ("report", r"close_grid|Measures"),
+    ("certificate", r"certify|residual_norm"),
+    ("coarse grids, with their set-up", r"nested_start"),
+    ("preconditioner", r"apply_in_place"),
+    ("set-up", r"even_spectrum|inverse_circulant|Solver::new|Iteration<T>::new|orkspace<|fill_row|zeros<"),
+    ("products", r"\bapply<|apply_rows|::apply"),
+    ("products or preconditioner", r"transform_rows|convolve_columns|for_each_block|for_each_row|rustfft|realfft"),
+    ("vector passes", r"Iteration|iterate|projected_cg"),
+]
+
+
+def stacks(data):
+    """One text per sample."""
+    script = subprocess.run(["perf", "script", "-i", data, "-F", "ip,sym"], capture_output=True, text=True, check=True)
+    return [stack for stack in script.stdout.split("\n\n") if stack.strip()]
+
+
+def main():
+    built = glob.glob(os.path.join(ROOT, "target", "release", "deps", "performance-*"))
+    program = max((path for path in built if os.access(path, os.X_OK)), key=os.path.getmtime)
+    data = os.path.join(ROOT, "build", "perf.data")
+    os.makedirs(os.path.dirname(data), exist_ok=True)
+    shares = {}
+    for run in RUNS:
+        subprocess.run(
+            ["perf", "record", "-q", "-F", "99", "--call-graph", "dwarf,32768", "-o", data, program, "--solve-again"]
+            + [*run, SECONDS],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
+        counts = collections.Counter(
+            next((part for part, pattern in PARTS if re.search(pattern, stack)), "rest") for stack in stacks(data)
+        )
+        counts.pop("", None)
+        shares[run] = {part: 100 * count / counts.total() for part, count in counts.items()}
+    os.remove(data)
+    print("| % of the samples | " + " | ".join(" ".join(run) for run in RUNS) + " |")
+    print("|---" * (len(RUNS) + 1) + "|")
+    for part in [part for part, _ in PARTS if part] + ["rest"]:
+        print(f"| {part} | " + " | ".join(f"{shares[run].get(part, 0):.0f}" for run in RUNS) + " |")
+
+
+if __name__ == "__main__":
+    main()
