@@ -282,6 +282,9 @@ impl Solver {
         if has_start {
             monitor.count_products(1, 1.0);
         }
+        if options.initial_guess != InitialGuess::Previous {
+            self.projected.forget_window();
+        }
         match options.method {
             Method::Norm => self.norm(rule, monitor),
             Method::Multigrid => self.multigrid(rule, monitor),

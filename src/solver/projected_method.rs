@@ -97,6 +97,10 @@ pub struct Projected {
     /// Coarser grids, the coarsest last; none before the first cold start.
     coarse: Vec<Coarse>,
     finest: Option<Windowed>,
+    /// Whether the next window is chosen without regard to the one there is.
+    choose_anew: bool,
+    /// With criterion UPDATE: p before the last round.
+    before: Vec<f64>,
     precision: Precision,
     threads: Threads,
 }
@@ -112,6 +116,8 @@ impl Projected {
             operator,
             coarse: Vec::new(),
             finest: None,
+            choose_anew: true,
+            before: Vec::new(),
             precision,
             threads: threads.clone(),
         })
@@ -120,6 +126,11 @@ impl Projected {
     /// The influence coefficients.
     pub fn influence(&self) -> &Influence {
         &self.influence
+    }
+
+    /// The next solve chooses its window by itself, so that its result does not depend, in the last bits, on the solve before.
+    pub fn forget_window(&mut self) {
+        self.choose_anew = true;
     }
 
     /// `u = A p` on the full grid, in double precision.
@@ -132,7 +143,7 @@ impl Projected {
         let of_state = |state: &State| state.p.len() * 25;
         let coarse: usize = self.coarse.iter().map(|level| level.inner.bytes() + of_state(&level.state)).sum();
         let finest = self.finest.as_ref().map_or(0, |w| w.inner.bytes() + w.part.as_ref().map_or(0, of_state));
-        self.operator.bytes() + self.workspace.bytes() + coarse + finest
+        self.operator.bytes() + self.workspace.bytes() + coarse + finest + self.before.len() * size_of::<f64>()
     }
 
     /// Solves from `state`: from its pressures and contact area if `has_start` (then its u must be A p), or else from nothing.
@@ -158,12 +169,14 @@ impl Projected {
         let rule = &rule;
         let (mut best, mut rounds_without_progress) = (f64::INFINITY, 0);
         loop {
-            let before = if rule.by_update { state.p.clone() } else { Vec::new() };
+            if rule.by_update {
+                self.before.clone_from(&state.p);
+            }
             let end = self.iterate(state, rule, u_is_known, monitor)?;
             let certified = self.certify(state, rule, monitor);
             // A small last update proves nothing while u was of single precision, or pressures were owed: then all that
             // is done from a fresh u must come to no more than a small update.
-            let settled = !rule.by_update || u_is_known && rule.holds(state, rms_change(state, &before));
+            let settled = !rule.by_update || u_is_known && rule.holds(state, rms_change(state, &self.before));
             u_is_known = true;
             if certified.holds && settled {
                 return Ok(Stop::Converged);
@@ -254,9 +267,14 @@ impl Projected {
     /// Iterates on the window around the contact area.
     fn iterate(&mut self, state: &mut State, rule: &Rule, u_is_known: bool, monitor: &mut Monitor<'_>) -> Result<End> {
         state.balance_force();
-        let window = Window::around(state, self.finest.as_ref().map(|finest| &finest.window));
-        if self.finest.as_ref().is_none_or(|finest| finest.window != window) {
-            let grid = window.grid(&self.grid);
+        let current = self.finest.as_ref().map(|finest| &finest.window).filter(|_| !self.choose_anew);
+        let window = Window::around(state, current);
+        self.choose_anew = false;
+        let grid = window.grid(&self.grid);
+        // The operator of a window depends on its size only.
+        if let Some(finest) = self.finest.as_mut().filter(|finest| finest.window.grid(&self.grid) == grid) {
+            finest.window = window;
+        } else {
             let inner = Inner::new(&self.influence, &grid, self.precision, &self.threads)?;
             let part = if window.is_full(&self.grid) {
                 None
