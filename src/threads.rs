@@ -1,7 +1,8 @@
-//! The threads of one solve: none but the caller's own, or a pool of ours.
+//! The threads of one solve, or of a batch of solves: none but the caller's own, or a pool of ours.
 //!
 //! Pools are made when first asked for and shared by all solves of a process. Each is stamped with the process id: after
-//! a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are not there.
+//! a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are not there; so does
+//! an operator that was set up before the fork.
 //! Work is cut into pieces whose results do not depend on who computes them, so that the answer has the same bits for
 //! any number of threads.
 
@@ -17,20 +18,22 @@ pub enum Threads {
     /// The calling thread.
     #[default]
     One,
-    /// A pool of our own with this many workers.
-    Pool(Arc<rayon::ThreadPool>),
+    /// A pool of our own.
+    Pool(Pool),
+}
+
+/// A pool, and the process that has its workers.
+#[derive(Clone)]
+pub struct Pool {
+    process: u32,
+    count: usize,
+    workers: Arc<rayon::ThreadPool>,
 }
 
 /// Prefix of the names of our threads.
 pub(crate) const THREAD_NAME: &str = "contact-normal-";
 
-struct Stamped {
-    process: u32,
-    count: usize,
-    pool: Arc<rayon::ThreadPool>,
-}
-
-static POOLS: Mutex<Vec<Stamped>> = Mutex::new(Vec::new());
+static POOLS: Mutex<Vec<Pool>> = Mutex::new(Vec::new());
 
 impl Threads {
     /// `count` threads; 0: as many as the machine has cores.
@@ -45,31 +48,43 @@ impl Threads {
         let process = std::process::id();
         let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = pools.iter().find(|known| known.process == process && known.count == count) {
-            return Ok(Threads::Pool(known.pool.clone()));
+            return Ok(Threads::Pool(known.clone()));
         }
         // Pools of a parent process have no workers here, and dropping one would wait for them: forget it.
         pools.retain_mut(|known| {
             let ours = known.process == process;
             if !ours {
-                std::mem::forget(known.pool.clone());
+                std::mem::forget(known.workers.clone());
             }
             ours
         });
-        let pool = rayon::ThreadPoolBuilder::new()
+        let workers = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|i| format!("{THREAD_NAME}{i}"))
             .build()
             .map_err(|e| Error::OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
-        let pool = Arc::new(pool);
-        pools.push(Stamped { process, count, pool: pool.clone() });
+        let pool = Pool { process, count, workers: Arc::new(workers) };
+        pools.push(pool.clone());
         Ok(Threads::Pool(pool))
+    }
+
+    /// The workers; none: the calling thread works. After a fork they are those of a new pool.
+    fn workers(&self) -> Option<Arc<rayon::ThreadPool>> {
+        match self {
+            Threads::One => None,
+            Threads::Pool(pool) if pool.process == std::process::id() => Some(pool.workers.clone()),
+            Threads::Pool(pool) => match Threads::new(pool.count) {
+                Ok(Threads::Pool(pool)) => Some(pool.workers),
+                _ => None,
+            },
+        }
     }
 
     /// Number of threads.
     pub fn count(&self) -> usize {
         match self {
             Threads::One => 1,
-            Threads::Pool(pool) => pool.current_num_threads(),
+            Threads::Pool(pool) => pool.count,
         }
     }
 
@@ -83,10 +98,10 @@ impl Threads {
 
     /// Runs `work(k, scratch)` on each of the pieces' scratch.
     pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
-        match self {
-            Threads::One => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
-            Threads::Pool(pool) => {
-                pool.install(|| scratch.par_iter_mut().enumerate().for_each(|(k, s)| work(k, s)));
+        match self.workers() {
+            None => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
+            Some(workers) => {
+                workers.install(|| scratch.par_iter_mut().enumerate().for_each(|(k, s)| work(k, s)));
             }
         }
     }
@@ -106,11 +121,11 @@ impl Threads {
             }
         };
         let length = rows_per_piece * row_length;
-        match self {
-            Threads::One => {
+        match self.workers() {
+            None => {
                 data.chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
             }
-            Threads::Pool(pool) => pool.install(|| {
+            Some(workers) => workers.install(|| {
                 data.par_chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
             }),
         }
