@@ -180,7 +180,12 @@ unsafe impl Versioned for contact_normal_report {
 
 impl contact_normal_report {
     /// The values of a report, and the ledger of the caller's.
-    pub(super) fn of(report: &Report, ledger: *mut contact_normal_ledger_row, ledger_capacity: i64) -> Self {
+    pub(super) fn of(
+        report: &Report,
+        ledger_rows: usize,
+        ledger: *mut contact_normal_ledger_row,
+        ledger_capacity: i64,
+    ) -> Self {
         let (measures, certificate) = (&report.measures, &report.measures.certificate);
         Self {
             struct_size: size_of::<Self>() as i64,
@@ -205,7 +210,7 @@ impl contact_normal_report {
             setup_seconds: report.setup_seconds,
             solve_seconds: report.solve_seconds,
             bytes: report.bytes as i64,
-            ledger_rows: report.ledger.len() as i64,
+            ledger_rows: ledger_rows as i64,
             ledger_capacity,
             ledger,
         }

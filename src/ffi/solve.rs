@@ -122,12 +122,14 @@ impl Outputs {
         if self.report.is_null() {
             return Ok(());
         }
-        for (row, i) in report.ledger.iter().zip(0..self.ledger_capacity as usize) {
+        let rows = solver.ledger();
+        for (row, i) in rows.iter().zip(0..self.ledger_capacity as usize) {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             unsafe { self.ledger.add(i).write(row.into()) };
         }
+        let report = contact_normal_report::of(report, rows.len(), self.ledger, self.ledger_capacity);
         // SAFETY: not null: a struct that declares its size.
-        unsafe { structs::write(self.report, &contact_normal_report::of(report, self.ledger, self.ledger_capacity)) }
+        unsafe { structs::write(self.report, &report) }
     }
 }
 

@@ -1,23 +1,66 @@
 //! The exact solve on the coarsest grid: Gaussian elimination restricted to the contact area.
 
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::Mat;
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::prelude::ReborrowMut;
+use faer::{Conj, MatMut, Par};
 
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::dense;
 
-/// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
-pub fn solve(influence: &Influence, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
-    x.fill(0.0);
-    let elements: Vec<usize> = (0..grid.len()).filter(|&i| contact[i]).collect();
-    if elements.is_empty() {
-        return;
+/// The elimination, and memory for as many elements as it has met so far.
+pub struct Coarsest {
+    elements: Vec<usize>,
+    matrix: Vec<f64>,
+    right: Vec<f64>,
+    permutation: Vec<usize>,
+    inverse: Vec<usize>,
+    scratch: MemBuffer,
+}
+
+impl Coarsest {
+    /// No memory yet.
+    pub fn new() -> Coarsest {
+        Coarsest {
+            elements: Vec::new(),
+            matrix: Vec::new(),
+            right: Vec::new(),
+            permutation: Vec::new(),
+            inverse: Vec::new(),
+            scratch: MemBuffer::new(StackReq::EMPTY),
+        }
     }
-    let factors: PartialPivLu<f64> = dense::matrix(influence, grid, &elements).partial_piv_lu();
-    let mut solution = Mat::from_fn(elements.len(), 1, |row, _| b[elements[row]]);
-    factors.solve_in_place(&mut solution);
-    for (row, &i) in elements.iter().enumerate() {
-        x[i] = solution[(row, 0)];
+
+    /// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
+    pub fn solve(&mut self, influence: &Influence, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
+        x.fill(0.0);
+        self.elements.clear();
+        self.elements.extend((0..grid.len()).filter(|&i| contact[i]));
+        let n = self.elements.len();
+        if n == 0 {
+            return;
+        }
+        dense::fill_matrix(influence, grid, &self.elements, &mut self.matrix);
+        self.right.clear();
+        self.right.extend(self.elements.iter().map(|&i| b[i]));
+        if self.permutation.len() < n {
+            self.permutation.resize(n, 0);
+            self.inverse.resize(n, 0);
+            self.scratch = MemBuffer::new(StackReq::any_of(&[
+                factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default()),
+                solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq),
+            ]));
+        }
+        let stack = MemStack::new(&mut self.scratch);
+        let (permutation, inverse) = (&mut self.permutation[..n], &mut self.inverse[..n]);
+        let mut matrix = MatMut::from_column_major_slice_mut(&mut self.matrix, n, n);
+        let (_, rows) = factor::lu_in_place(matrix.rb_mut(), permutation, inverse, Par::Seq, stack, Default::default());
+        let right = MatMut::from_column_major_slice_mut(&mut self.right, n, 1);
+        let factors = matrix.as_ref();
+        solve::solve_in_place_with_conj(factors, factors, rows, Conj::No, right, Par::Seq, stack);
+        for (&i, value) in self.elements.iter().zip(&self.right) {
+            x[i] = *value;
+        }
     }
 }

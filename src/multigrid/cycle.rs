@@ -4,8 +4,9 @@
 //! the cycle is linear in d, and these are the iterates of a cycle that starts at p; the FFT smoother chooses its step
 //! lengths by d.
 
+use super::coarsest::Coarsest;
 use super::smoother::{Smoother, SmootherKind};
-use super::{coarsest, transfer, Hierarchy};
+use super::{transfer, Hierarchy};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -49,6 +50,7 @@ pub struct Multigrid {
     pub hierarchy: Hierarchy,
     shape: CycleShape,
     unknowns: Vec<Unknowns>,
+    coarsest: Coarsest,
     /// Matrix products done by cycles, per level, since the last [`take_products`](Self::take_products).
     products: Vec<u64>,
 }
@@ -70,7 +72,7 @@ impl Multigrid {
             });
         }
         let products = vec![0; hierarchy.levels.len()];
-        Ok(Multigrid { hierarchy, shape, unknowns, products })
+        Ok(Multigrid { hierarchy, shape, unknowns, coarsest: Coarsest::new(), products })
     }
 
     /// Number of levels; level 0 is the finest.
@@ -78,10 +80,9 @@ impl Multigrid {
         self.unknowns.len()
     }
 
-    /// Products done by the cycles since the last call, per level.
-    pub fn take_products(&mut self) -> Vec<u64> {
-        let none = vec![0; self.products.len()];
-        std::mem::replace(&mut self.products, none)
+    /// Products done on level `l` since the last call.
+    pub fn take_products(&mut self, l: usize) -> u64 {
+        std::mem::take(&mut self.products[l])
     }
 
     /// `u = A p` on level `l`.
@@ -120,7 +121,7 @@ impl Multigrid {
         let level = &self.hierarchy.levels[l];
         if l + 1 == self.depth() {
             let Unknowns { correction, defect, contact, .. } = &mut self.unknowns[l];
-            coarsest::solve(&level.influence, &level.grid, contact, defect, correction);
+            self.coarsest.solve(&level.influence, &level.grid, contact, defect, correction);
             return;
         }
 

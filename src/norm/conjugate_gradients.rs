@@ -8,6 +8,7 @@
 
 use crate::active_set::{norm_of_distance, State};
 use crate::error::{Error, Result};
+use crate::norm::Workspace;
 use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
@@ -42,6 +43,7 @@ pub struct Inner {
 pub fn conjugate_gradients(
     state: &mut State,
     stop: InnerStop,
+    workspace: &mut Workspace,
     mut displace: impl FnMut(&[f64], &mut [f64]),
     mut go_on: impl FnMut(f64, f64) -> bool,
 ) -> Result<Inner> {
@@ -62,12 +64,13 @@ pub fn conjugate_gradients(
             values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
         }
     };
-    let mut r: Vec<f64> =
-        (0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }).collect();
-    project(&mut r);
-    let mut direction = r.clone();
-    let mut product = vec![0.0; n];
-    let mut rr: f64 = dot(&r, &r);
+    let Workspace { residual: r, direction, product, .. } = workspace;
+    r.clear();
+    r.extend((0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }));
+    project(r);
+    direction.clone_from(r);
+    product.resize(n, 0.0);
+    let mut rr: f64 = dot(r, r);
     let mut inner = Inner::default();
     // Residuals are differences of these; a smaller one is noise, and so is its curvature.
     let terms = |i: usize| (state.approach - state.h[i]).abs() + state.u[i].abs();
@@ -78,30 +81,30 @@ pub fn conjugate_gradients(
             // On few elements the solution is exact after few iterations, the last of which was no small update.
             return Ok(Inner { update: 0.0, met: true, ..inner });
         }
-        displace(&direction, &mut product);
-        project(&mut product);
+        displace(direction, product);
+        project(product);
         inner.iterations += 1;
-        let curvature = dot(&direction, &product);
+        let curvature = dot(direction, product);
         if !(curvature > 0.0) {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence coefficients: p'Ap is {curvature} for some pressures p; it must be positive"
             )));
         }
         let step = rr / curvature;
-        for (p, d) in state.p.iter_mut().zip(&direction) {
+        for (p, d) in state.p.iter_mut().zip(&*direction) {
             *p += step * d;
         }
-        for (r, q) in r.iter_mut().zip(&product) {
+        for (r, q) in r.iter_mut().zip(&*product) {
             *r -= step * q;
         }
-        let before = std::mem::replace(&mut rr, dot(&r, &r));
-        inner.update = step.abs() * (dot(&direction, &direction) / count).sqrt();
+        let before = std::mem::replace(&mut rr, dot(r, r));
+        inner.update = step.abs() * (dot(direction, direction) / count).sqrt();
         let met = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt() && stop.update > 0.0;
         if !go_on(inner.update, rr.sqrt()) || met {
             inner.met = met;
             return Ok(inner);
         }
-        for (d, r) in direction.iter_mut().zip(&r) {
+        for (d, r) in direction.iter_mut().zip(&*r) {
             *d = r + rr / before * *d;
         }
     }

@@ -10,3 +10,12 @@ mod minimal_residual;
 
 pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
 pub use minimal_residual::minimal_residual;
+
+/// Memory for inner solves, kept from one to the next.
+#[derive(Default)]
+pub struct Workspace {
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    product: Vec<f64>,
+    krylov: minimal_residual::Krylov,
+}

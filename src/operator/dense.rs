@@ -1,8 +1,6 @@
 //! `u = A p` by direct summation: the naive twin of [`Toeplitz`](super::Toeplitz), the oracle of its tests, and the
 //! matrix of the small systems that are factorised.
 
-use faer::Mat;
-
 use crate::grid::Grid;
 use crate::influence::Influence;
 
@@ -31,13 +29,16 @@ pub fn apply(influence: &Influence, grid: &Grid, p: &[f64], u: &mut [f64]) {
     }
 }
 
-/// The matrix of the elements with the indices `elements` only.
-pub fn matrix(influence: &Influence, grid: &Grid, elements: &[usize]) -> Mat<f64> {
+/// The matrix of the elements with the indices `elements` only, column by column.
+pub fn fill_matrix(influence: &Influence, grid: &Grid, elements: &[usize], matrix: &mut Vec<f64>) {
+    matrix.clear();
+    matrix.reserve(elements.len() * elements.len());
     let offset = |i: usize, j: usize| {
-        let (i, j) = (elements[i], elements[j]);
         let x = (i % grid.mx) as i64 - (j % grid.mx) as i64;
         let y = (i / grid.mx) as i64 - (j / grid.mx) as i64;
         influence.at(x, y)
     };
-    Mat::from_fn(elements.len(), elements.len(), offset)
+    for &j in elements {
+        matrix.extend(elements.iter().map(|&i| offset(i, j)));
+    }
 }

@@ -12,12 +12,22 @@ use crate::scene::Load;
 /// Cycles at most on the coarser grids: they only prepare the next finer one.
 const COARSE_CYCLES: u64 = 30;
 
+/// Memory of the methods, kept from one solve to the next; none before a method asks for it.
+#[derive(Default)]
+pub struct Workspace {
+    /// NORM's.
+    pub norm: norm_method::Workspace,
+    /// That of cycles in an active-set loop.
+    pub cycles: multigrid_method::Workspace,
+}
+
 /// Solves on all grids; `states[0]` is the finest. `error_ratio` as in the options.
 pub fn solve(
     multigrid: &mut Multigrid,
     states: &mut [State],
     rule: &Rule,
     error_ratio: f64,
+    workspace: &mut Workspace,
     monitor: &mut Monitor<'_>,
 ) -> Result<Stop> {
     let coarsest = states.len() - 1;
@@ -35,14 +45,13 @@ pub fn solve(
     // The coarsest grid, by NORM.
     monitor.enter_grid();
     let level = &multigrid.hierarchy.levels[coarsest];
-    let (influence, work) = (level.influence.clone(), multigrid.hierarchy.work(coarsest));
-    states[coarsest].start(influence.at(0, 0));
-    let symmetric = influence.is_symmetric(&level.grid);
+    let (symmetric, work) = (level.influence.is_symmetric(&level.grid), multigrid.hierarchy.work(coarsest));
+    states[coarsest].start(level.influence.at(0, 0));
     let mut displace = |p: &[f64], u: &mut [f64]| multigrid.displace(coarsest, p, u);
     let norm_rule = if coarsest == 0 { *rule } else { Rule { max_cycles: rule.max_cycles.max(1000), ..*rule } };
     let by = Displace { product: &mut displace, work, symmetric };
-    let mut stop = norm_method::solve(&mut states[coarsest], by, &norm_rule, monitor)?;
-    multigrid.take_products();
+    let mut stop = norm_method::solve(&mut states[coarsest], by, &norm_rule, &mut workspace.norm, monitor)?;
+    multigrid.take_products(coarsest);
 
     // Each finer grid, from the pressures of the coarser one.
     for l in (0..coarsest).rev() {
@@ -64,7 +73,7 @@ pub fn solve(
         if l == 0 && error_ratio > 0.0 {
             level_rule.tolerance = level_rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
         }
-        stop = multigrid_method::solve(multigrid, l, state, &level_rule, monitor);
+        stop = multigrid_method::solve(multigrid, l, state, &level_rule, &mut workspace.cycles, monitor);
     }
     Ok(stop)
 }

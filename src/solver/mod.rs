@@ -1,8 +1,9 @@
 //! How a scene is solved: the options, the methods, the report.
 //!
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
-//! undeformed distances and loads on it. [`solve`] does both in one call.
+//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
+mod batch;
 mod full_multigrid;
 mod monitor;
 mod multigrid_method;
@@ -13,6 +14,7 @@ mod report;
 
 use std::time::Instant;
 
+pub use batch::Problem;
 pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 pub use report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
@@ -39,18 +41,30 @@ pub struct Guess<'a> {
 }
 
 /// Operators and grids for many solves on one grid and one pair of bodies. One thread at a time.
+///
+/// A solve from nothing or from a given guess has the same result, to the last bit, whatever was solved before. After a first
+/// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for one
+/// thing: PROJECTED_CG (and AUTO) work on a window around the contact area, whose operator is set up anew when its size
+/// changes.
 pub struct Solver {
     grid: Grid,
     bodies: Bodies,
     has_own_influence: bool,
     symmetric: bool,
     shape: CycleShape,
-    threads: usize,
+    precision: Precision,
+    /// As asked for in the options.
+    thread_count: usize,
+    threads: Threads,
     projected: Projected,
     /// Made when a method first asks for it.
     multigrid: Option<Multigrid>,
     /// The finest grid's, then one per coarser grid of `multigrid`.
     states: Vec<State>,
+    workspace: full_multigrid::Workspace,
+    ledger: Vec<LedgerRow>,
+    /// For batches: solvers of one thread, made when first needed.
+    workers: Vec<Option<Solver>>,
     solved_before: bool,
     setup_seconds: f64,
 }
@@ -78,10 +92,15 @@ impl Solver {
             has_own_influence: scene.influence.is_some(),
             symmetric: influence.is_symmetric(&scene.grid),
             shape: options.cycle_shape(),
-            threads: options.threads,
+            precision: options.precision,
+            thread_count: options.threads,
+            threads,
             projected,
             multigrid: None,
             states: vec![State::new(scene.grid, h, scene.load, 0.0)?],
+            workspace: full_multigrid::Workspace::default(),
+            ledger: Vec::new(),
+            workers: Vec::new(),
             solved_before: false,
             setup_seconds: began.elapsed().as_secs_f64(),
         })
@@ -97,22 +116,11 @@ impl Solver {
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
         self.check_range(scene)?;
-        let mut monitor = Monitor::new(progress, Vec::with_capacity(self.states.len()));
-        let rule = Rule {
-            tolerance: options.tolerance,
-            by_update: options.criterion == Criterion::Update,
-            fixed: options.active_set == ActiveSet::Fixed,
-            max_cycles: options.max_cycles as u64,
-        };
-        let has_start = self.start(scene, options, guess)?;
-        let stop = if self.without_contact(scene.load, rule.fixed) {
-            Stop::Converged
-        } else {
-            self.run(options, &rule, has_start, &mut monitor)?
-        };
-        self.solved_before = true;
-        monitor.close_grid(&self.states[0]);
-        let mut report = monitor.report();
+        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger));
+        let outcome = self.start_and_run(scene, options, guess, &mut monitor);
+        let (mut report, ledger) = monitor.finish();
+        self.ledger = ledger;
+        let stop = outcome?;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         log::info!(
@@ -127,9 +135,38 @@ impl Solver {
         Ok((stop, report))
     }
 
+    fn start_and_run(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let rule = Rule {
+            tolerance: options.tolerance,
+            by_update: options.criterion == Criterion::Update,
+            fixed: options.active_set == ActiveSet::Fixed,
+            max_cycles: options.max_cycles as u64,
+        };
+        let has_start = self.start(scene, options, guess)?;
+        let stop = if self.without_contact(scene.load, rule.fixed) {
+            Stop::Converged
+        } else {
+            self.run(options, &rule, has_start, monitor)?
+        };
+        self.solved_before = true;
+        monitor.close_grid(&self.states[0]);
+        Ok(stop)
+    }
+
     /// The result: pressures, displacements, contact area and approach.
     pub fn state(&self) -> &State {
         &self.states[0]
+    }
+
+    /// What the last solve knew when: one row per grid, coarsest first.
+    pub fn ledger(&self) -> &[LedgerRow] {
+        &self.ledger
     }
 
     /// The influence coefficients in use.
@@ -144,7 +181,7 @@ impl Solver {
 
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
         scene.check_distance_and_load()?;
-        options.check()?;
+        self.check_options(options)?;
         if scene.grid != self.grid {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
         }
@@ -155,7 +192,12 @@ impl Solver {
         if scene.influence.is_some() && !self.has_own_influence {
             return invalid("influence is given, but this solver was set up for the half-space".into());
         }
-        if options.cycle_shape() != self.shape || options.threads != self.threads {
+        Ok(())
+    }
+
+    fn check_options(&self, options: &Options) -> Result<()> {
+        options.check()?;
+        if options.cycle_shape() != self.shape || options.threads != self.thread_count {
             return invalid(
                 "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
             );
@@ -314,13 +356,14 @@ impl Solver {
         let (projected, state) = (&mut self.projected, &mut self.states[0]);
         let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
         let by = Displace { product: &mut displace, work: 1.0, symmetric: self.symmetric };
-        norm_method::solve(state, by, rule, monitor)
+        norm_method::solve(state, by, rule, &mut self.workspace.norm, monitor)
     }
 
     fn multigrid(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
         self.set_up_multigrid()?;
         let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
-        Ok(multigrid_method::solve(multigrid, 0, &mut self.states[0], rule, monitor))
+        let workspace = &mut self.workspace.cycles;
+        Ok(multigrid_method::solve(multigrid, 0, &mut self.states[0], rule, workspace, monitor))
     }
 
     fn full_multigrid(
@@ -335,14 +378,13 @@ impl Solver {
         }
         self.set_up_multigrid()?;
         let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
-        full_multigrid::solve(multigrid, &mut self.states, rule, options.error_ratio, monitor)
+        full_multigrid::solve(multigrid, &mut self.states, rule, options.error_ratio, &mut self.workspace, monitor)
     }
 
     fn set_up_multigrid(&mut self) -> Result<()> {
         if self.multigrid.is_none() {
             let began = Instant::now();
-            let threads = Threads::new(self.threads)?;
-            let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &threads)?;
+            let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &self.threads)?;
             for level in &multigrid.hierarchy.levels[1..] {
                 let h = zeros(level.grid.len(), "undeformed distances")?;
                 let load = self.states[0].load;
@@ -356,7 +398,8 @@ impl Solver {
 
     fn bytes(&self) -> usize {
         let states: usize = self.states.iter().map(|state| state.p.len() * 25).sum();
-        self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states
+        let workers: usize = self.workers.iter().flatten().map(Solver::bytes).sum();
+        self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states + workers
     }
 }
 

@@ -52,8 +52,9 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// The clock starts.
-    pub fn new(callback: Option<ProgressCallback<'a>>, ledger: Vec<LedgerRow>) -> Monitor<'a> {
+    /// The clock starts. `ledger` lends its memory.
+    pub fn new(callback: Option<ProgressCallback<'a>>, mut ledger: Vec<LedgerRow>) -> Monitor<'a> {
+        ledger.clear();
         Monitor {
             began: Instant::now(),
             callback,
@@ -149,10 +150,10 @@ impl<'a> Monitor<'a> {
         }
     }
 
-    /// The report of the whole solve, whose last ledger row is the finest grid's.
-    pub fn report(self) -> Report {
+    /// The report of the whole solve, whose last ledger row is the finest grid's, and the ledger.
+    pub fn finish(self) -> (Report, Vec<LedgerRow>) {
         let last = self.ledger.last().copied();
-        Report {
+        let report = Report {
             cycles: self.cycles,
             active_set_changes: self.active_set_changes,
             active_set_steps: self.active_set_steps,
@@ -162,9 +163,9 @@ impl<'a> Monitor<'a> {
             measures: last.map(|row| row.measures).unwrap_or_default(),
             error: last.map(|row| row.error).unwrap_or_default(),
             solve_seconds: self.began.elapsed().as_secs_f64(),
-            ledger: self.ledger,
             ..Report::default()
-        }
+        };
+        (report, self.ledger)
     }
 }
 

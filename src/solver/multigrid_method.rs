@@ -11,11 +11,27 @@ const PATIENCE: u32 = 50;
 /// Cycles in which the criterion holds but elements still change sides, after which the certificate decides.
 const CHATTER: u32 = 5;
 
+/// Memory for solves, kept from one to the next.
+#[derive(Default)]
+pub struct Workspace {
+    residual: Vec<f64>,
+    best: Best,
+    unit: UnitApproach,
+}
+
 /// Steps 2 to 6 on level `l`, from a state whose contact area is chosen (step 1) and whose u is A p.
-pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Stop {
-    let mut residual = vec![0.0; state.p.len()];
-    let mut best = Best::new(state);
-    let mut unit = UnitApproach::default();
+pub fn solve(
+    multigrid: &mut Multigrid,
+    l: usize,
+    state: &mut State,
+    rule: &Rule,
+    workspace: &mut Workspace,
+    monitor: &mut Monitor<'_>,
+) -> Stop {
+    let Workspace { residual, best, unit } = workspace;
+    residual.resize(state.p.len(), 0.0);
+    best.begin(state);
+    unit.begin();
     let mut chatter = 0;
     loop {
         if monitor.cycles >= rule.max_cycles {
@@ -31,11 +47,11 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
             if unit.contact != state.contact {
                 unit.find(multigrid, l, &state.contact);
             }
-            let correction = multigrid.cycle(l, &residual, &state.contact);
+            let correction = multigrid.cycle(l, residual, &state.contact);
             let carried: f64 = state.p.iter().zip(correction).map(|(p, v)| p + v).sum();
             unit.amount = (force / state.grid.element_area() - carried) / unit.response.iter().sum::<f64>();
         } else {
-            multigrid.cycle(l, &residual, &state.contact);
+            multigrid.cycle(l, residual, &state.contact);
         }
         let correction = multigrid.correction(l);
         let unit_response = |i: usize| if unit.amount.is_finite() { unit.amount * unit.response[i] } else { 0.0 };
@@ -61,8 +77,8 @@ pub fn solve(multigrid: &mut Multigrid, l: usize, state: &mut State, rule: &Rule
         // 4.2 Elements with e <= 0 enter.
         changed += if rule.fixed { 0 } else { admit(state) };
 
-        for (level, products) in multigrid.take_products().into_iter().enumerate() {
-            let work = multigrid.hierarchy.work(level);
+        for level in 0..multigrid.depth() {
+            let (products, work) = (multigrid.take_products(level), multigrid.hierarchy.work(level));
             if level == l {
                 monitor.count_products(products, work);
             } else {
@@ -103,35 +119,47 @@ fn refresh(state: &mut State, multigrid: &mut Multigrid, l: usize) {
 /// energy (v, A v)/2 - (1, v) from v = 0, the sum of the response is positive, so the step exists.
 #[derive(Default)]
 struct UnitApproach {
+    /// The contact area that the response is for; empty: none yet.
     contact: Vec<bool>,
+    /// Empty with a prescribed approach.
     response: Vec<f64>,
-    /// A response, if it is a by-product of the cycle.
-    product: Option<Vec<f64>>,
+    /// A response; empty unless it is a by-product of the cycle.
+    product: Vec<f64>,
+    ones: Vec<f64>,
     amount: f64,
 }
 
 impl UnitApproach {
+    fn begin(&mut self) {
+        self.contact.clear();
+        self.response.clear();
+        self.product.clear();
+    }
+
     fn find(&mut self, multigrid: &mut Multigrid, l: usize, contact: &[bool]) {
-        self.contact = contact.to_vec();
-        self.response = multigrid.cycle(l, &vec![1.0; contact.len()], contact).to_vec();
-        self.product = multigrid.correction_product(l).map(<[f64]>::to_vec);
+        fn copy<A: Copy>(from: &[A], to: &mut Vec<A>) {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+        copy(contact, &mut self.contact);
+        self.ones.resize(contact.len(), 1.0);
+        copy(multigrid.cycle(l, &self.ones, contact), &mut self.response);
+        copy(multigrid.correction_product(l).unwrap_or_default(), &mut self.product);
     }
 
     /// u = u + A v + amount * A response, from `A v` if that is known; whether it is.
     fn displace(&self, product: Option<&[f64]>, u: &mut [f64]) -> bool {
         let Some(product) = product else { return false };
         u.iter_mut().zip(product).for_each(|(u, value)| *u += value);
-        match &self.product {
-            Some(product) if self.amount.is_finite() => {
-                u.iter_mut().zip(product).for_each(|(u, value)| *u += self.amount * value);
-            }
-            _ => {}
+        if self.amount.is_finite() {
+            u.iter_mut().zip(&self.product).for_each(|(u, value)| *u += self.amount * value);
         }
         true
     }
 }
 
 /// The best iterate so far.
+#[derive(Default)]
 struct Best {
     residual: f64,
     since: u32,
@@ -140,8 +168,10 @@ struct Best {
 }
 
 impl Best {
-    fn new(state: &State) -> Best {
-        Best { residual: f64::INFINITY, since: 0, p: state.p.clone(), contact: state.contact.clone() }
+    fn begin(&mut self, state: &State) {
+        (self.residual, self.since) = (f64::INFINITY, 0);
+        self.p.clone_from(&state.p);
+        self.contact.clone_from(&state.contact);
     }
 
     /// Notes an iterate; true when there has been no better one for too long, or this one is no longer a number.
@@ -157,9 +187,9 @@ impl Best {
         self.since > PATIENCE || !residual.is_finite()
     }
 
-    fn restore(self, state: &mut State, multigrid: &mut Multigrid, l: usize) {
-        state.p = self.p;
-        state.contact = self.contact;
+    fn restore(&self, state: &mut State, multigrid: &mut Multigrid, l: usize) {
+        state.p.copy_from_slice(&self.p);
+        state.contact.copy_from_slice(&self.contact);
         multigrid.displace(l, &state.p, &mut state.u);
         state.fit_approach();
     }

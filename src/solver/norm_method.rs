@@ -4,11 +4,20 @@ use super::monitor::{Monitor, Rule};
 use super::report::Stop;
 use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, ExchangeGuard, State};
 use crate::error::Result;
-use crate::norm::{conjugate_gradients, minimal_residual, Inner, InnerStop};
+use crate::norm::{self, conjugate_gradients, minimal_residual, Inner, InnerStop};
 use crate::scene::Load;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
+
+/// Memory for solves, kept from one to the next.
+#[derive(Default)]
+pub struct Workspace {
+    inner: norm::Workspace,
+    p: Vec<f64>,
+    u: Vec<f64>,
+    contact: Vec<bool>,
+}
 
 /// The operator as NORM sees it.
 pub struct Displace<'a> {
@@ -30,7 +39,13 @@ impl Displace<'_> {
 
 /// Solves from the state's contact area (step 1). If the state holds pressures (and u = A p), the first inner solve starts
 /// from them; every further one starts from p = 0, as in the paper.
-pub fn solve(state: &mut State, mut by: Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
+pub fn solve(
+    state: &mut State,
+    mut by: Displace<'_>,
+    rule: &Rule,
+    workspace: &mut Workspace,
+    monitor: &mut Monitor<'_>,
+) -> Result<Stop> {
     let mut guard = ExchangeGuard::default();
     let mut warm = state.p.iter().any(|p| *p != 0.0);
     let mut restarts = 0;
@@ -44,7 +59,7 @@ pub fn solve(state: &mut State, mut by: Displace<'_>, rule: &Rule, monitor: &mut
                 by.displace(state, monitor);
             }
         }
-        let inner = inner_solve(state, &mut by, rule, monitor)?;
+        let inner = inner_solve(state, &mut by, rule, &mut workspace.inner, monitor)?;
         by.displace(state, monitor);
         monitor.active_set_steps += 1;
         if monitor.is_cancelled() || (monitor.cycles >= rule.max_cycles && !inner.met) {
@@ -86,7 +101,7 @@ pub fn solve(state: &mut State, mut by: Displace<'_>, rule: &Rule, monitor: &mut
         if guard.allows_all(violators) {
             admit(state);
             truncate(state);
-        } else if settled(state, &mut by, rule, monitor) {
+        } else if settled(state, &mut by, rule, workspace, monitor) {
             return Ok(Stop::Converged);
         } else if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, i)) {
             state.contact[i] = !state.contact[i];
@@ -101,8 +116,17 @@ pub fn solve(state: &mut State, mut by: Displace<'_>, rule: &Rule, monitor: &mut
 
 /// Whether the violations are within the tolerance: p truncated satisfies the equations, and nothing penetrates. If so the
 /// truncated state stays; if not, the state is as it was.
-fn settled(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) -> bool {
-    let (p, contact, u, approach) = (state.p.clone(), state.contact.clone(), state.u.clone(), state.approach);
+fn settled(
+    state: &mut State,
+    by: &mut Displace<'_>,
+    rule: &Rule,
+    before: &mut Workspace,
+    monitor: &mut Monitor<'_>,
+) -> bool {
+    before.p.clone_from(&state.p);
+    before.u.clone_from(&state.u);
+    before.contact.clone_from(&state.contact);
+    let approach = state.approach;
     truncate(state);
     state.balance_force();
     by.displace(state, monitor);
@@ -111,11 +135,20 @@ fn settled(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut 
     if residual_norm(state) <= rule.tolerance * h && certify(state).penetration <= rule.tolerance * scale {
         return true;
     }
-    (state.p, state.contact, state.u, state.approach) = (p, contact, u, approach);
+    state.p.copy_from_slice(&before.p);
+    state.u.copy_from_slice(&before.u);
+    state.contact.copy_from_slice(&before.contact);
+    state.approach = approach;
     false
 }
 
-fn inner_solve(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Inner> {
+fn inner_solve(
+    state: &mut State,
+    by: &mut Displace<'_>,
+    rule: &Rule,
+    workspace: &mut norm::Workspace,
+    monitor: &mut Monitor<'_>,
+) -> Result<Inner> {
     if state.contact_count() == 0 {
         return Ok(Inner { met: true, ..Inner::default() });
     }
@@ -132,9 +165,9 @@ fn inner_solve(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &
     };
     let go_on = |update: f64, residual: f64| monitor.cycle_done(&grid, 0, update, residual / h);
     let inner = if by.symmetric {
-        conjugate_gradients(state, stop, product, go_on)?
+        conjugate_gradients(state, stop, workspace, product, go_on)?
     } else {
-        minimal_residual(state, stop, product, go_on)?
+        minimal_residual(state, stop, workspace, product, go_on)?
     };
     monitor.count_products(products, by.work);
     monitor.update = inner.update;

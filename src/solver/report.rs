@@ -84,8 +84,8 @@ pub struct LedgerRow {
     pub error: DiscretisationError,
 }
 
-/// What a solve found and what it cost.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// What a solve found and what it cost; grid by grid: [`Solver::ledger`](super::Solver::ledger).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
     pub cycles: u64,
@@ -109,6 +109,4 @@ pub struct Report {
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,
-    /// One row per grid, coarsest first.
-    pub ledger: Vec<LedgerRow>,
 }

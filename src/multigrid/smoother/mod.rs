@@ -11,7 +11,6 @@ pub use gauss_seidel::GaussSeidel;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::zeros;
 use crate::threads::Threads;
 
 /// Which smoother.
@@ -45,7 +44,7 @@ pub enum Smoother {
     /// See [`SmootherKind::GaussSeidel`].
     GaussSeidel(GaussSeidel),
     /// See [`SmootherKind::RedBlack`].
-    RedBlack(GaussSeidel, Vec<f64>),
+    RedBlack(GaussSeidel, red_black::Workspace),
     /// See [`SmootherKind::Jacobi`]; the diagonal coefficient.
     Jacobi(f64),
     /// See [`SmootherKind::Fft`].
@@ -58,7 +57,7 @@ impl Smoother {
         Ok(match kind {
             SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(influence, grid)?),
             SmootherKind::RedBlack => {
-                Smoother::RedBlack(GaussSeidel::new(influence, grid)?, zeros(grid.len(), "the smoother")?)
+                Smoother::RedBlack(GaussSeidel::new(influence, grid)?, red_black::Workspace::new(grid)?)
             }
             SmootherKind::Jacobi => Smoother::Jacobi(influence.at(0, 0)),
             SmootherKind::Fft => Smoother::Fft(Box::new(Fft::new(influence, grid, threads)?)),
@@ -83,8 +82,8 @@ impl Smoother {
     ) {
         match self {
             Smoother::GaussSeidel(gauss_seidel) => gauss_seidel.sweep(p, residual, relaxation, |i| contact[i]),
-            Smoother::RedBlack(gauss_seidel, changes) => {
-                red_black::sweep(gauss_seidel, changes, p, residual, contact, relaxation, displace);
+            Smoother::RedBlack(gauss_seidel, workspace) => {
+                red_black::sweep(gauss_seidel, workspace, p, residual, contact, relaxation, displace);
             }
             Smoother::Fft(fft) => fft.sweep(p, residual, contact, relaxation, displace),
             Smoother::Jacobi(diagonal) => jacobi::sweep(*diagonal, p, residual, contact, relaxation),

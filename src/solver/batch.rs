@@ -1,0 +1,117 @@
+//! Many problems at once: whole solves are spread over threads, each on one of them.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::{Guess, InitialGuess, Options, Report, Solver, Stop};
+use crate::active_set::State;
+use crate::error::{invalid, Result};
+use crate::operator::zeros;
+use crate::scene::Scene;
+use crate::solver::projected_method::Projected;
+use crate::threads::Threads;
+
+/// One problem of a batch.
+#[derive(Clone, Debug)]
+pub struct Problem<'a> {
+    /// The undeformed distance and the load; grid, bodies and influence coefficients must be those of the solver.
+    pub scene: Scene<'a>,
+    /// Where to start, if the options say GIVEN, and the contact area if it is FIXED.
+    pub guess: Option<Guess<'a>>,
+}
+
+impl Solver {
+    /// Solves many problems with the same options, as many at a time as the solver was set up with threads; each solve runs on
+    /// one thread. `found(i, outcome, state)` is called for each problem, on the thread that solved it and in no particular
+    /// order, with what [`solve`](Self::solve) returns for it and, if that is no error, its result; what it returns stands at
+    /// `i` of what the batch returns.
+    ///
+    /// A problem that is refused does not keep the others from being solved. Results have the same bits as those of one solve
+    /// after the other with one thread. PREVIOUS is refused: the order of the solves is not known. This solver's own
+    /// [`state`](Self::state) stays as it is.
+    pub fn solve_batch<R: Send>(
+        &mut self,
+        problems: &[Problem<'_>],
+        options: &Options,
+        found: impl Fn(usize, Result<(Stop, Report)>, &State) -> R + Sync + Send,
+    ) -> Result<Vec<R>> {
+        self.check_batch(options)?;
+        let results: Vec<Mutex<Option<R>>> = problems.iter().map(|_| Mutex::new(None)).collect();
+        self.distribute(problems.len(), |i, worker| {
+            let outcome = worker.solve(&problems[i].scene, options, problems[i].guess, None);
+            let result = found(i, outcome, worker.state());
+            *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        })?;
+        let results = results.into_iter().map(|result| result.into_inner().unwrap_or_else(PoisonError::into_inner));
+        // `distribute` has done all of them.
+        Ok(results.flatten().collect())
+    }
+
+    /// Refuses options that no problem of a batch can be solved with.
+    pub(crate) fn check_batch(&self, options: &Options) -> Result<()> {
+        self.check_options(options)?;
+        if options.initial_guess == InitialGuess::Previous {
+            return invalid(
+                "initial_guess is PREVIOUS; in a batch it must be NONE or GIVEN, for the order of the solves is not known"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
+
+    /// Calls `work(i, worker)` for each `i < count` on whichever worker is free.
+    pub(crate) fn distribute(&mut self, count: usize, work: impl Fn(usize, &mut Solver) + Sync + Send) -> Result<()> {
+        let workers = self.threads.count().min(count);
+        let mut crew = std::mem::take(&mut self.workers);
+        if crew.len() < workers {
+            crew.resize_with(workers, || None);
+        }
+        let (next, refusal) = (AtomicUsize::new(0), Mutex::new(None));
+        let foreman = &*self;
+        self.threads.for_each(&mut crew[..workers], |_, worker| {
+            if worker.is_none() {
+                // Where this fails the other workers do its share.
+                match foreman.worker() {
+                    Ok(new) => *worker = Some(new),
+                    Err(error) => *refusal.lock().unwrap_or_else(PoisonError::into_inner) = Some(error),
+                }
+            }
+            let Some(worker) = worker else { return };
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                if i >= count {
+                    return;
+                }
+                work(i, worker);
+            }
+        });
+        self.workers = crew;
+        match refusal.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Some(error) if next.into_inner() < count => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// A solver like this one, of one thread. It accepts the same options.
+    fn worker(&self) -> Result<Solver> {
+        let h = zeros(self.grid.len(), "undeformed distances")?;
+        Ok(Solver {
+            grid: self.grid,
+            bodies: self.bodies,
+            has_own_influence: self.has_own_influence,
+            symmetric: self.symmetric,
+            shape: self.shape,
+            precision: self.precision,
+            thread_count: self.thread_count,
+            threads: Threads::One,
+            projected: Projected::new(&self.grid, self.projected.influence(), self.precision, &Threads::One)?,
+            multigrid: None,
+            states: vec![State::new(self.grid, h, self.states[0].load, 0.0)?],
+            workspace: Default::default(),
+            ledger: Vec::new(),
+            workers: Vec::new(),
+            solved_before: false,
+            setup_seconds: 0.0,
+        })
+    }
+}
