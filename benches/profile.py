@@ -26,12 +26,12 @@ PARTS = [
     ("estimate of the approach", r"State::start|estimate_approach"),
     ("report", r"close_grid|Measures"),
     ("certificate", r"certify|residual_norm"),
-    ("coarse grids, with their set-up", r"nested_start"),
+    ("coarse grids, with their set-up", r"CoarseGrids"),
     ("preconditioner", r"apply_in_place"),
     ("set-up", r"even_spectrum|inverse_circulant|Solver::new|Iteration<T>::new|orkspace<|fill_row|zeros<"),
     ("products", r"\bapply<|apply_rows|::apply"),
     ("products or preconditioner", r"transform_rows|convolve_columns|for_each_block|for_each_row|rustfft|realfft"),
-    ("vector passes", r"Iteration|iterate|projected_cg"),
+    ("vector passes", r"Iteration|iterate|projected_cg|Level"),
 ]
 
 

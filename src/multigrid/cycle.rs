@@ -170,14 +170,15 @@ impl Multigrid {
         let from = &coarser[0].correction;
         if let Smoother::Fft(fft) = smoother {
             let (workspace, products) = (&mut self.hierarchy.workspace, &mut self.products[l]);
-            let fill = |to: &mut [f64]| transfer::interpolate(&level.grid, coarse, from, to, |to, value| *to = value);
+            let fill =
+                |to: &mut [f64]| transfer::interpolate(&level.grid, coarse, |i| from[i], to, |to, value| *to = value);
             fft.correct(correction, residual, contact, fill, |changes, product| {
                 level.operator.apply(changes, product, workspace);
                 *products += 1;
             });
             return;
         }
-        transfer::interpolate(&level.grid, coarse, from, correction, |v, coarse| *v += coarse);
+        transfer::interpolate(&level.grid, coarse, |i| from[i], correction, |v, coarse| *v += coarse);
         for (v, &inside) in correction.iter_mut().zip(&*contact) {
             if !inside {
                 *v = 0.0;

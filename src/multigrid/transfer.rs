@@ -30,12 +30,12 @@ pub fn restrict_defect(fine: &Grid, coarse: &Grid, defect: &[f64], to: &mut [f64
 }
 
 /// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has.
-pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], to: &mut [f64]) {
+pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: impl Fn(usize) -> f64, to: &mut [f64]) {
     for iy in 0..coarse.my {
         for ix in 0..coarse.mx {
             let (mut sum, mut count) = (0.0, 0.0);
-            for i in children(fine, coarse, ix, iy).filter(|&i| h[i].is_finite()) {
-                sum += h[i];
+            for h in children(fine, coarse, ix, iy).map(&h).filter(|h| h.is_finite()) {
+                sum += h;
                 count += 1.0;
             }
             to[coarse.index(ix, iy)] = if count > 0.0 { sum / count } else { f64::INFINITY };
@@ -58,12 +58,48 @@ pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [
 }
 
 /// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
-pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], combine: impl Fn(&mut f64, f64)) {
+pub fn interpolate<A: Copy>(
+    fine: &Grid,
+    coarse: &Grid,
+    from: impl Fn(usize) -> A,
+    to: &mut [f64],
+    combine: impl Fn(&mut f64, A),
+) {
     for iy in 0..coarse.my {
         for ix in 0..coarse.mx {
+            let value = from(coarse.index(ix, iy));
             for i in children(fine, coarse, ix, iy) {
-                combine(&mut to[i], from[coarse.index(ix, iy)]);
+                combine(&mut to[i], value);
             }
+        }
+    }
+}
+
+/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost: every fine element gets
+/// `combine(its value, the interpolated value)`.
+pub fn interpolate_linearly(
+    fine: &Grid,
+    coarse: &Grid,
+    from: impl Fn(usize) -> f64,
+    to: &mut [f64],
+    combine: impl Fn(&mut f64, f64),
+) {
+    // The coarse element that holds fine element i, its neighbour on the side of i, and the neighbour's weight.
+    let between = |i: usize, fine: usize, coarse: usize| {
+        if coarse == fine {
+            return (i, i, 0.0);
+        }
+        let neighbour = if i % 2 == 0 { (i / 2).saturating_sub(1) } else { (i / 2 + 1).min(coarse - 1) };
+        (i / 2, neighbour, 0.25)
+    };
+    for (iy, row) in to.chunks_exact_mut(fine.mx).enumerate() {
+        let (y, next_y, weight_y) = between(iy, fine.my, coarse.my);
+        for (ix, to) in row.iter_mut().enumerate() {
+            let (x, next_x, weight_x) = between(ix, fine.mx, coarse.mx);
+            // a + w (b - a) with w = 0 would make a NaN of an infinite b
+            let mix = |a: f64, b: f64, weight: f64| if weight == 0.0 { a } else { (1.0 - weight) * a + weight * b };
+            let in_row = |y: usize| mix(from(coarse.index(x, y)), from(coarse.index(next_x, y)), weight_x);
+            combine(to, mix(in_row(y), in_row(next_y), weight_y));
         }
     }
 }

@@ -75,6 +75,11 @@ impl Window {
         margin(&self.x, &area.x, grid.mx) && margin(&self.y, &area.y, grid.my) && part > 0.3
     }
 
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.x.len() * self.y.len()
+    }
+
     /// The grid of the window.
     pub fn grid(&self, grid: &Grid) -> Grid {
         Grid { mx: self.x.len(), my: self.y.len(), ..*grid }

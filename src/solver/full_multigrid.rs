@@ -36,7 +36,7 @@ pub fn solve(
     for l in 1..states.len() {
         let (finer, coarser) = states.split_at_mut(l);
         let (fine, coarse) = (&finer[l - 1], &mut coarser[0]);
-        transfer::restrict_distance(&fine.grid, &coarse.grid, &fine.h, &mut coarse.h);
+        transfer::restrict_distance(&fine.grid, &coarse.grid, |i| fine.h[i], &mut coarse.h);
         (coarse.load, coarse.approach) = (fine.load, fine.approach);
         coarse.p.fill(0.0);
         coarse.u.fill(0.0);
@@ -81,8 +81,8 @@ pub fn solve(
 /// p and u of the coarser grid, piecewise constant; contact where p > 0 or e <= 0.
 fn interpolate(coarse: &State, fine: &mut State) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
-    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);
-    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.u, &mut fine.u, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
     fine.approach = coarse.approach;
     for i in 0..fine.p.len() {
         if fine.h[i].is_infinite() {

@@ -325,7 +325,7 @@ impl Solver {
             monitor.count_products(1, 1.0);
         }
         if options.initial_guess != InitialGuess::Previous {
-            self.projected.forget_window();
+            self.projected.forget_windows();
         }
         match options.method {
             Method::Norm => self.norm(rule, monitor),

@@ -1,0 +1,219 @@
+//! The production method: nested iteration (section 4.3 of the paper) with projected conjugate gradients on every grid.
+//!
+//! On each coarser grid a few iterations ([`coarse`]); on the finest one as many as the tolerance asks for, on the window around the
+//! contact area and in single precision directions ([`level`]); then u = A p on the full grid, in double precision: the
+//! certificate. If it does not hold, the iteration goes on from there.
+
+mod coarse;
+mod level;
+
+use super::full_multigrid::discretisation_error;
+use super::monitor::{Monitor, Rule};
+use super::options::Precision;
+use super::report::Stop;
+use crate::active_set::{admit, certify, norm_of_distance, residual_norm, State};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Influence;
+use crate::operator::{Toeplitz, Workspace};
+use crate::projected_cg::{End, Stopping};
+use crate::scene::Load;
+use crate::threads::Threads;
+use coarse::CoarseGrids;
+use level::{Displacement, Level};
+
+/// The iteration aims at this part of the tolerance, so that what is owed and the rounding of its single precision products do
+/// not fail the certificate.
+const AIM: f64 = 0.5;
+/// Rounds without progress after which round-off is reached, or the method does not work on this scene.
+const PATIENCE: u32 = 3;
+/// A guess whose relative residual is larger is worth less than what the coarser grids find.
+const WORTHLESS: f64 = 0.3;
+
+/// The method's operators, set up once.
+pub struct Projected {
+    grid: Grid,
+    /// In double precision, on the full grid: for certificates.
+    operator: Toeplitz<f64>,
+    workspace: Workspace<f64>,
+    finest: Level,
+    /// None before it is first needed.
+    coarse: Option<CoarseGrids>,
+    /// With criterion UPDATE: p before the last round.
+    before: Vec<f64>,
+    precision: Precision,
+    threads: Threads,
+}
+
+impl Projected {
+    /// Sets up the full-grid operator; the rest follows when it is first needed.
+    pub fn new(grid: &Grid, influence: &Influence, precision: Precision, threads: &Threads) -> Result<Projected> {
+        let operator = Toeplitz::new(influence, grid, threads)?;
+        Ok(Projected {
+            grid: *grid,
+            workspace: operator.workspace()?,
+            operator,
+            finest: Level::new(*grid, influence.clone(), precision, threads),
+            coarse: None,
+            before: Vec::new(),
+            precision,
+            threads: threads.clone(),
+        })
+    }
+
+    /// The influence coefficients.
+    pub fn influence(&self) -> &Influence {
+        self.finest.influence()
+    }
+
+    /// The next solve chooses its windows by itself, so that its result does not depend, in the last bits, on the solve before.
+    pub fn forget_windows(&mut self) {
+        self.finest.forget_window();
+        self.coarse.iter_mut().for_each(CoarseGrids::forget_windows);
+    }
+
+    /// `u = A p` on the full grid, in double precision.
+    pub fn displace(&mut self, p: &[f64], u: &mut [f64]) {
+        self.operator.apply(p, u, &mut self.workspace);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);
+        let before = self.before.len() * size_of::<f64>();
+        self.operator.bytes() + self.workspace.bytes() + coarse + self.finest.bytes() + before
+    }
+
+    /// Solves from `state`: from its pressures and contact area if `has_start` (then its u must be A p), or else from nothing.
+    /// `error_ratio` is that of the options; it needs the coarser grids of a start from nothing.
+    pub fn solve(
+        &mut self,
+        state: &mut State,
+        rule: &Rule,
+        has_start: bool,
+        error_ratio: f64,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let mut rule = *rule;
+        let mut displacement = Displacement::Known;
+        if has_start && !rule.fixed {
+            scale_to_load(state);
+        }
+        if has_start && (rule.fixed || residual_norm(state) <= WORTHLESS * norm_of_distance(state)) {
+            if !rule.by_update && self.judge(state, &rule, monitor).holds {
+                return Ok(Stop::Converged);
+            }
+        } else {
+            displacement = self.start(state, &rule, monitor)?;
+            if error_ratio > 0.0 {
+                rule.tolerance = rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
+            }
+        }
+        if monitor.is_cancelled() {
+            self.certify(state, &rule, monitor);
+            return Ok(Stop::Cancelled);
+        }
+        let rule = &rule;
+        let (mut best, mut rounds_without_progress) = (f64::INFINITY, 0);
+        loop {
+            if rule.by_update {
+                self.before.clone_from(&state.p);
+            }
+            let stop = Stopping {
+                tolerance: if rule.by_update { rule.tolerance } else { AIM * rule.tolerance },
+                by_update: rule.by_update,
+                fixed: rule.fixed,
+                iterations: rule.max_cycles.saturating_sub(monitor.cycles),
+            };
+            let end = self.finest.run(state, displacement, &stop, self.grid.len(), monitor)?;
+            let certified = self.certify(state, rule, monitor);
+            // A small last update proves nothing while u was of single precision, or pressures were owed: then all that
+            // is done from a fresh u must come to no more than a small update.
+            let settled = !rule.by_update
+                || displacement == Displacement::Known && rule.holds(state, rms_change(state, &self.before));
+            displacement = Displacement::Known;
+            if certified.holds && settled {
+                return Ok(Stop::Converged);
+            }
+            match end {
+                End::Cancelled => return Ok(Stop::Cancelled),
+                End::Limit if monitor.cycles >= rule.max_cycles => return Ok(Stop::IterationLimit),
+                _ => {}
+            }
+            rounds_without_progress += 1;
+            if certified.violation < 0.5 * best {
+                best = certified.violation;
+                rounds_without_progress = 0;
+            }
+            if rounds_without_progress == PATIENCE {
+                return Ok(Stop::Stagnated);
+            }
+        }
+    }
+
+    /// From nothing: what the coarser grids find. Returns what u is then.
+    fn start(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Displacement> {
+        let coarse = match &mut self.coarse {
+            Some(coarse) => coarse,
+            none => {
+                let influence = self.finest.influence();
+                none.insert(CoarseGrids::new(&self.grid, influence, self.precision, &self.threads)?)
+            }
+        };
+        coarse.start(state, self.finest.self_influence(), rule, monitor)
+    }
+
+    /// u = A p anew, on the full grid and in double precision, and whether the conditions hold. Elements outside C that penetrate
+    /// enter it.
+    fn certify(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Certified {
+        state.balance_force();
+        self.operator.apply(&state.p, &mut state.u, &mut self.workspace);
+        monitor.count_products(1, 1.0);
+        state.fit_approach();
+        self.judge(state, rule, monitor)
+    }
+
+    /// Whether the conditions hold for a state whose u is A p. Elements outside C that penetrate enter it.
+    fn judge(&self, state: &mut State, rule: &Rule, monitor: &Monitor<'_>) -> Certified {
+        let h = norm_of_distance(state);
+        let scale = h / (state.contact_count().max(1) as f64).sqrt();
+        let penetration = certify(state).penetration;
+        let negligible = penetration <= rule.tolerance * scale;
+        let entered = if rule.fixed || negligible && penetration == 0.0 { 0 } else { admit(state) };
+        let residual = residual_norm(state);
+        let holds = rule.holds(state, monitor.update) && (entered == 0 || negligible);
+        let violation = (residual / h).max(penetration / scale);
+        Certified { holds, violation }
+    }
+}
+
+/// With a prescribed approach: scales p, and u with it, to the least energy. Where the load changes the pressures mostly
+/// grow or shrink, and to know how much takes no product.
+fn scale_to_load(state: &mut State) {
+    if let Load::Force(_) = state.load {
+        return;
+    }
+    let (mut work, mut energy) = (0.0, 0.0);
+    for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
+        work -= state.p[i] * state.deformed_distance(i);
+        energy += state.p[i] * state.u[i];
+    }
+    let factor = 1.0 + work / energy;
+    if factor.is_finite() && factor > 0.0 {
+        state.p.iter_mut().for_each(|p| *p *= factor);
+        state.u.iter_mut().for_each(|u| *u *= factor);
+    }
+}
+
+/// What a certificate says.
+struct Certified {
+    holds: bool,
+    /// The larger of the relative residual and the relative penetration.
+    violation: f64,
+}
+
+/// rms over C of the change of p.
+fn rms_change(state: &State, before: &[f64]) -> f64 {
+    let sum: f64 = state.p.iter().zip(before).map(|(p, before)| (p - before) * (p - before)).sum();
+    (sum / state.contact_count().max(1) as f64).sqrt()
+}
