@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use contact_normal::scene::Load;
-use contact_normal::solver::{InitialGuess, Method, Options, Solver, Stop};
+use contact_normal::scene::{Load, Scene};
+use contact_normal::solver::{InitialGuess, Method, Options, Problem, Solver, Stop};
 
 use crate::case::{ellipse, rough, wheel_rail, Case};
 use crate::measure::{cold, in_turns, median, shown, size, Product};
@@ -146,6 +146,39 @@ pub fn growth(threads: usize, sizes: &[usize]) {
         }
         calls.push((m, call));
     }
+}
+
+/// Many small problems in one call: how much faster two workers are than one.
+pub fn batch() {
+    const COUNT: usize = 1000;
+    println!("\n### Batch of {COUNT} problems of 64 x 64 elements: two workers against one, by the clock\n");
+    println!("| one worker | problems per second | two workers | problems per second | ratio | at least | |");
+    println!("|---|---|---|---|---|---|---|");
+    // Bodies of other curvatures, pressed together by other amounts.
+    let case = ellipse(64);
+    let scaled = |k: usize| case.h.iter().map(|h| (0.8 + 0.4 * k as f64 / COUNT as f64) * h).collect();
+    let surfaces: Vec<Vec<f64>> = (0..COUNT).map(scaled).collect();
+    let load = |k: usize| Load::Approach(0.06 + 0.01 * (k % 6) as f64);
+    let scene = |k: usize| Scene::new(case.grid, &surfaces[k], case.bodies, load(k));
+    let problems: Vec<Problem<'_>> = (0..COUNT).map(|k| Problem { scene: scene(k), guess: None }).collect();
+    let mut solvers = [1, 2].map(|workers| Solver::new(&case.scene(), &options(workers)).expect("a solver"));
+    let solve = |solver: &mut Solver, workers: usize| {
+        let stops = solver.solve_batch(&problems, &options(workers), |_, outcome, _| outcome.expect("a solve").0);
+        assert!(stops.expect("a batch").iter().all(|&stop| stop == Stop::Converged));
+    };
+    let [one, two] = &mut solvers;
+    let times = in_turns(&mut [&mut || solve(one, 1), &mut || solve(two, 2)]);
+    let (one, two) = (median(&times[0]), median(&times[1]));
+    let rate = |seconds: f64| COUNT as f64 / seconds;
+    println!(
+        "| {} | {:.0} | {} | {:.0} | {:.2} | 1.8 | {} |",
+        shown(one),
+        rate(one),
+        shown(two),
+        rate(two),
+        one / two,
+        mark(1.8, one / two)
+    );
 }
 
 /// NORM against AUTO.
