@@ -722,7 +722,8 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
 
 /*
  Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. Since 0.1.
+ for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+ further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,

@@ -18,9 +18,10 @@ fn grid() -> Grid {
     Grid::new(M, M, 0.25, 0.2).expect("a grid")
 }
 
-/// Balls of several sizes at several places, some wavy: their windows differ in place and size.
+/// Balls of several sizes, some wavy, four of them at each of several places: the window of one would do for the next.
 fn surface(k: usize) -> Vec<f64> {
-    let (centre_x, centre_y) = (M as f64 * (0.3 + 0.05 * (k % 7) as f64), M as f64 * (0.7 - 0.07 * (k % 5) as f64));
+    let place = (k / 4) as f64;
+    let (centre_x, centre_y) = (M as f64 * (0.4 + 0.1 * place), M as f64 * (0.6 - 0.05 * place));
     (0..M * M)
         .map(|i| {
             let (x, y) = ((i % M) as f64 - centre_x, (i / M) as f64 - centre_y);

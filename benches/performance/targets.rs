@@ -47,7 +47,7 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     let mut product = Product::new(&scene, threads);
     let (stop, report) = cold(&scene, &options);
     assert_eq!(stop, Stop::Converged, "{}", case.name);
-    let call = &mut || drop(cold(&scene, &options));
+    let call = &mut || _ = cold(&scene, &options);
     let times = in_turns(&mut [call, &mut || product.run()]);
     let (call, product) = (median(&times[0]), median(&times[1]));
     println!(
@@ -109,8 +109,7 @@ pub fn force_against_approach(threads: usize) {
         let (_, report) = cold(&case.scene(), &options);
         let by_approach = case.scene_with(Load::Approach(report.measures.approach));
         let by_force = case.scene_with(Load::Force(report.measures.force));
-        let times =
-            in_turns(&mut [&mut || drop(cold(&by_approach, &options)), &mut || drop(cold(&by_force, &options))]);
+        let times = in_turns(&mut [&mut || _ = cold(&by_approach, &options), &mut || _ = cold(&by_force, &options)]);
         let (approach, force) = (median(&times[0]), median(&times[1]));
         let ratio = force / approach;
         println!(
@@ -131,7 +130,7 @@ pub fn growth(threads: usize, sizes: &[usize]) {
     let mut calls: Vec<(usize, f64)> = Vec::new();
     for &m in sizes {
         let (case, options) = (rough(m), options(threads));
-        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &options))]);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &options)]);
         let call = median(&times[0]);
         let exponent = |&(m0, call0): &(usize, f64)| (call / call0).ln() / (2.0 * (m as f64 / m0 as f64).ln());
         match (calls.last(), calls.first()) {
@@ -189,7 +188,7 @@ pub fn norm_against_auto(threads: usize) {
     for case in [ellipse(512), rough(512)] {
         let auto = options(threads);
         let norm = Options { method: Method::Norm, ..auto };
-        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &norm)), &mut || drop(cold(&case.scene(), &auto))]);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &norm), &mut || _ = cold(&case.scene(), &auto)]);
         let (norm, auto) = (median(&times[0]), median(&times[1]));
         println!(
             "| {} | {} | {} | {:.1} | 15 | {} |",
