@@ -51,25 +51,21 @@ module contact_normal
   ! Own influence coefficients; filled by contact_normal_set_influence. Since 0.1.
   type, bind(C), public :: contact_normal_influence
     integer(c_int64_t) :: struct_size = 0      ! 0 until _init: such a structure is refused, not misread
-    integer(c_int32_t) :: cx = 0
-    integer(c_int32_t) :: cy = 0
+    integer(c_int32_t) :: cx = 0, cy = 0
     type(c_ptr) :: coefficients = c_null_ptr
   end type
 
   ! What is simulated. Since 0.1.
   type, bind(C), public :: contact_normal_scene
     integer(c_int64_t) :: struct_size = 0
-    integer(c_int32_t) :: mx = 0
-    integer(c_int32_t) :: my = 0
-    real(c_double) :: dx = 0
-    real(c_double) :: dy = 0
+    integer(c_int32_t) :: mx = 0, my = 0
+    real(c_double) :: dx = 0, dy = 0
     type(c_ptr) :: undeformed_distance = c_null_ptr       ! contact_normal_set_undeformed_distance
     real(c_double) :: shear_modulus(2) = 0
     real(c_double) :: poisson_ratio(2) = 0
     integer(c_int32_t) :: load = CONTACT_NORMAL_PRESCRIBED_APPROACH
     integer(c_int32_t) :: reserved = 0
-    real(c_double) :: approach = 0
-    real(c_double) :: force = 0
+    real(c_double) :: approach = 0, force = 0
     type(c_ptr) :: influence = c_null_ptr                 ! contact_normal_set_influence
   end type
 
@@ -286,13 +282,24 @@ module contact_normal
     end function
     function c_solver_solve(solver, scene, options, fields, report) &
         bind(C, name="contact_normal_solver_solve") result(status)
-      import :: contact_normal_scene, contact_normal_options, contact_normal_fields, contact_normal_report
-      import :: c_ptr, c_int32_t
+      import
       type(c_ptr), value, intent(in) :: solver
       type(contact_normal_scene), intent(in) :: scene
       type(contact_normal_options), intent(in), optional :: options
       type(contact_normal_fields), intent(inout) :: fields
       type(contact_normal_report), intent(inout), optional :: report
+      integer(c_int32_t) :: status
+    end function
+    function c_solver_solve_batch(solver, count, scenes, options, fields, reports, statuses) &
+        bind(C, name="contact_normal_solver_solve_batch") result(status)
+      import
+      type(c_ptr), value, intent(in) :: solver
+      integer(c_int32_t), value, intent(in) :: count
+      type(contact_normal_scene), intent(in) :: scenes(*)
+      type(contact_normal_options), intent(in), optional :: options
+      type(contact_normal_fields), intent(inout), optional :: fields(*)
+      type(contact_normal_report), intent(inout), optional :: reports(*)
+      integer(c_int32_t), intent(inout), optional :: statuses(*)
       integer(c_int32_t) :: status
     end function
     subroutine c_solver_free(solver) bind(C, name="contact_normal_solver_free")
@@ -315,7 +322,7 @@ module contact_normal
   public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_log, contact_normal_solver_new, &
-    contact_normal_solver_solve, contact_normal_solver_free, norm_solve
+    contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
@@ -441,6 +448,20 @@ contains
     status = c_solver_solve(solver%handle, scene, options, fields, report)
   end function
 
+  ! Solves one problem for each of the scenes, as many at a time as the solver was set up with threads. A problem that is
+  ! refused does not keep the others from being solved; the result is the status of the first that was refused (< 0), or
+  ! else of the first that stopped early, or else OK. The message names it, counted from 0. Since 0.1.
+  function contact_normal_solver_solve_batch(solver, scenes, options, fields, reports, statuses) result(status)
+    type(contact_normal_solver), intent(in) :: solver
+    type(contact_normal_scene), intent(in) :: scenes(:)
+    type(contact_normal_options), intent(in), optional :: options
+    type(contact_normal_fields), intent(inout), optional :: fields(size(scenes))
+    type(contact_normal_report), intent(inout), optional :: reports(size(scenes))
+    integer(c_int32_t), intent(inout), optional :: statuses(size(scenes))
+    integer(c_int32_t) :: status
+    status = c_solver_solve_batch(solver%handle, size(scenes, kind=c_int32_t), scenes, options, fields, reports, statuses)
+  end function
+
   ! Frees it; doing so twice is harmless. Since 0.1.
   subroutine contact_normal_solver_free(solver)
     type(contact_normal_solver), intent(inout) :: solver
@@ -476,11 +497,8 @@ contains
     real(c_double), intent(in) :: dx, dy, eps
     real(c_double), intent(in), target :: cf(-cx:cx-1, -cy:cy-1)
     real(c_double), intent(in) :: hs(mx, my)
-    real(c_double), intent(inout) :: pen, fn
-    integer(c_int32_t), intent(inout) :: igs(mx, my)
-    real(c_double), intent(inout) :: ps(mx, my)
-    integer(c_int32_t), intent(inout) :: itcg
-    real(c_double), intent(inout) :: err
+    real(c_double), intent(inout) :: pen, fn, ps(mx, my), err
+    integer(c_int32_t), intent(inout) :: igs(mx, my), itcg
     integer(c_int32_t), intent(out) :: ierror
     type(contact_normal_scene) :: scene
     type(contact_normal_influence), target :: influence
@@ -544,15 +562,7 @@ contains
     if (ierror < 0) return
 
     ps = p
-    do iy = 1, my
-      do ix = 1, mx
-        if (contact(ix, iy) == 0) then
-          igs(ix, iy) = 0
-        else
-          igs(ix, iy) = max(1_c_int32_t, igs(ix, iy))
-        end if
-      end do
-    end do
+    igs = merge(max(1_c_int32_t, igs), 0_c_int32_t, contact /= 0)
     if (norm == 0) fn = report%force
     if (norm == 1) pen = report%approach
     itcg = int(min(report%cycles, int(huge(itcg), c_int64_t)), c_int32_t)

@@ -722,7 +722,8 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
 
 /*
  Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. Since 0.1.
+ for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+ further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,
@@ -734,6 +735,30 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
  Frees a solver; NULL is ignored. Since 0.1.
  */
 void contact_normal_solver_free(struct contact_normal_solver *solver);
+
+/*
+ Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
+ solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
+ structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
+ not wanted. What one problem writes no other may read or write.
+
+ A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
+ status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
+ else of the first one that stopped early (> 0); `contact_normal_last_error` says which it is, as "problem 3: ...", counted
+ from 0. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+
+ Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
+ `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.
+ `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
+ messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_solver *solver,
+                                                        int32_t count,
+                                                        const struct contact_normal_scene *scenes,
+                                                        const struct contact_normal_options *options,
+                                                        struct contact_normal_fields *fields,
+                                                        struct contact_normal_report *reports,
+                                                        contact_normal_status *statuses);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`

@@ -197,6 +197,10 @@ _PROTOTYPES = {
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
     "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "solver_solve_batch": (
+        c_int32,
+        [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
+    ),
     "solver_free": (None, [c_void_p]),
     "hertz": (
         c_int32,
@@ -378,25 +382,35 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
 _LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
 
 
+class _Outputs:
+    """The structs of one problem with new arrays; `pressure` and `contact` are the initial guess."""
+
+    def __init__(self, shape, pressure, contact, options):
+        self.arrays = [np.zeros(shape) for _ in range(3)] + [np.zeros(shape, dtype=np.int32)]
+        if pressure is not None:
+            self.arrays[0][:] = _array("pressure", pressure, np.float64, shape)
+            if contact is None:
+                self.arrays[3][:] = self.arrays[0] > 0
+        if contact is not None:
+            self.arrays[3][:] = _array("contact", contact, np.int32, shape)
+        if pressure is not None and options.initial_guess == INITIAL_GUESS_NONE:
+            options.initial_guess = INITIAL_GUESS_GIVEN
+        self.fields, self.report = _initialised("fields"), _initialised("report")
+        self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(_pointer, self.arrays[:3])
+        self.fields.contact = _pointer(self.arrays[3], c_int32)
+        self.rows = (LedgerRow * _LEDGER_ROOM)()
+        self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM
+
+    def result(self, status, message, report):
+        return Result(status, message, self.arrays, report, self.rows)
+
+
 def _run(call, shape, pressure, contact, options):
-    """Calls `call(fields, report)` with new arrays; `pressure` and `contact` are the initial guess."""
-    arrays = [np.zeros(shape) for _ in range(3)] + [np.zeros(shape, dtype=np.int32)]
-    if pressure is not None:
-        arrays[0][:] = _array("pressure", pressure, np.float64, shape)
-        if contact is None:
-            arrays[3][:] = arrays[0] > 0
-    if contact is not None:
-        arrays[3][:] = _array("contact", contact, np.int32, shape)
-    if pressure is not None and options.initial_guess == INITIAL_GUESS_NONE:
-        options.initial_guess = INITIAL_GUESS_GIVEN
-    fields, report = _initialised("fields"), _initialised("report")
-    fields.pressure, fields.deformed_distance, fields.displacement = map(_pointer, arrays[:3])
-    fields.contact = _pointer(arrays[3], c_int32)
-    rows = (LedgerRow * _LEDGER_ROOM)()
-    report.ledger, report.ledger_capacity = rows, _LEDGER_ROOM
-    status = _check(call(ctypes.byref(fields), ctypes.byref(report)))
+    """Calls `call(fields, report)` with new arrays."""
+    outputs = _Outputs(shape, pressure, contact, options)
+    status = _check(call(ctypes.byref(outputs.fields), ctypes.byref(outputs.report)))
     message = _library.contact_normal_last_error().decode() if status > 0 else ""
-    return Result(status, message, arrays, report, rows)
+    return outputs.result(status, message, outputs.report)
 
 
 def solve(
@@ -468,6 +482,37 @@ class Solver:
         result = _run(call, kept[0].shape, pressure, contact, struct)
         watched.check()
         return result
+
+    def solve_batch(self, h, *, approach=None, force=None, pressure=None, contact=None, **options):
+        """Solves one problem for each of `h` (count, my, mx), as many at a time as `threads` says, each on one thread.
+
+        approach, force: one value for all, or one for each; pressure, contact: (count, my, mx). Returns a list of Results.
+        A problem that is refused does not keep the others from being solved: its `status` is negative, its arrays mean
+        nothing.
+        """
+        if not self._handle:
+            raise ValueError("this solver is closed")
+        count, struct = len(h), _options({**self._set_up, **options})
+        each = [values if values is None else np.broadcast_to(values, count) for values in (approach, force)]
+        scenes, outputs, kept = [], [], []
+        for i in range(count):
+            load = [values if values is None else values[i] for values in each]
+            scene, arrays = _scene(_array("h", h[i], np.float64, self._shape), *self._grid[:2], *load, *self._grid[2:], None)
+            scenes.append(scene)
+            kept.append(arrays)
+            guess = [values if values is None else values[i] for values in (pressure, contact)]
+            outputs.append(_Outputs(self._shape, *guess, struct))
+        reports = (Report * count)(*(each.report for each in outputs))
+        untouched = -(2**31)
+        statuses = (c_int32 * count)(*[untouched] * count)
+        status = _library.contact_normal_solver_solve_batch(
+            self._handle, count, (Scene * count)(*scenes), ctypes.byref(struct),
+            (Fields * count)(*(each.fields for each in outputs)), reports, statuses,
+        )
+        if untouched in statuses:
+            _check(status)
+        text = [_library.contact_normal_status_text(status).decode() if status else "" for status in statuses]
+        return [outputs[i].result(statuses[i], text[i], reports[i]) for i in range(count)]
 
     def close(self):
         """Frees the handle; a second call does nothing."""

@@ -116,7 +116,6 @@ const SET_UP: &[Row] = &[
 /// Outputs and initial guesses: refused by a solve, with or without a handle.
 #[rustfmt::skip]
 const SOLVES: &[Row] = &[
-    (&["fields"], NULL, |c| c.without = "fields"),
     (&["ledger", "ledger_capacity"], NULL, |c| c.report.known.ledger = null_mut()),
     (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
     (&["contact", "FIXED"], NULL, |c| { c.fix_contact(); c.fields.known.contact = null_mut(); }),
@@ -154,7 +153,7 @@ fn a_valid_call_writes_every_output() {
 fn every_bad_scene_and_option_is_refused() {
     let handle = Call::new().new_handle();
     for row in SET_UP {
-        for through in [Through::Solve, Through::SolverNew, Through::SolverSolve] {
+        for through in [Through::Solve, Through::SolverNew, Through::SolverSolve, Through::SolverSolveBatch] {
             refused(row, through, handle);
         }
     }
@@ -166,13 +165,21 @@ fn every_bad_scene_and_option_is_refused() {
 fn every_bad_guess_and_output_is_refused() {
     let handle = Call::new().new_handle();
     for row in SOLVES {
-        for through in [Through::Solve, Through::SolverSolve] {
+        for through in [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch] {
             refused(row, through, handle);
         }
     }
+    // In a batch they are not wanted.
+    let without_fields: Row = (&["fields"], NULL, |c| c.without = "fields");
+    for through in [Through::Solve, Through::SolverSolve] {
+        refused(&without_fields, through, handle);
+    }
     // The handle is as good as before.
-    let mut call = Call::new();
-    assert_eq!(call.run(Through::SolverSolve, handle).0, CONTACT_NORMAL_OK);
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        let mut call = Call::new();
+        assert_eq!(call.run(through, handle).0, CONTACT_NORMAL_OK);
+        call.assert_all_written();
+    }
     // SAFETY: made above.
     unsafe { contact_normal_solver_free(handle) };
 }
@@ -313,8 +320,10 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         (&["threads"], INVALID, |c| c.options.known.threads = 2),
     ];
     let handle = Call::new().new_handle();
-    refused(&rows[0], Through::SolverSolve, null_mut());
-    rows[1..].iter().for_each(|row| refused(row, Through::SolverSolve, handle));
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        refused(&rows[0], through, null_mut());
+        rows[1..].iter().for_each(|row| refused(row, through, handle));
+    }
     // SAFETY: made above; NULL is ignored.
     unsafe {
         contact_normal_solver_free(handle);
@@ -322,6 +331,33 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         let call = Call::new();
         let status = contact_normal_solver_new(&call.scene.known, null(), null_mut());
         assert_eq!((status, last_error().contains("solver")), (NULL, true));
+    }
+}
+
+unsafe extern "C" fn go_on(_: *const contact_normal_progress, _: *mut libc::c_void) -> i32 {
+    0
+}
+
+#[test]
+fn what_only_a_batch_refuses() {
+    #[rustfmt::skip]
+    let rows: &[Row] = &[
+        (&["initial_guess", "PREVIOUS"], INVALID, |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS),
+        (&["progress"], CONTACT_NORMAL_UNSUPPORTED, |c| c.options.known.progress = Some(go_on)),
+        (&["pressure of problem 0", "displacement of problem 0"], INVALID, |c| c.fields.known.displacement = c.pressure.as_mut_ptr()),
+    ];
+    let handle = Call::new().new_handle();
+    rows.iter().for_each(|row| refused(row, Through::SolverSolveBatch, handle));
+    // SAFETY: made above; no array is looked at when there are no, or fewer than no, problems.
+    unsafe {
+        let batch = |count| {
+            let (fields, reports, statuses) = (null_mut(), null_mut(), null_mut());
+            contact_normal_solver_solve_batch(handle, count, null(), null(), fields, reports, statuses)
+        };
+        assert_eq!((batch(-3), last_error().contains("count is -3")), (INVALID, true));
+        assert_eq!((batch(2), last_error().contains("scenes")), (NULL, true));
+        assert_eq!(batch(0), CONTACT_NORMAL_OK);
+        contact_normal_solver_free(handle);
     }
 }
 
@@ -335,7 +371,9 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
         if !keep_table {
             call.scene.known.influence = null();
         }
-        assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()), "{keep_table}");
+        for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+            assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()), "{keep_table}");
+        }
     }
     // SAFETY: made above.
     unsafe { contact_normal_solver_free(handle) };

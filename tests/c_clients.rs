@@ -93,6 +93,11 @@ fn norm_inner_solve() {
 }
 
 #[test]
+fn batch() {
+    assert_certified(&check_example("batch", &[]), TOLERANCE);
+}
+
+#[test]
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
     assert_certified(&measures, TOLERANCE);

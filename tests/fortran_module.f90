@@ -37,6 +37,12 @@ program fortran_module
   real(dp), target :: h(M, M), p(M, M), u(M, M), e(M*M), cf(-M:M - 1, -M:M - 1)
   real(dp) :: half_space(M, M)
   integer(c_int32_t), target :: contact(M, M), calls
+  integer, parameter :: COUNT_OF_BATCH = 5
+  type(contact_normal_scene) :: scenes(COUNT_OF_BATCH)
+  type(contact_normal_fields) :: all_fields(COUNT_OF_BATCH)
+  type(contact_normal_report) :: reports(COUNT_OF_BATCH)
+  real(dp), target :: pressures(M, M, COUNT_OF_BATCH)
+  integer(c_int32_t) :: statuses(COUNT_OF_BATCH)
   integer :: i, j
 
   print '(a)', contact_normal_version_string()
@@ -93,6 +99,35 @@ program fortran_module
   call contact_normal_solver_free(solver)
   call contact_normal_solver_free(solver)
   call hold(contact_normal_solver_solve(solver, scene, options, fields) == CONTACT_NORMAL_NULL_POINTER, "a freed one")
+
+  ! A batch on two threads, one of its problems refused; then the same problems one by one.
+  options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_NONE
+  options%threads = 2
+  call hold(contact_normal_solver_new(scene, options, solver) == CONTACT_NORMAL_OK, "a solver of two threads")
+  do i = 1, COUNT_OF_BATCH
+    scenes(i) = scene
+    scenes(i)%approach = 0.02_dp*i
+    call contact_normal_fields_init(all_fields(i))
+    call contact_normal_set_fields(all_fields(i), pressure=pressures(:, :, i))
+    call contact_normal_report_init(reports(i))
+  end do
+  scenes(3)%load = 7
+  pressures = -1
+  call hold(contact_normal_solver_solve_batch(solver, scenes, options, all_fields, reports, statuses) &
+            == CONTACT_NORMAL_INVALID_ARGUMENT, "the status of the refused problem")
+  call hold(index(contact_normal_last_error_message(), "problem 2: load is 7") == 1, "which one it was")
+  call hold(all(statuses == [0, 0, CONTACT_NORMAL_INVALID_ARGUMENT, 0, 0]), "all statuses")
+  call hold(all(pressures(:, :, 3) <= -1), "no pressures of the refused one")
+  do i = 1, COUNT_OF_BATCH
+    if (i == 3) cycle
+    call hold(contact_normal_solver_solve(solver, scenes(i), options, fields, report) == CONTACT_NORMAL_OK, "one by one")
+    call hold(all(abs(p - pressures(:, :, i)) <= 0), "the same pressures as one by one")
+    call hold(reports(i)%contact_count == report%contact_count, "the same contact")
+  end do
+  scenes(3)%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
+  call hold(contact_normal_solver_solve_batch(solver, scenes, options) == CONTACT_NORMAL_OK, "a batch for nothing but the status")
+  call contact_normal_solver_free(solver)
+  options%threads = 1
 
   ! A callback that cancels, and its user pointer.
   calls = 0

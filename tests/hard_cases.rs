@@ -253,6 +253,21 @@ fn a_table_without_symmetry_is_solved_as_it_is() {
 }
 
 #[test]
+fn the_update_criterion_ends_with_a_force_for_a_table_without_symmetry() {
+    let grid = Grid::new(24, 24, 0.25, 0.2).unwrap();
+    let ripples = |i: usize| 0.002 * (0.9 * (i % 24) as f64).sin() * (0.7 * (i / 24) as f64).cos();
+    let h: Vec<f64> = paraboloid(&grid, 0.006).iter().enumerate().map(|(i, h)| h + ripples(i)).collect();
+    let influence = table_of(&grid, 24, 24, |kx, _, value| value * (1.0 + 0.01 * kx as f64 / 24.0));
+    for force in [0.01, 0.03, 0.1] {
+        let scene =
+            Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Force(force)) };
+        let options =
+            Options { method: Method::Norm, criterion: Criterion::Update, max_cycles: 5000, ..Options::default() };
+        certified(&scene, &options);
+    }
+}
+
+#[test]
 fn a_table_whose_circulant_is_not_positive_is_solved_all_the_same() {
     // A product of damped cosines is positive definite (its transform is a product of Lorentzians), but wrapped around half a
     // period it is not.

@@ -300,6 +300,18 @@ with cn.Solver(10, 12, 0.2, 0.2, tolerance=1e-10, **steel) as solver:
         solver.solve(h, force=1000.0, tolerance=1e-15, progress=lambda told: 1 / 0)
     except ZeroDivisionError:
         print('raised')
+# A batch on two threads: one refused problem between others, which are those of single solves to the last bit.
+with cn.Solver(10, 12, 0.2, 0.2, threads=2, **steel) as solver:
+    forces = [100.0, 200.0, -300.0, 400.0]
+    batch = solver.solve_batch([h, 2 * h, h, 0.5 * h], force=forces)
+    print([found.status for found in batch], batch[2].message)
+    single = solver.solve(0.5 * h, force=400.0)
+    print(np.array_equal(batch[3].pressure, single.pressure), batch[3].report['cycles'] == single.report['cycles'])
+    print(len(solver.solve_batch([], approach=0.1)))
+    try:
+        solver.solve_batch([h], approach=0.1, initial_guess=cn.INITIAL_GUESS_PREVIOUS)
+    except cn.ContactNormalError as error:
+        print('PREVIOUS' in error.message)
 exact = cn.hertz(0.0016681, 0.0030671, approach=0.1091, **steel)
 print(round(exact.force), round(exact.max_pressure))
 ";
@@ -314,6 +326,10 @@ True
 True True
 True
 raised
+[0, 0, -2, 0] an invalid argument
+True True
+0
+True
 ";
     let (start, hertz) = printed.split_at(expected.len().min(printed.len()));
     assert_eq!(start, expected);
@@ -337,6 +353,11 @@ def solve(threads):
 def child(ends, threads):
     ends.send(solve(threads))
 before = solve(2)
+handle = cn.Solver(64, 64, 0.2, 0.2, shear_modulus=82000.0, poisson_ratio=0.28, threads=2)
+def with_handle(ends):
+    ends.send([handle.solve(h, force=1e4).pressure.tobytes()]
+              + [found.pressure.tobytes() for found in handle.solve_batch([h, h, h], force=1e4)])
+everything = [before] * 4
 fork = multiprocessing.get_context('fork')
 for threads in (1, 2):
     near, far = fork.Pipe(duplex=False)
@@ -345,8 +366,16 @@ for threads in (1, 2):
     found = near.recv() if near.poll(60) else None
     process.kill() if found is None else process.join()
     print(threads, 'hangs' if found is None else found == before)
+# A handle that was set up, and has solved a batch, before the fork.
+print(len(handle.solve_batch([h, h], force=1e4)))
+near, far = fork.Pipe(duplex=False)
+process = fork.Process(target=with_handle, args=(far,))
+process.start()
+found = near.recv() if near.poll(60) else None
+process.kill() if found is None else process.join()
+print('handle', 'hangs' if found is None else found == everything)
 print(solve(2) == before)
 ";
     let printed = run(python_in(&scratch("python_fork")).args(["-c", script]));
-    assert_eq!(printed, "1 True\n2 True\nTrue\n");
+    assert_eq!(printed, "1 True\n2 True\n2\nhandle True\nTrue\n");
 }

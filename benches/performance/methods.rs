@@ -30,7 +30,7 @@ pub fn methods(sizes: &[usize]) {
                 print!(" {stop:?} |");
                 continue;
             }
-            let times = in_turns(&mut [&mut || drop(cold(&scene, &one)), &mut || drop(cold(&scene, &two))]);
+            let times = in_turns(&mut [&mut || _ = cold(&scene, &one), &mut || _ = cold(&scene, &two)]);
             print!(" {:.0} / {} / {} |", report.work_units, shown(median(&times[0])), shown(median(&times[1])));
         }
         println!();

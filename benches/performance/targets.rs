@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use contact_normal::scene::Load;
-use contact_normal::solver::{InitialGuess, Method, Options, Solver, Stop};
+use contact_normal::scene::{Load, Scene};
+use contact_normal::solver::{InitialGuess, Method, Options, Problem, Solver, Stop};
 
 use crate::case::{ellipse, rough, wheel_rail, Case};
 use crate::measure::{cold, in_turns, median, shown, size, Product};
@@ -47,7 +47,7 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     let mut product = Product::new(&scene, threads);
     let (stop, report) = cold(&scene, &options);
     assert_eq!(stop, Stop::Converged, "{}", case.name);
-    let call = &mut || drop(cold(&scene, &options));
+    let call = &mut || _ = cold(&scene, &options);
     let times = in_turns(&mut [call, &mut || product.run()]);
     let (call, product) = (median(&times[0]), median(&times[1]));
     println!(
@@ -109,8 +109,7 @@ pub fn force_against_approach(threads: usize) {
         let (_, report) = cold(&case.scene(), &options);
         let by_approach = case.scene_with(Load::Approach(report.measures.approach));
         let by_force = case.scene_with(Load::Force(report.measures.force));
-        let times =
-            in_turns(&mut [&mut || drop(cold(&by_approach, &options)), &mut || drop(cold(&by_force, &options))]);
+        let times = in_turns(&mut [&mut || _ = cold(&by_approach, &options), &mut || _ = cold(&by_force, &options)]);
         let (approach, force) = (median(&times[0]), median(&times[1]));
         let ratio = force / approach;
         println!(
@@ -131,7 +130,7 @@ pub fn growth(threads: usize, sizes: &[usize]) {
     let mut calls: Vec<(usize, f64)> = Vec::new();
     for &m in sizes {
         let (case, options) = (rough(m), options(threads));
-        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &options))]);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &options)]);
         let call = median(&times[0]);
         let exponent = |&(m0, call0): &(usize, f64)| (call / call0).ln() / (2.0 * (m as f64 / m0 as f64).ln());
         match (calls.last(), calls.first()) {
@@ -148,6 +147,39 @@ pub fn growth(threads: usize, sizes: &[usize]) {
     }
 }
 
+/// Many small problems in one call: how much faster two workers are than one.
+pub fn batch() {
+    const COUNT: usize = 1000;
+    println!("\n### Batch of {COUNT} problems of 64 x 64 elements: two workers against one, by the clock\n");
+    println!("| one worker | problems per second | two workers | problems per second | ratio | at least | |");
+    println!("|---|---|---|---|---|---|---|");
+    // Bodies of other curvatures, pressed together by other amounts.
+    let case = ellipse(64);
+    let scaled = |k: usize| case.h.iter().map(|h| (0.8 + 0.4 * k as f64 / COUNT as f64) * h).collect();
+    let surfaces: Vec<Vec<f64>> = (0..COUNT).map(scaled).collect();
+    let load = |k: usize| Load::Approach(0.06 + 0.01 * (k % 6) as f64);
+    let scene = |k: usize| Scene::new(case.grid, &surfaces[k], case.bodies, load(k));
+    let problems: Vec<Problem<'_>> = (0..COUNT).map(|k| Problem { scene: scene(k), guess: None }).collect();
+    let mut solvers = [1, 2].map(|workers| Solver::new(&case.scene(), &options(workers)).expect("a solver"));
+    let solve = |solver: &mut Solver, workers: usize| {
+        let stops = solver.solve_batch(&problems, &options(workers), |_, outcome, _| outcome.expect("a solve").0);
+        assert!(stops.expect("a batch").iter().all(|&stop| stop == Stop::Converged));
+    };
+    let [one, two] = &mut solvers;
+    let times = in_turns(&mut [&mut || solve(one, 1), &mut || solve(two, 2)]);
+    let (one, two) = (median(&times[0]), median(&times[1]));
+    let rate = |seconds: f64| COUNT as f64 / seconds;
+    println!(
+        "| {} | {:.0} | {} | {:.0} | {:.2} | 1.8 | {} |",
+        shown(one),
+        rate(one),
+        shown(two),
+        rate(two),
+        one / two,
+        mark(1.8, one / two)
+    );
+}
+
 /// NORM against AUTO.
 pub fn norm_against_auto(threads: usize) {
     println!("\n### NORM (by FFT) against AUTO at 512, {threads} thread(s)\n");
@@ -156,7 +188,7 @@ pub fn norm_against_auto(threads: usize) {
     for case in [ellipse(512), rough(512)] {
         let auto = options(threads);
         let norm = Options { method: Method::Norm, ..auto };
-        let times = in_turns(&mut [&mut || drop(cold(&case.scene(), &norm)), &mut || drop(cold(&case.scene(), &auto))]);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &norm), &mut || _ = cold(&case.scene(), &auto)]);
         let (norm, auto) = (median(&times[0]), median(&times[1]));
         println!(
             "| {} | {} | {} | {:.1} | 15 | {} |",

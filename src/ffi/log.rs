@@ -40,6 +40,10 @@ impl Log for Forward {
     }
 
     fn log(&self, record: &Record<'_>) {
+        // Callbacks are called on the thread that called us, never from a thread of ours.
+        if std::thread::current().name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME)) {
+            return;
+        }
         // A copy, so that the lock is not held during the call.
         let target = *TARGET.lock().unwrap_or_else(PoisonError::into_inner);
         let level =

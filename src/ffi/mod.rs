@@ -3,6 +3,7 @@
 #![allow(non_camel_case_types)]
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
+mod batch;
 mod floating_point;
 mod guard;
 mod log;
@@ -16,6 +17,7 @@ mod status;
 mod structs;
 
 pub use self::log::*;
+pub use batch::*;
 pub use options::*;
 pub use report::*;
 pub use scene::*;

@@ -4,10 +4,10 @@ use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_progress, contact_normal_report};
 use super::scene::{self, contact_normal_scene};
-use super::status::{contact_normal_status, set_last_error, Refusal};
+use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
 use super::structs;
 use crate::scene::Scene;
-use crate::solver::{ActiveSet, Guess, InitialGuess, Progress, Report, Solver, Stop};
+use crate::solver::{ActiveSet, Guess, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 
 /// Solves one scene. `options` NULL: the defaults; `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -22,9 +22,9 @@ pub unsafe extern "C" fn contact_normal_solve(
         let (scene, options, outputs) =
             unsafe { (scene::translate(scene)?, options::translate(options)?, Outputs::of(fields, report)?) };
         // Before the set-up: a refusal should not cost one.
-        outputs.check_inputs(&options, scene.grid.len())?;
+        outputs.check_inputs(&options.options, scene.grid.len())?;
         let mut solver = Solver::new(&scene, &options.options)?;
-        run(&mut solver, &scene, &options, &outputs)
+        run_watched(&mut solver, &scene, &options, &outputs, &mut GuessBuffer::default())
     })
 }
 
@@ -61,9 +61,9 @@ impl Outputs {
     }
 
     /// Whether the arrays that are read are there and hold what they must.
-    pub fn check_inputs(&self, options: &Translated, n: usize) -> Result<(), Refusal> {
-        let fixed = options.options.active_set == ActiveSet::Fixed;
-        let given = options.options.initial_guess == InitialGuess::Given;
+    pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
+        let fixed = options.active_set == ActiveSet::Fixed;
+        let given = options.initial_guess == InitialGuess::Given;
         if fixed && self.fields.contact.is_null() {
             return Err(Refusal::null("fields->contact (with active_set FIXED)"));
         }
@@ -80,24 +80,43 @@ impl Outputs {
     }
 
     /// The caller's initial guess: pressures and contact area.
-    fn guess(&self, options: &Translated, n: usize) -> Option<(Vec<f64>, Vec<bool>)> {
-        let given = options.options.initial_guess == InitialGuess::Given;
-        let fixed = options.options.active_set == ActiveSet::Fixed;
+    fn guess<'a>(&self, options: &Options, n: usize, buffer: &'a mut GuessBuffer) -> Option<Guess<'a>> {
+        let given = options.initial_guess == InitialGuess::Given;
+        let fixed = options.active_set == ActiveSet::Fixed;
         if !given && !fixed {
             return None;
         }
-        let pressure = match given {
+        let GuessBuffer { pressure, contact } = buffer;
+        pressure.clear();
+        contact.clear();
+        if given {
             // SAFETY: not null (check_inputs): n values, by the conventions of the ABI.
-            true => unsafe { std::slice::from_raw_parts(self.fields.pressure, n) }.to_vec(),
-            false => vec![0.0; n],
-        };
-        let contact = if self.fields.contact.is_null() {
-            pressure.iter().map(|&p| p > 0.0).collect()
+            pressure.extend_from_slice(unsafe { std::slice::from_raw_parts(self.fields.pressure, n) });
+        } else {
+            pressure.resize(n, 0.0);
+        }
+        if self.fields.contact.is_null() {
+            contact.extend(pressure.iter().map(|&p| p > 0.0));
         } else {
             // SAFETY: likewise.
-            unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().map(|&c| c != 0).collect()
-        };
-        Some((pressure, contact))
+            contact.extend(unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().map(|&c| c != 0));
+        }
+        Some(Guess { pressure, contact })
+    }
+
+    /// The caller's arrays that a solve on `n` elements writes: name, address, bytes.
+    pub fn written(&self, n: usize) -> impl Iterator<Item = (&'static str, usize, usize)> {
+        let fields = &self.fields;
+        let rows = self.ledger_capacity as usize;
+        [
+            ("pressure", fields.pressure as usize, n * size_of::<f64>()),
+            ("displacement", fields.displacement as usize, n * size_of::<f64>()),
+            ("deformed_distance", fields.deformed_distance as usize, n * size_of::<f64>()),
+            ("contact", fields.contact as usize, n * size_of::<i32>()),
+            ("ledger", self.ledger as usize, rows.saturating_mul(size_of::<contact_normal_ledger_row>())),
+        ]
+        .into_iter()
+        .filter(|&(_, start, bytes)| start != 0 && bytes > 0)
     }
 
     fn write(&self, solver: &Solver, report: &Report) -> Result<(), Refusal> {
@@ -133,29 +152,64 @@ impl Outputs {
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs.
-pub(super) fn run(
+/// Memory for initial guesses, kept by a handle from one solve to the next.
+#[derive(Default)]
+pub(super) struct GuessBuffer {
+    pressure: Vec<f64>,
+    contact: Vec<bool>,
+}
+
+/// How a solve ended, and its message; none after OK.
+pub(super) struct Outcome {
+    pub status: contact_normal_status,
+    pub message: String,
+}
+
+impl Outcome {
+    /// The end of an export: the message becomes that of this thread.
+    pub fn conclude(self) -> Result<contact_normal_status, Refusal> {
+        if self.status < CONTACT_NORMAL_OK {
+            return Err(Refusal::new(self.status, self.message));
+        }
+        if self.status > CONTACT_NORMAL_OK {
+            set_last_error(&self.message);
+        }
+        Ok(self.status)
+    }
+}
+
+/// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches.
+pub(super) fn run_watched(
     solver: &mut Solver,
     scene: &Scene<'_>,
     options: &Translated,
     outputs: &Outputs,
+    guess: &mut GuessBuffer,
 ) -> Result<contact_normal_status, Refusal> {
-    let n = scene.grid.len();
-    outputs.check_inputs(options, n)?;
-    let guess = outputs.guess(options, n);
-    let guess = guess.as_ref().map(|(pressure, contact)| Guess { pressure, contact });
     let mut callback = |progress: &Progress| match options.progress {
         // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held.
         Some(callback) => unsafe { callback(&contact_normal_progress::from(progress), options.user) != 0 },
         None => false,
     };
-    let (stop, report) =
-        solver.solve(scene, &options.options, guess, options.progress.is_some().then_some(&mut callback))?;
+    let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
+    run(solver, scene, &options.options, progress, outputs, guess)?.conclude()
+}
+
+/// Solves with a solver that is set up, and writes the outputs.
+pub(super) fn run(
+    solver: &mut Solver,
+    scene: &Scene<'_>,
+    options: &Options,
+    progress: Option<ProgressCallback<'_>>,
+    outputs: &Outputs,
+    guess: &mut GuessBuffer,
+) -> Result<Outcome, Refusal> {
+    let n = scene.grid.len();
+    outputs.check_inputs(options, n)?;
+    let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, guess), progress)?;
     outputs.write(solver, &report)?;
-    if stop != Stop::Converged {
-        set_last_error(&explain(stop, &report));
-    }
-    Ok(stop.into())
+    let message = if stop == Stop::Converged { String::new() } else { explain(stop, &report) };
+    Ok(Outcome { status: stop.into(), message })
 }
 
 fn explain(stop: Stop, report: &Report) -> String {

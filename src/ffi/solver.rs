@@ -4,7 +4,7 @@ use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::report::{contact_normal_fields, contact_normal_report};
 use super::scene::{self, contact_normal_scene};
-use super::solve::{run, Outputs};
+use super::solve::{run_watched, GuessBuffer, Outputs};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::scene::Scene;
 use crate::solver::Solver;
@@ -12,7 +12,8 @@ use crate::solver::Solver;
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
 /// used by different threads.
 pub struct contact_normal_solver {
-    solver: Solver,
+    pub(super) solver: Solver,
+    guess: GuessBuffer,
 }
 
 /// Sets up a solver for the grid, the bodies and the influence coefficients of `scene`, whose undeformed distance and load do not
@@ -30,7 +31,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         }
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let (scene, options) = unsafe { (scene::translate(scene)?, options::translate(options)?) };
-        let new = contact_normal_solver { solver: Solver::new(&scene, &options.options)? };
+        let new =
+            contact_normal_solver { solver: Solver::new(&scene, &options.options)?, guess: GuessBuffer::default() };
         // SAFETY: not null: room for a pointer.
         unsafe { solver.write(Box::into_raw(Box::new(new))) };
         Ok(CONTACT_NORMAL_OK)
@@ -38,7 +40,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
 }
 
 /// Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
-/// for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. Since 0.1.
+/// for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+/// further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(
     solver: *mut contact_normal_solver,
@@ -52,16 +55,16 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
             return Err(Refusal::null("solver"));
         }
         // SAFETY: not null: made by contact_normal_solver_new and used by one thread at a time.
-        let solver = unsafe { &mut (*solver).solver };
+        let contact_normal_solver { solver, guess } = unsafe { &mut *solver };
         // SAFETY: as in contact_normal_solver_new.
         let (scene, options, outputs) =
             unsafe { (scene_for(solver, scene)?, options::translate(options)?, Outputs::of(fields, report)?) };
-        run(solver, &scene, &options, &outputs)
+        run_watched(solver, &scene, &options, &outputs, guess)
     })
 }
 
 /// Translates a scene for a solver that is set up.
-unsafe fn scene_for<'a>(solver: &Solver, scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
+pub(super) unsafe fn scene_for<'a>(solver: &Solver, scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
     let own = solver.has_own_influence();
     // SAFETY: by the caller.
     let scene = unsafe { scene::translate_for(scene, own)? };

@@ -42,6 +42,7 @@ pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 pub const CONTACT_NORMAL_ABI_VERSION: i32 = 1;
 
 /// A refusal at the boundary.
+#[derive(Clone)]
 pub(super) struct Refusal {
     pub status: contact_normal_status,
     pub message: String,
@@ -54,6 +55,10 @@ impl Refusal {
 
     pub fn null(name: &str) -> Refusal {
         Refusal::new(CONTACT_NORMAL_NULL_POINTER, format!("{name} is NULL; it must point to something"))
+    }
+
+    pub fn struct_size(message: String) -> Refusal {
+        Refusal::new(CONTACT_NORMAL_STRUCT_SIZE, message)
     }
 
     pub fn invalid(message: String) -> Refusal {

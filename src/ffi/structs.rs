@@ -23,7 +23,7 @@ pub unsafe trait Versioned: Copy {
 const LARGEST: usize = 4096;
 
 /// The declared size of a struct, after a check.
-unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> Result<usize, Refusal> {
+pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> Result<usize, Refusal> {
     if from.is_null() {
         return Err(Refusal::null(name));
     }

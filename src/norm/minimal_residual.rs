@@ -77,10 +77,11 @@ pub fn minimal_residual(
             inner.iterations += 1;
             basis.extend(elements.iter().map(|&i| product[i]));
             let (basis, w) = basis.split_at_mut((k + 1) * m);
-            project(w);
             columns.resize((k + 1) * RESTART, 0.0);
             let column = &mut columns[k * RESTART..];
+            // Twice, and the mean each time: what round-off leaves of it no residual would show.
             for _ in 0..2 {
+                project(w);
                 for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {
                     let part: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
                     *h += part;

@@ -34,7 +34,8 @@ impl Bodies {
                     "shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"
                 ));
             }
-            require(ratio > -1.0 && ratio <= 0.5, &format!("poisson_ratio[{i}]"), ratio, "it must lie in (-1, 0.5]")?;
+            let name = ["poisson_ratio[0]", "poisson_ratio[1]"][i];
+            require(ratio > -1.0 && ratio <= 0.5, name, ratio, "it must lie in (-1, 0.5]")?;
         }
         if self.shear_modulus.iter().all(|modulus| modulus.is_infinite()) {
             return invalid("shear_modulus is infinite for both bodies; at least one of them must be elastic".into());

@@ -40,6 +40,8 @@ pub enum Through {
     Solve,
     SolverNew,
     SolverSolve,
+    /// As the only problem of a batch.
+    SolverSolveBatch,
 }
 
 /// The arguments of a call; as made by `new`, a valid one.
@@ -55,6 +57,8 @@ pub struct Call {
     pub contact: Vec<i32>,
     /// The argument that is NULL instead.
     pub without: &'static str,
+    /// Of a batch.
+    status: i32,
     others: Vec<f64>,
     ledger: Vec<contact_normal_ledger_row>,
     handle: *mut contact_normal_solver,
@@ -86,6 +90,7 @@ impl Call {
             pressure: vec![SENTINEL; N],
             contact: vec![SENTINEL_CONTACT; N],
             without: "",
+            status: SENTINEL_CONTACT,
             others: vec![SENTINEL; 2 * N],
             ledger: vec![contact_normal_ledger_row { mx: SENTINEL_CONTACT, ..Default::default() }; 4],
             handle: null_mut(),
@@ -142,6 +147,13 @@ impl Call {
                 Through::Solve => contact_normal_solve(scene, options, fields, report),
                 Through::SolverNew => contact_normal_solver_new(scene, options, &raw mut self.handle),
                 Through::SolverSolve => contact_normal_solver_solve(handle, scene, options, fields, report),
+                Through::SolverSolveBatch => {
+                    let status = &raw mut self.status;
+                    let returned = contact_normal_solver_solve_batch(handle, 1, scene, options, fields, report, status);
+                    // Untouched when the call itself is refused.
+                    assert!(self.status == SENTINEL_CONTACT || self.status == returned);
+                    returned
+                }
             };
             // After OK the message is still that of the last call that had one.
             (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })

@@ -1,0 +1,199 @@
+//! `contact_normal_solver_solve_batch`: many problems in one call, spread over threads.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::guard::guard;
+use super::options::{self, contact_normal_options};
+use super::report::{contact_normal_fields, contact_normal_report};
+use super::scene::contact_normal_scene;
+use super::solve::{run, GuessBuffer, Outcome, Outputs};
+use super::solver::{contact_normal_solver, scene_for};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
+use super::structs::{self, Versioned};
+use crate::solver::{Options, Solver};
+
+/// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
+/// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
+/// structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
+/// not wanted. What one problem writes no other may read or write.
+///
+/// A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
+/// status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
+/// else of the first one that stopped early (> 0); `contact_normal_last_error` says which it is, as "problem 3: ...", counted
+/// from 0. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+///
+/// Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
+/// `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.
+/// `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
+/// messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solver_solve_batch(
+    solver: *mut contact_normal_solver,
+    count: i32,
+    scenes: *const contact_normal_scene,
+    options: *const contact_normal_options,
+    fields: *mut contact_normal_fields,
+    reports: *mut contact_normal_report,
+    statuses: *mut contact_normal_status,
+) -> contact_normal_status {
+    guard(|| {
+        if solver.is_null() {
+            return Err(Refusal::null("solver"));
+        }
+        let Ok(count) = usize::try_from(count) else {
+            return Err(Refusal::invalid(format!("count is {count}; it must not be negative")));
+        };
+        // SAFETY: not null: made by contact_normal_solver_new and used by one thread at a time.
+        let solver = unsafe { &mut (*solver).solver };
+        // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+        let options = unsafe { options::translate(options)? };
+        if options.progress.is_some() {
+            let message = "progress is given; in a batch it must be NULL: no callback is called from another thread";
+            return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message.into()));
+        }
+        solver.check_batch(&options.options)?;
+        if count == 0 {
+            return Ok(CONTACT_NORMAL_OK);
+        }
+        if scenes.is_null() {
+            return Err(Refusal::null("scenes"));
+        }
+        // SAFETY: NULL or arrays of `count` structs, by the conventions of the ABI.
+        let batch = unsafe { Batch::new(count, scenes, fields, reports, statuses)? };
+        batch.check_overlap(solver.state().p.len())?;
+        let worst = Mutex::new(Worst::default());
+        solver.distribute(count, |i, worker| {
+            // SAFETY: each problem is solved by one thread.
+            let outcome = unsafe { batch.solve(i, worker, &options.options) };
+            worst.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
+        })?;
+        worst.into_inner().unwrap_or_else(PoisonError::into_inner).outcome.conclude()
+    })
+}
+
+/// An array of structs of the caller's, who may have a smaller or larger version of them: it is as far from one to the next as the
+/// first says.
+struct Array<T> {
+    first: *mut T,
+    stride: usize,
+}
+
+impl<T: Versioned> Array<T> {
+    unsafe fn new(first: *mut T, name: &str) -> Result<Array<T>, Refusal> {
+        // SAFETY: not null: a struct that declares its size.
+        Ok(Array { first, stride: unsafe { structs::declared_size(first.cast_const(), name)? } })
+    }
+
+    /// Element `i`, if it declares the same size.
+    unsafe fn at(&self, i: usize, name: &str) -> Result<*mut T, Refusal> {
+        // SAFETY: the caller's array has more than `i` elements.
+        let element = unsafe { self.first.byte_add(i * self.stride) };
+        // SAFETY: likewise; each begins with its size.
+        let declared = unsafe { element.cast::<i64>().read_unaligned() };
+        if declared != self.stride as i64 {
+            let rule = format!("it must be {}, as that of the first of the array: call {}_init", self.stride, T::NAME);
+            return Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}")));
+        }
+        Ok(element)
+    }
+}
+
+/// The caller's arrays.
+struct Batch {
+    scenes: Array<contact_normal_scene>,
+    outputs: Vec<Result<Outputs, Refusal>>,
+    statuses: *mut contact_normal_status,
+}
+
+// SAFETY: the pointers are the caller's, who leaves what they point to alone during the call. Scenes are read only, and what is
+// written for one problem no other reads or writes: by the conventions of the call, and `check_overlap`.
+unsafe impl Sync for Batch {}
+
+impl Batch {
+    unsafe fn new(
+        count: usize,
+        scenes: *const contact_normal_scene,
+        fields: *mut contact_normal_fields,
+        reports: *mut contact_normal_report,
+        statuses: *mut contact_normal_status,
+    ) -> Result<Batch, Refusal> {
+        // SAFETY (all): by the caller.
+        unsafe {
+            let scenes = Array::new(scenes.cast_mut(), "scenes")?;
+            let fields = if fields.is_null() { None } else { Some(Array::new(fields, "fields")?) };
+            let reports = if reports.is_null() { None } else { Some(Array::new(reports, "reports")?) };
+            let outputs_of = |i: usize| {
+                let report = reports.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "report"))?;
+                match &fields {
+                    Some(array) => Outputs::of(array.at(i, "fields")?, report),
+                    None => Outputs::of(&mut contact_normal_fields::defaults(), report),
+                }
+            };
+            Ok(Batch { scenes, outputs: (0..count).map(outputs_of).collect(), statuses })
+        }
+    }
+
+    /// Refuses output arrays that overlap: several threads would write to one.
+    fn check_overlap(&self, n: usize) -> Result<(), Refusal> {
+        let mut written: Vec<_> = Vec::new();
+        for (i, outputs) in self.outputs.iter().enumerate() {
+            for (name, start, bytes) in outputs.iter().flat_map(|outputs| outputs.written(n)) {
+                written.push((start, start.saturating_add(bytes), i, name));
+            }
+        }
+        written.sort_unstable();
+        for pair in written.windows(2) {
+            let [(_, end, i, name), (start, _, j, other)] = pair else { continue };
+            if start < end {
+                return Err(Refusal::invalid(format!(
+                    "{name} of problem {i} and {other} of problem {j} overlap; each output needs an array of its own"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.
+    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Options) -> Outcome {
+        let mut solved = || -> Result<Outcome, Refusal> {
+            let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
+            // SAFETY: a scene that declares its size, by the conventions of the ABI.
+            let scene = unsafe { scene_for(worker, self.scenes.at(i, "scene")?)? };
+            run(worker, &scene, options, None, outputs, &mut GuessBuffer::default())
+        };
+        let outcome = solved().unwrap_or_else(|refusal| Outcome { status: refusal.status, message: refusal.message });
+        if !self.statuses.is_null() {
+            // SAFETY: not null: room for `count` values.
+            unsafe { self.statuses.add(i).write(outcome.status) };
+        }
+        outcome
+    }
+}
+
+/// What the call returns: of the first problem that was refused, or else of the first that stopped early.
+struct Worst {
+    problem: usize,
+    outcome: Outcome,
+}
+
+impl Default for Worst {
+    fn default() -> Worst {
+        Worst { problem: usize::MAX, outcome: Outcome { status: CONTACT_NORMAL_OK, message: String::new() } }
+    }
+}
+
+impl Worst {
+    fn note(&mut self, problem: usize, outcome: Outcome) {
+        // Refused before stopped early before solved, then by number.
+        let rank =
+            |problem: usize, outcome: &Outcome| (outcome.status >= 0, outcome.status == CONTACT_NORMAL_OK, problem);
+        if rank(problem, &outcome) < rank(self.problem, &self.outcome) {
+            let message = if outcome.message.is_empty() {
+                String::new()
+            } else {
+                format!("problem {problem}: {}", outcome.message)
+            };
+            *self = Worst { problem, outcome: Outcome { message, ..outcome } };
+        }
+    }
+}
