@@ -30,6 +30,9 @@ pub struct Pool {
     workers: Arc<rayon::ThreadPool>,
 }
 
+/// Elements of a grid from which on several threads are faster than one: a product takes some 100 us there, to wake a thread 5 us.
+const WORTH_WAKING: usize = 64 * 64;
+
 /// Prefix of the names of our threads.
 pub(crate) const THREAD_NAME: &str = "contact-normal-";
 
@@ -128,6 +131,39 @@ impl Threads {
             Some(workers) => workers.install(|| {
                 data.par_chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
             }),
+        }
+    }
+
+    /// Runs `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
+    pub fn for_each_row_pair<A: Send, B: Send>(
+        &self,
+        (a, length_a): (&mut [A], usize),
+        (b, length_b): (&mut [B], usize),
+        pieces: usize,
+        work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
+    ) {
+        let rows_per_piece = a.len().div_ceil(length_a).div_ceil(pieces).max(1);
+        let piece = |k: usize, a: &mut [A], b: &mut [B]| {
+            for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
+                work(k * rows_per_piece + i, a, b);
+            }
+        };
+        let (chunk_a, chunk_b) = (rows_per_piece * length_a, rows_per_piece * length_b);
+        match self.workers() {
+            None => a.chunks_mut(chunk_a).zip(b.chunks_mut(chunk_b)).enumerate().for_each(|(k, (a, b))| piece(k, a, b)),
+            Some(workers) => workers.install(|| {
+                let chunks = a.par_chunks_mut(chunk_a).zip(b.par_chunks_mut(chunk_b)).enumerate();
+                chunks.for_each(|(k, (a, b))| piece(k, a, b));
+            }),
+        }
+    }
+
+    /// These threads for work on so many elements: the caller's own where waking the others takes longer than the work.
+    pub fn suited_to(&self, elements: usize) -> Threads {
+        if elements < WORTH_WAKING {
+            Threads::One
+        } else {
+            self.clone()
         }
     }
 }

@@ -5,7 +5,7 @@ mod exchange;
 mod guard;
 mod state;
 
-pub use certificate::{certify, norm_of_distance, residual_norm, Certificate};
+pub use certificate::{certify, norm_of_distance, residual_norm, Certificate, Survey};
 pub use exchange::{admit, starting_contact, truncate};
 pub use guard::ExchangeGuard;
 pub use state::State;

@@ -137,6 +137,25 @@ impl<T: Real> Toeplitz<T> {
         }))
     }
 
+    /// The same operator in another precision.
+    pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
+        let convert = |value: T| S::of(value.to_double());
+        let spectrum = match &self.spectrum {
+            Spectrum::Even(from) => {
+                let mut to = zeros(from.len(), "the operator's spectrum")?;
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = convert(*from));
+                Spectrum::Even(to)
+            }
+            Spectrum::General(from) => {
+                let mut to = zeros(from.len(), "the operator's spectrum")?;
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = Complex::new(convert(from.re), convert(from.im)));
+                Spectrum::General(to)
+            }
+        };
+        let (rows, columns) = (RowTransform::new(self.rows.length()), ColumnTransform::new(self.columns.length()));
+        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, threads: self.threads.clone() })
+    }
+
     /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         let mut pieces = Vec::new();

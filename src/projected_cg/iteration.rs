@@ -28,6 +28,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::runs::Runs;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -57,8 +58,7 @@ pub struct Iteration<T: Real> {
     t: Vec<T>,
     q: Vec<T>,
     z: Vec<T>,
-    /// The elements in contact, in order: contact is often a small part of the grid.
-    elements: Vec<u32>,
+    runs: Runs,
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
     /// Whether an element of a row enters.
@@ -119,10 +119,14 @@ pub enum End {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`. The preconditioner's circulant has the period of the grid itself, a quarter of the work of a
+    /// Sets up the iteration on `grid`, the operator of which is given. The preconditioner's circulant has the period of the grid itself, a quarter of the work of a
     /// padded one at the same number of iterations. Where it is not positive, the iteration does without.
-    pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
-        let operator = Toeplitz::new(influence, grid, threads)?;
+    pub fn new(
+        operator: Toeplitz<T>,
+        influence: &Influence,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Iteration<T>> {
         let periods = (good_length(grid.mx + 1), good_length(grid.my + 1));
         let preconditioner = Toeplitz::inverse_circulant(influence, grid, periods, threads)?;
         if preconditioner.is_none() {
@@ -138,8 +142,8 @@ impl<T: Real> Iteration<T> {
             t: directions()?,
             q: directions()?,
             z: directions()?,
-            elements: Vec::with_capacity(n),
-            debts: Vec::with_capacity(n / 4 + 16),
+            runs: Runs::new(grid, threads),
+            debts: Vec::with_capacity(n),
             entering: (0..grid.my).map(|_| AtomicBool::new(false)).collect(),
             threads: threads.clone(),
             pieces: vec![(); threads.pieces()],
@@ -150,7 +154,7 @@ impl<T: Real> Iteration<T> {
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Toeplitz::bytes);
         let workspaces = self.workspace.bytes() + self.preconditioner_workspace.as_ref().map_or(0, Workspace::bytes);
-        self.operator.bytes() + preconditioner + workspaces + self.t.len() * (3 * size_of::<T>() + 2 * size_of::<u32>())
+        self.operator.bytes() + preconditioner + workspaces + self.t.len() * 3 * size_of::<T>()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -169,11 +173,11 @@ impl<T: Real> Iteration<T> {
         if self.preconditioner.is_some() {
             state.fit_approach();
             self.update_displacements(state, &Update::default(), false);
-            self.list_contact(state);
+            self.find_contact(state);
             self.residual(state);
             self.precondition();
-            self.direct(0.0, matches!(state.load, Load::Force(_)));
-            self.update_pressures(state, FIRST_FORECAST, None);
+            self.direct(state, 0.0, None);
+            self.update_pressures(state, FIRST_FORECAST, None, false);
             self.debts.clear();
             state.balance_force();
         }
@@ -194,7 +198,7 @@ impl<T: Real> Iteration<T> {
         state.fit_approach();
         // 4.2
         self.update_displacements(state, &Update::default(), stop.fixed);
-        self.list_contact(state);
+        self.find_contact(state);
         loop {
             // r = -e on C
             let residual = self.residual(state);
@@ -216,10 +220,7 @@ impl<T: Real> Iteration<T> {
             self.precondition();
 
             // t = z + beta t, held back, and the debts
-            self.direct(tq, by_force);
-            if let (Some(forecast), false) = (forecast, stop.fixed) {
-                self.hold_back(state, forecast);
-            }
+            self.direct(state, tq, forecast.filter(|_| !stop.fixed));
             let before = forecast.unwrap_or(1.0);
             for &(i, d) in &self.debts {
                 self.t[i] += T::of(d / before);
@@ -228,6 +229,7 @@ impl<T: Real> Iteration<T> {
             // q = A t, alpha = (r, t)/(t, q)
             self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
             let step = self.step(state);
+            let count = self.runs.count() as f64;
             if !(step.tq > 0.0 && step.rt.is_finite()) {
                 return End::Breakdown;
             }
@@ -243,16 +245,9 @@ impl<T: Real> Iteration<T> {
 
             // p = p + alpha t, 4.1
             let mut update = Update { alpha, ..Update::default() };
-            let left = if stop.fixed {
-                self.update_fixed_pressures(state, alpha)
-            } else {
-                // A forecast that was far off holds nobody back.
-                self.update_pressures(
-                    state,
-                    alpha,
-                    forecast.filter(|forecast| within_factor(alpha, *forecast, FAR_OFF)),
-                )
-            };
+            // A forecast that was far off holds nobody back.
+            let good_forecast = forecast.filter(|forecast| within_factor(alpha, *forecast, FAR_OFF));
+            let left = self.update_pressures(state, alpha, good_forecast, stop.fixed);
             forecast = Some(alpha).filter(|alpha| *alpha > 0.0);
             if let (Some(alpha), Some(_)) = (&mut forecast, &self.preconditioner) {
                 let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
@@ -270,14 +265,15 @@ impl<T: Real> Iteration<T> {
 
             // u = u + alpha q, 4.2
             if by_force {
+                if left > 0 {
+                    self.runs.find(&state.contact);
+                }
                 update.factor = self.carry_force(state);
                 self.fit_approach(state, &update);
             }
             let entered = self.update_displacements(state, &update, stop.fixed);
-            if entered > 0 {
-                self.list_contact(state);
-            }
-            let mean_square = |sum: f64| (sum / step.count).sqrt();
+            self.runs.find(&state.contact);
+            let mean_square = |sum: f64| (sum / count).sqrt();
             cycle = Some(Cycle {
                 changes: left + entered,
                 update: alpha.abs() * mean_square(step.tt),
@@ -288,38 +284,44 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    fn list_contact(&mut self, state: &State) {
-        self.elements.clear();
-        self.elements.extend((0u32..).zip(&state.contact).filter(|(_, &inside)| inside).map(|(i, _)| i));
+    /// The runs of a contact area of which nothing is known.
+    fn find_contact(&mut self, state: &State) {
+        self.runs.change_all();
+        self.runs.find(&state.contact);
     }
 
     /// With a prescribed force: the approach is the mean over C of h + u, u as `update` will leave it.
-    fn fit_approach(&self, state: &mut State, update: &Update) {
-        if self.elements.is_empty() {
-            return;
+    fn fit_approach(&mut self, state: &mut State, update: &Update) {
+        let (q, z, Update { alpha, settled, factor }) = (&self.q, &self.z, *update);
+        let [sum] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
+                sums.add(h.len(), |i| {
+                    let repair = if settled { z[i].to_double() } else { 0.0 };
+                    [h[i] + factor * (u[i] + alpha * q[i].to_double() + repair)]
+                });
+            }
+        });
+        if self.runs.count() > 0 {
+            state.approach = sum / self.runs.count() as f64;
         }
-        let mut sum = 0.0;
-        for &i in &self.elements {
-            let i = i as usize;
-            let change =
-                update.alpha * self.q[i].to_double() + if update.settled { self.z[i].to_double() } else { 0.0 };
-            sum += state.h[i] + update.factor * (state.u[i] + change);
-        }
-        state.approach = sum / self.elements.len() as f64;
     }
 
     /// z = r = -e on C, 0 outside; the relative residual.
     fn residual(&mut self, state: &State) -> f64 {
-        self.z.fill(T::zero());
-        let (mut rr, mut hh) = (0.0, 0.0);
-        for &i in &self.elements {
-            let i = i as usize;
-            let distance = state.h[i] - state.approach;
-            let e = distance + state.u[i];
-            self.z[i] = T::of(-e);
-            rr += e * e;
-            hh += distance * distance;
-        }
+        let approach = state.approach;
+        let [rr, hh] = self.runs.sum_changing(&mut self.z, |block, z, sums| {
+            z.fill(T::zero());
+            for (run, local) in block.runs() {
+                let (h, u, z) = (&state.h[run.clone()], &state.u[run], &mut z[local]);
+                sums.add(h.len(), |i| {
+                    let distance = h[i] - approach;
+                    let e = distance + u[i];
+                    z[i] = T::of(-e);
+                    [e * e, distance * distance]
+                });
+            }
+        });
         if rr == 0.0 {
             0.0
         } else {
@@ -334,90 +336,111 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C. `tq` is (t, q) of the last direction, 0 if there
-    /// is none.
-    fn direct(&mut self, tq: f64, by_force: bool) {
-        let count = self.elements.len() as f64;
+    /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C; held back by the forecast, if there is one.
+    /// `tq` is (t, q) of the last direction, 0 if there is none.
+    fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
+        let by_force = matches!(state.load, Load::Force(_));
+        let count = self.runs.count() as f64;
         let (mut mean, mut beta) = (0.0, 0.0);
-        if by_force {
-            mean = self.elements.iter().map(|&i| self.z[i as usize].to_double()).sum::<f64>() / count;
+        if by_force || tq > 0.0 {
+            let (z, q) = (&self.z, &self.q);
+            let [z1, q1, zq] = self.runs.sum(|block, sums| {
+                for (run, _) in block.runs() {
+                    let (z, q) = (&z[run.clone()], &q[run]);
+                    sums.add(z.len(), |i| {
+                        let (z, q) = (z[i].to_double(), q[i].to_double());
+                        [z, q, z * q]
+                    });
+                }
+            });
+            mean = if by_force { z1 / count } else { 0.0 };
+            beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
         }
-        if tq > 0.0 {
-            let zq = |i: usize| (self.z[i].to_double() - mean) * self.q[i].to_double();
-            beta = (-self.elements.iter().map(|&i| zq(i as usize)).sum::<f64>() / tq).max(0.0);
-        }
-        let (z_mean, beta) = (T::of(mean), T::of(beta));
-        let mut sum = 0.0;
-        for &i in &self.elements {
-            let i = i as usize;
-            self.t[i] = self.z[i] - z_mean + beta * self.t[i];
-            sum += self.t[i].to_double();
-        }
+        let (z, z_mean, beta) = (&self.z, T::of(mean), T::of(beta));
+        let held = |p: f64, t: T| match forecast {
+            Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
+            _ => t,
+        };
+        let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
+            for (run, local) in block.runs() {
+                let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
+                sums.add(z.len(), |i| {
+                    let direction = z[i] - z_mean + beta * t[i];
+                    t[i] = if by_force { direction } else { held(p[i], direction) };
+                    [direction.to_double()]
+                });
+            }
+        });
         if by_force {
             let mean = T::of(sum / count);
-            for &i in &self.elements {
-                self.t[i as usize] = self.t[i as usize] - mean;
-            }
-        }
-    }
-
-    /// t = max(t, -p/forecast).
-    fn hold_back(&mut self, state: &State, forecast: f64) {
-        for &i in &self.elements {
-            let i = i as usize;
-            if state.p[i] + forecast * self.t[i].to_double() < 0.0 {
-                self.t[i] = T::of(-state.p[i] / forecast);
-            }
+            let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
+                for (run, local) in block.runs() {
+                    for (t, p) in t[local].iter_mut().zip(&state.p[run]) {
+                        *t = held(*p, *t - mean);
+                    }
+                }
+            });
         }
     }
 
     /// The sums over C that the step length needs.
-    fn step(&self, state: &State) -> Step {
-        let mut step = Step { rt: 0.0, tq: 0.0, tt: 0.0, t1: 0.0, pp: 0.0, count: self.elements.len() as f64 };
-        for &i in &self.elements {
-            let i = i as usize;
-            let t = self.t[i].to_double();
-            step.rt -= state.deformed_distance(i) * t;
-            step.tq += t * self.q[i].to_double();
-            step.tt += t * t;
-            step.t1 += t.abs();
-            step.pp += state.p[i] * state.p[i];
-        }
-        step
+    fn step(&mut self, state: &State) -> Step {
+        let (t, q) = (&self.t, &self.q);
+        let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                let (t, q) = (&t[run.clone()], &q[run]);
+                sums.add(h.len(), |i| {
+                    let (t, e) = (t[i].to_double(), h[i] - state.approach + u[i]);
+                    [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                });
+            }
+        });
+        Step { rt, tq, tt, t1, pp }
     }
 
-    /// p = p + alpha t on C, and 4.1: elements with p < 0, and those held back by the forecast, leave; what they gain is owed.
-    /// Returns how many.
-    fn update_pressures(&mut self, state: &mut State, alpha: f64, forecast: Option<f64>) -> u64 {
+    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements with p < 0, and those held back by the forecast, leave; what they gain
+    /// is owed. Returns how many.
+    fn update_pressures(&mut self, state: &mut State, alpha: f64, forecast: Option<f64>, fixed: bool) -> u64 {
+        let t = &self.t;
+        let leaves = |p: f64, t: T| {
+            let held = forecast.is_some_and(|forecast| p + forecast * t.to_double() <= HELD_BACK * p);
+            !fixed & ((p + alpha * t.to_double() < 0.0) | held)
+        };
+        // Blocks that no element leaves; the others have a sum of 1.
+        let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
+            let some_leave = block
+                .runs()
+                .any(|(run, local)| p[local].iter().zip(&t[run]).fold(false, |some, (p, t)| some | leaves(*p, *t)));
+            if some_leave {
+                sums.add(1, |_| [1.0]);
+                return;
+            }
+            for (run, local) in block.runs() {
+                p[local].iter_mut().zip(&t[run]).for_each(|(p, t)| *p += alpha * t.to_double());
+            }
+        });
+        let before = self.debts.len();
         let mut left = 0;
-        for &i in &self.elements {
-            let i = i as usize;
-            let (p, t) = (state.p[i], self.t[i].to_double());
-            let after = p + alpha * t;
-            if after < 0.0 || forecast.is_some_and(|forecast| p + forecast * t <= HELD_BACK * p) {
-                if after != 0.0 {
-                    self.debts.push((i, -after));
-                }
+        let n = state.p.len();
+        for i in self.runs.blocks_with_sum().flatten().filter(|&i| i < n) {
+            if !state.contact[i] {
+                continue;
+            }
+            let (p, t) = (state.p[i], self.t[i]);
+            state.p[i] = p + alpha * t.to_double();
+            if leaves(p, t) {
+                self.debts.push((i, -state.p[i]));
                 state.p[i] = 0.0;
                 self.t[i] = T::zero();
                 state.contact[i] = false;
                 left += 1;
-            } else {
-                state.p[i] = after;
             }
         }
-        if left > 0 {
-            self.elements.retain(|&i| state.contact[i as usize]);
+        for debt in &self.debts[before..] {
+            self.runs.change(debt.0);
         }
         left
-    }
-
-    /// p = p + alpha t on C.
-    fn update_fixed_pressures(&self, state: &mut State, alpha: f64) -> u64 {
-        for &i in &self.elements {
-            state.p[i as usize] += alpha * self.t[i as usize].to_double();
-        }
-        0
     }
 
     /// z = A d: a product pays all debts.
@@ -432,14 +455,22 @@ impl<T: Real> Iteration<T> {
     /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
     fn carry_force(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
-        let carried: f64 = self.elements.iter().map(|&i| state.p[i as usize]).sum();
+        let p = &state.p;
+        let [carried] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let p = &p[run];
+                sums.add(p.len(), |i| [p[i]]);
+            }
+        });
         let factor = force / (carried * state.grid.element_area());
         if !factor.is_finite() {
             return 1.0;
         }
-        for &i in &self.elements {
-            state.p[i as usize] *= factor;
-        }
+        let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
+            for (_, local) in block.runs() {
+                p[local].iter_mut().for_each(|p| *p *= factor);
+            }
+        });
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
         factor
     }
@@ -471,6 +502,7 @@ impl<T: Real> Iteration<T> {
         });
         let mut entered = 0;
         for (iy, _) in self.entering.iter().enumerate().filter(|(_, any)| !fixed && any.load(Ordering::Relaxed)) {
+            self.runs.change(iy * mx);
             for i in iy * mx..(iy + 1) * mx {
                 if !contact[i] && h[i] - approach + u[i] < 0.0 {
                     contact[i] = true;
@@ -487,6 +519,7 @@ fn within_factor(value: f64, other: f64, factor: f64) -> bool {
 }
 
 /// What becomes of u: factor (u + alpha q + A d).
+#[derive(Clone, Copy)]
 struct Update {
     alpha: f64,
     /// Whether z holds A d.
@@ -500,12 +533,11 @@ impl Default for Update {
     }
 }
 
-/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p), and the number of elements.
+/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p).
 struct Step {
     rt: f64,
     tq: f64,
     tt: f64,
     t1: f64,
     pp: f64,
-    count: f64,
 }

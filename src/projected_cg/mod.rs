@@ -2,6 +2,7 @@
 //! iteration over the grids.
 
 mod iteration;
+mod runs;
 mod window;
 
 pub use iteration::{Cycle, End, Iteration, Stopping};

@@ -279,7 +279,10 @@ impl Solver {
 
         let state = &mut self.states[0];
         if !has_guess {
-            state.start(self.projected.influence().at(0, 0));
+            // The other methods begin on coarser grids.
+            if matches!(options.method, Method::Norm | Method::Multigrid) {
+                state.start(self.projected.influence().at(0, 0));
+            }
             return Ok(false);
         }
         for i in 0..state.p.len() {

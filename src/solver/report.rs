@@ -1,6 +1,6 @@
 //! What a solve found, what it cost, and what it knew when.
 
-use crate::active_set::{certify, Certificate, State};
+use crate::active_set::{Certificate, State, Survey};
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,14 +35,14 @@ pub struct Measures {
 impl Measures {
     /// Measures a state whose u is A p.
     pub fn of(state: &State) -> Measures {
-        let contact_count = state.contact_count();
+        let survey = Survey::of(state);
         Measures {
-            certificate: certify(state),
+            certificate: survey.certificate(),
             approach: state.approach,
-            force: state.force(),
-            max_pressure: state.p.iter().copied().fold(0.0, f64::max),
-            contact_count,
-            contact_area: contact_count as f64 * state.grid.element_area(),
+            force: survey.pressures * state.grid.element_area(),
+            max_pressure: survey.range.1.max(0.0),
+            contact_count: survey.contact_count,
+            contact_area: survey.contact_count as f64 * state.grid.element_area(),
         }
     }
 }

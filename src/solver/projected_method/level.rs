@@ -1,12 +1,15 @@
 //! The iteration of one grid, on the window around its contact area.
 
+use std::sync::Arc;
+
 use super::super::monitor::Monitor;
 use super::super::options::Precision;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::zeros;
+use crate::operator::fft::Real;
+use crate::operator::{zeros, Toeplitz};
 use crate::projected_cg::{Cycle, End, Iteration, Stopping, Window};
 use crate::threads::Threads;
 
@@ -28,10 +31,30 @@ enum Inner {
 }
 
 impl Inner {
-    fn new(influence: &Influence, grid: &Grid, precision: Precision, threads: &Threads) -> Result<Inner> {
+    /// On `grid`, of which `operator` is the one in double precision if that is known.
+    fn new(
+        influence: &Influence,
+        grid: &Grid,
+        operator: Option<&Toeplitz<f64>>,
+        precision: Precision,
+        threads: &Threads,
+    ) -> Result<Inner> {
+        fn iteration<T: Real>(
+            influence: &Influence,
+            grid: &Grid,
+            operator: Option<&Toeplitz<f64>>,
+            threads: &Threads,
+        ) -> Result<Iteration<T>> {
+            let operator = match operator {
+                Some(operator) => operator.in_precision()?,
+                None => Toeplitz::new(influence, grid, threads)?,
+            };
+            Iteration::new(operator, influence, grid, threads)
+        }
+        let threads = &threads.suited_to(grid.len());
         Ok(match precision {
-            Precision::Double => Inner::Double(Iteration::new(influence, grid, threads)?),
-            Precision::Auto | Precision::Mixed => Inner::Single(Iteration::new(influence, grid, threads)?),
+            Precision::Double => Inner::Double(iteration(influence, grid, operator, threads)?),
+            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, threads)?),
         })
     }
 
@@ -74,6 +97,8 @@ struct Windowed {
 pub struct Level {
     grid: Grid,
     influence: Influence,
+    /// Of the whole grid, in double precision, if there is one.
+    operator: Option<Arc<Toeplitz<f64>>>,
     precision: Precision,
     threads: Threads,
     /// None before the first iteration.
@@ -85,7 +110,12 @@ pub struct Level {
 impl Level {
     /// Nothing is set up before it is needed.
     pub fn new(grid: Grid, influence: Influence, precision: Precision, threads: &Threads) -> Level {
-        Level { grid, influence, precision, threads: threads.clone(), windowed: None, choose_anew: true }
+        Level { grid, influence, operator: None, precision, threads: threads.clone(), windowed: None, choose_anew: true }
+    }
+
+    /// Where the window is the whole grid, its operator need not be set up anew.
+    pub fn with_operator(self, operator: Arc<Toeplitz<f64>>) -> Level {
+        Level { operator: Some(operator), ..self }
     }
 
     /// The influence of an element on itself.
@@ -165,7 +195,8 @@ impl Level {
             windowed.window = window;
             return Ok(());
         }
-        let inner = Inner::new(&self.influence, &grid, self.precision, &self.threads)?;
+        let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
+        let inner = Inner::new(&self.influence, &grid, operator, self.precision, &self.threads)?;
         let part = if window.is_full(&self.grid) {
             None
         } else {

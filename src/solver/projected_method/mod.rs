@@ -7,11 +7,13 @@
 mod coarse;
 mod level;
 
+use std::sync::Arc;
+
 use super::full_multigrid::discretisation_error;
 use super::monitor::{Monitor, Rule};
 use super::options::Precision;
 use super::report::Stop;
-use crate::active_set::{admit, certify, norm_of_distance, residual_norm, State};
+use crate::active_set::{admit, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -27,14 +29,14 @@ use level::{Displacement, Level};
 const AIM: f64 = 0.5;
 /// Rounds without progress after which round-off is reached, or the method does not work on this scene.
 const PATIENCE: u32 = 3;
-/// A guess whose relative residual is larger is worth less than what the coarser grids find.
+/// A guess whose relative residual or penetration is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
 
 /// The method's operators, set up once.
 pub struct Projected {
     grid: Grid,
     /// In double precision, on the full grid: for certificates.
-    operator: Toeplitz<f64>,
+    operator: Arc<Toeplitz<f64>>,
     workspace: Workspace<f64>,
     finest: Level,
     /// None before it is first needed.
@@ -48,12 +50,12 @@ pub struct Projected {
 impl Projected {
     /// Sets up the full-grid operator; the rest follows when it is first needed.
     pub fn new(grid: &Grid, influence: &Influence, precision: Precision, threads: &Threads) -> Result<Projected> {
-        let operator = Toeplitz::new(influence, grid, threads)?;
+        let operator = Arc::new(Toeplitz::new(influence, grid, &threads.suited_to(grid.len()))?);
         Ok(Projected {
             grid: *grid,
             workspace: operator.workspace()?,
+            finest: Level::new(*grid, influence.clone(), precision, threads).with_operator(operator.clone()),
             operator,
-            finest: Level::new(*grid, influence.clone(), precision, threads),
             coarse: None,
             before: Vec::new(),
             precision,
@@ -99,11 +101,15 @@ impl Projected {
         if has_start && !rule.fixed {
             scale_to_load(state);
         }
-        if has_start && (rule.fixed || residual_norm(state) <= WORTHLESS * norm_of_distance(state)) {
-            if !rule.by_update && self.judge(state, &rule, monitor).holds {
+        let mut good_start = has_start;
+        if has_start && !(rule.fixed && rule.by_update) {
+            let certified = self.judge(state, &rule, monitor);
+            if certified.holds && !rule.by_update {
                 return Ok(Stop::Converged);
             }
-        } else {
+            good_start = rule.fixed || certified.violation <= WORTHLESS;
+        }
+        if !good_start {
             displacement = self.start(state, &rule, monitor)?;
             if error_ratio > 0.0 {
                 rule.tolerance = rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
@@ -175,14 +181,21 @@ impl Projected {
 
     /// Whether the conditions hold for a state whose u is A p. Elements outside C that penetrate enter it.
     fn judge(&self, state: &mut State, rule: &Rule, monitor: &Monitor<'_>) -> Certified {
-        let h = norm_of_distance(state);
-        let scale = h / (state.contact_count().max(1) as f64).sqrt();
-        let penetration = certify(state).penetration;
-        let negligible = penetration <= rule.tolerance * scale;
-        let entered = if rule.fixed || negligible && penetration == 0.0 { 0 } else { admit(state) };
-        let residual = residual_norm(state);
-        let holds = rule.holds(state, monitor.update) && (entered == 0 || negligible);
-        let violation = (residual / h).max(penetration / scale);
+        let mut survey = Survey::of(state);
+        let scale = survey.distance / (survey.contact_count.max(1) as f64).sqrt();
+        let negligible = survey.penetration <= rule.tolerance * scale;
+        let violation = (survey.residual / survey.distance).max(survey.penetration / scale);
+        let mut entered = 0;
+        if !rule.fixed && survey.penetration > 0.0 {
+            entered = admit(state);
+            survey = Survey::of(state);
+        }
+        let met = if rule.by_update {
+            rule.holds(state, monitor.update)
+        } else {
+            survey.residual <= rule.tolerance * survey.distance
+        };
+        let holds = met && (entered == 0 || negligible);
         Certified { holds, violation }
     }
 }
