@@ -21,7 +21,7 @@
 //! on. Debts shrink by that factor at each iteration; what is left of them at the end the fresh product of the certificate settles.
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
-//! the length forecast, truncates, and then computes u: one product for what would take three.
+//! a fixed length, truncates, and then computes u: one product for what would take three.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
@@ -41,9 +41,12 @@ use crate::threads::Threads;
 /// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
 const OWED: f64 = 0.1;
-/// The first forecast of alpha, `2/(1 + 4)`, and the range of the later ones: the last alpha of a preconditioned iteration.
-const FIRST_FORECAST: f64 = 0.4;
-const FORECASTS: (f64, f64) = (0.3, 0.5);
+/// The length of the first step, which has no product: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
+const FIRST_STEP: f64 = 0.4;
+/// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
+/// forecasts, each the last alpha.
+const FIRST_FORECAST: f64 = 0.9;
+const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
@@ -168,7 +171,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// One step of the forecast length from a u that is near A p, with 4.2 before and 4.1 after it; then u = A p.
+    /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it; then u = A p.
     pub fn correct(&mut self, state: &mut State) {
         if self.preconditioner.is_some() {
             state.fit_approach();
@@ -177,7 +180,7 @@ impl<T: Real> Iteration<T> {
             self.residual(state);
             self.precondition();
             self.direct(state, 0.0, None);
-            self.update_pressures(state, FIRST_FORECAST, None, false);
+            self.update_pressures(state, FIRST_STEP, None, false);
             self.debts.clear();
             state.balance_force();
         }
