@@ -17,6 +17,7 @@
 //!   positive terms, and by Gauss-Legendre in the other, where `y = 0` is at least three half-widths away.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Terms of the multipole series at most (degree `2 * 8 = 16`).
 const MOST_TERMS: usize = 8;
@@ -34,6 +35,9 @@ const GAUSS: [(f64, f64); 5] = [
     (0.968_160_239_507_626_1, 0.081_274_388_361_574_41),
 ];
 
+/// Coefficients nearer than the series reaches are kept if there are no more than this, of one quadrant.
+const MOST_KEPT: usize = 1024;
+
 /// Coefficients of the half-space for one element size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HalfSpace {
@@ -41,19 +45,48 @@ pub struct HalfSpace {
     dy: f64,
     /// `1/(pi E*)`.
     compliance: f64,
+    shape: Arc<Shape>,
+}
+
+/// What depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large.
+#[derive(Clone, Debug, PartialEq)]
+struct Shape {
     /// `q_k(t) = sum_j series[k][j] t^j`.
-    series: Box<[[f64; MOST_TERMS + 1]; MOST_TERMS + 1]>,
+    series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
+    /// The integral of 1/rho, over dx, at offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row; NaN beyond. Empty if
+    /// there are too many.
+    near: Vec<f64>,
+    near_x: usize,
+}
+
+impl Shape {
+    fn new(dx: f64, dy: f64) -> Shape {
+        let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
+        let (near_x, near_y) = ((reach / dx) as usize + 2, (reach / dy) as usize + 2);
+        let mut near = Vec::new();
+        if near_x.saturating_mul(near_y) <= MOST_KEPT {
+            let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
+            // Beyond 1.01 of the reach the series serves.
+            let is_near = |kx: f64, ky: f64| (kx * dx).hypot(ky * dy) <= 1.01 * reach;
+            near.extend(
+                offsets.map(|(kx, ky)| if is_near(kx, ky) { near_integral(kx, ky, dx, dy) / dx } else { f64::NAN }),
+            );
+        }
+        Shape { series: multipole_series(dx, dy), near, near_x }
+    }
 }
 
 impl HalfSpace {
     /// Coefficients for elements `dx` by `dy`; `compliance` is `1/E* = sum of (1 - nu)/(2 G)` over the bodies.
     pub fn new(dx: f64, dy: f64, compliance: f64) -> HalfSpace {
-        HalfSpace { dx, dy, compliance: compliance / PI, series: multipole_series(dx, dy) }
+        HalfSpace { dx, dy, compliance: compliance / PI, shape: Arc::new(Shape::new(dx, dy)) }
     }
 
     /// The same bodies, another element size.
     pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
-        HalfSpace { dx, dy, compliance: self.compliance, series: multipole_series(dx, dy) }
+        let same_shape = dx / self.dx == dy / self.dy;
+        let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
+        HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 
     /// The coefficient at offset `(kx, ky)`.
@@ -77,7 +110,7 @@ impl HalfSpace {
         let starts = SERIES.map(|(distance, _)| first_beyond(distance));
         let (near, far) = out.split_at_mut(starts[0]);
         for (k, value) in near.iter_mut().enumerate() {
-            *value = self.compliance * self.near((kx + k as i64) as f64, ky.unsigned_abs() as f64);
+            *value = self.compliance * self.near(kx as usize + k, ky.unsigned_abs() as usize);
         }
         let [s8, s6, s4, s2] = starts;
         let (far8, rest) = far.split_at_mut(s6 - s8);
@@ -91,7 +124,7 @@ impl HalfSpace {
     }
 
     fn fill_series<const K: usize>(&self, kx: f64, y: f64, out: &mut [f64]) {
-        let scale = self.compliance * self.dx * self.dy;
+        let (scale, series) = (self.compliance * self.dx * self.dy, &self.shape.series);
         let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
         for (k, value) in out.iter_mut().enumerate() {
             let x = (kx + k as f64) * self.dx;
@@ -100,9 +133,9 @@ impl HalfSpace {
             let (t, z) = (x * x * inverse_r2, half_diagonal2 * inverse_r2);
             let mut sum = 0.0;
             for term in (0..=K).rev() {
-                let mut q = self.series[term][term];
+                let mut q = series[term][term];
                 for j in (0..term).rev() {
-                    q = q * t + self.series[term][j];
+                    q = q * t + series[term][j];
                 }
                 sum = sum * z + q;
             }
@@ -110,18 +143,28 @@ impl HalfSpace {
         }
     }
 
-    /// The integral of 1/rho at offset `(kx, ky) >= 0` nearer than the series reaches.
-    fn near(&self, kx: f64, ky: f64) -> f64 {
-        let (dx, dy) = (self.dx, self.dy);
-        if ky >= 2.0 {
-            gauss(ky * dy, dy, |y| line(kx, dx, y))
-        } else if kx >= 2.0 {
-            gauss(kx * dx, dx, |x| line(ky, dy, x))
+    /// The integral of 1/rho at an offset nearer than the series reaches.
+    fn near(&self, kx: usize, ky: usize) -> f64 {
+        let Shape { near, near_x, .. } = &*self.shape;
+        let kept = if kx < *near_x { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
+        if kept.is_nan() {
+            near_integral(kx as f64, ky as f64, self.dx, self.dy)
         } else {
-            let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
-            let f = |a: f64, b: f64| a * (b / a.abs()).asinh() + b * (a / b.abs()).asinh();
-            f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
+            kept * self.dx
         }
+    }
+}
+
+/// The integral of 1/rho over an element at offset `(kx, ky) >= 0`.
+fn near_integral(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
+    if ky >= 2.0 {
+        gauss(ky * dy, dy, |y| line(kx, dx, y))
+    } else if kx >= 2.0 {
+        gauss(kx * dx, dx, |x| line(ky, dy, x))
+    } else {
+        let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
+        let f = |a: f64, b: f64| a * (b / a.abs()).asinh() + b * (a / b.abs()).asinh();
+        f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
     }
 }
 
@@ -146,12 +189,12 @@ fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.
-fn multipole_series(dx: f64, dy: f64) -> Box<[[f64; MOST_TERMS + 1]; MOST_TERMS + 1]> {
+fn multipole_series(dx: f64, dy: f64) -> [[f64; MOST_TERMS + 1]; MOST_TERMS + 1] {
     let diagonal = dx.hypot(dy);
     let (hx, hy) = (dx / diagonal, dy / diagonal);
     // mean of s^(2i) over |s| <= h
     let moment = |h: f64, i: usize| h.powi(2 * i as i32) / (2 * i + 1) as f64;
-    let mut series = Box::new([[0.0; MOST_TERMS + 1]; MOST_TERMS + 1]);
+    let mut series = [[0.0; MOST_TERMS + 1]; MOST_TERMS + 1];
     for (k, q) in series.iter_mut().enumerate() {
         let n = 2 * k;
         for l in 0..=k {

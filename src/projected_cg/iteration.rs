@@ -124,12 +124,7 @@ pub enum End {
 impl<T: Real> Iteration<T> {
     /// Sets up the iteration on `grid`, the operator of which is given. The preconditioner's circulant has the period of the grid itself, a quarter of the work of a
     /// padded one at the same number of iterations. Where it is not positive, the iteration does without.
-    pub fn new(
-        operator: Toeplitz<T>,
-        influence: &Influence,
-        grid: &Grid,
-        threads: &Threads,
-    ) -> Result<Iteration<T>> {
+    pub fn new(operator: Toeplitz<T>, influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
         let periods = (good_length(grid.mx + 1), good_length(grid.my + 1));
         let preconditioner = Toeplitz::inverse_circulant(influence, grid, periods, threads)?;
         if preconditioner.is_none() {

@@ -110,7 +110,15 @@ pub struct Level {
 impl Level {
     /// Nothing is set up before it is needed.
     pub fn new(grid: Grid, influence: Influence, precision: Precision, threads: &Threads) -> Level {
-        Level { grid, influence, operator: None, precision, threads: threads.clone(), windowed: None, choose_anew: true }
+        Level {
+            grid,
+            influence,
+            operator: None,
+            precision,
+            threads: threads.clone(),
+            windowed: None,
+            choose_anew: true,
+        }
     }
 
     /// Where the window is the whole grid, its operator need not be set up anew.
