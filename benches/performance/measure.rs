@@ -33,6 +33,13 @@ fn now() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
+/// The time of some work.
+pub fn seconds(work: impl FnOnce()) -> f64 {
+    let began = now();
+    work();
+    now() - began
+}
+
 /// Runs all of `things` in turns; the times of each.
 pub fn in_turns(things: &mut [&mut dyn FnMut()]) -> Vec<Vec<f64>> {
     let mut times = vec![Vec::new(); things.len()];
@@ -43,9 +50,7 @@ pub fn in_turns(things: &mut [&mut dyn FnMut()]) -> Vec<Vec<f64>> {
             break;
         }
         for (thing, times) in things.iter_mut().zip(&mut times) {
-            let began = now();
-            thing();
-            times.push(now() - began);
+            times.push(seconds(thing));
         }
     }
     times

@@ -6,7 +6,7 @@ use contact_normal::scene::{Load, Scene};
 use contact_normal::solver::{InitialGuess, Method, Options, Problem, Solver, Stop};
 
 use crate::case::{ellipse, rough, wheel_rail, Case};
-use crate::measure::{cold, in_turns, median, shown, size, Product};
+use crate::measure::{cold, in_turns, median, seconds, shown, size, Product};
 
 /// What the small grids may cost on top of their products.
 const SMALL_GRID_EXTRA: f64 = 50e-6;
@@ -63,10 +63,15 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     );
 }
 
+/// Steps of 1 % of the approach, `CLIMB` of them up, then down again, and so on.
+const CLIMB: i32 = 20;
+
 /// The next solve after the approach changed by 1 %.
 pub fn time_steps(threads: usize) {
-    println!("\n### Time stepping: the approach changes by 1 %, the solver starts from its previous result, {threads} thread(s)\n");
-    println!("| case | step up | step down | product | products up / down | at most | |");
+    println!(
+        "\n### Time stepping: the approach changes by 1 % a step, {CLIMB} steps up, {CLIMB} down; {threads} thread(s)\n"
+    );
+    println!("| case | first step | later steps | product | products, first / later | at most | |");
     println!("|---|---|---|---|---|---|---|");
     let cases = [ellipse(64), ellipse(256), ellipse(512), ellipse(1024), rough(256), rough(512), rough(1024)];
     for case in cases.into_iter().chain([wheel_rail("y4_82kN", 1), wheel_rail("y4_82kN", 2)]) {
@@ -75,25 +80,39 @@ pub fn time_steps(threads: usize) {
         let approach = first.state().approach;
         drop(first);
         let next = Options { initial_guess: InitialGuess::Previous, ..options(threads) };
-        let (low, high) = (case.scene_with(Load::Approach(approach)), case.scene_with(Load::Approach(1.01 * approach)));
-        let solver = std::cell::RefCell::new(Solver::new(&low, &next).expect("a solver"));
-        let solve = |scene| {
-            let (stop, _) = solver.borrow_mut().solve(scene, &next, None, None).expect("a solvable scene");
+        let at = |step: i32| case.scene_with(Load::Approach(approach * 1.01f64.powi(step)));
+        let solve = |solver: &mut Solver, step: i32| {
+            let (stop, _) = solver.solve(&at(step), &next, None, None).expect("a solvable scene");
             assert_eq!(stop, Stop::Converged, "{}", case.name);
         };
-        solve(&low);
-        let mut product = Product::new(&low, threads);
-        let times = in_turns(&mut [&mut || solve(&high), &mut || solve(&low), &mut || product.run()]);
-        let [up, down, product] = [0, 1, 2].map(|i| median(&times[i]));
+        let mut stepping = Solver::new(&at(0), &next).expect("a solver");
+        let mut step = 0;
+        solve(&mut stepping, step);
+        let mut product = Product::new(&at(0), threads);
+        let times = in_turns(&mut [
+            &mut || {
+                step += 1;
+                solve(&mut stepping, CLIMB - (step % (2 * CLIMB) - CLIMB).abs());
+            },
+            &mut || product.run(),
+        ]);
+        let mut first_steps = Vec::new();
+        for _ in 0..5 {
+            let mut starting = Solver::new(&at(0), &next).expect("a solver");
+            solve(&mut starting, 0);
+            first_steps.push(seconds(|| solve(&mut starting, 1)));
+        }
+        let [later, product] = [0, 1].map(|i| median(&times[i]));
+        let first = median(&first_steps);
         println!(
             "| {} | {} | {} | {} | {:.1} / {:.1} | 5 | {} |",
             case.name,
-            shown(up),
-            shown(down),
+            shown(first),
+            shown(later),
             shown(product),
-            up / product,
-            down / product,
-            mark(up.max(down), 5.0 * product)
+            first / product,
+            later / product,
+            mark(first.max(later), 5.0 * product)
         );
     }
 }

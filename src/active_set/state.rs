@@ -67,18 +67,22 @@ impl State {
         self.h[i] - self.approach + self.u[i]
     }
 
-    /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed.
-    pub fn balance_force(&mut self) {
-        let Load::Force(force) = self.load else { return };
+    /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed. Returns the factor; none when the
+    /// pressures were replaced by uniform ones.
+    pub fn balance_force(&mut self) -> Option<f64> {
+        let Load::Force(force) = self.load else { return Some(1.0) };
         let carried = self.force();
         let factor = force / carried;
-        // Pressures too small to be scaled (none yet, or all truncated) start again from a uniform pressure.
         if carried > 0.0 && factor.is_finite() {
-            self.p.iter_mut().for_each(|p| *p *= factor);
-        } else {
-            let uniform = force / (self.grid.element_area() * self.contact_count().max(1) as f64);
-            self.p.iter_mut().zip(&self.contact).for_each(|(p, &inside)| *p = if inside { uniform } else { 0.0 });
+            if factor != 1.0 {
+                self.p.iter_mut().for_each(|p| *p *= factor);
+            }
+            return Some(factor);
         }
+        // Pressures too small to be scaled (none yet, or all truncated) start again from a uniform pressure.
+        let uniform = force / (self.grid.element_area() * self.contact_count().max(1) as f64);
+        self.p.iter_mut().zip(&self.contact).for_each(|(p, &inside)| *p = if inside { uniform } else { 0.0 });
+        None
     }
 
     /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.

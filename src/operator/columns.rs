@@ -9,6 +9,8 @@ use crate::threads::Threads;
 
 /// Columns in a block: 8 double-precision complex numbers are two cache lines.
 pub const BLOCK: usize = 8;
+/// Rows that are gathered at a time.
+const TILE: usize = 4;
 
 /// One block of columns of a row-major matrix: no two of them overlap.
 pub struct Block<'a, T> {
@@ -70,12 +72,20 @@ impl<T: Real> Block<'_, T> {
             column[..rows.start].fill(Complex::default());
             column[rows.end..].fill(Complex::default());
         }
-        for row in rows {
-            // SAFETY: row < rows of the matrix, and the block lies within the row: the slice is inside the matrix, which
-            // `for_each_block` borrows exclusively, and no other block overlaps this one.
-            let from = unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), columns) };
-            for (c, &value) in from.iter().enumerate() {
-                out[c * length + row] = value;
+        // TILE rows at a time: the writes to each column are neighbours.
+        let mut row = rows.start;
+        while row + TILE <= rows.end {
+            let from: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.row(row + k));
+            for (c, column) in out.chunks_exact_mut(length).take(columns).enumerate() {
+                for (value, from) in column[row..row + TILE].iter_mut().zip(from) {
+                    *value = from[c];
+                }
+            }
+            row += TILE;
+        }
+        for row in row..rows.end {
+            for (column, &value) in out.chunks_exact_mut(length).zip(self.row(row)) {
+                column[row] = value;
             }
         }
     }
@@ -85,11 +95,23 @@ impl<T: Real> Block<'_, T> {
         let columns = self.columns();
         assert!(rows.end <= self.rows.min(length) && from.len() >= columns * length);
         for row in rows {
-            // SAFETY: as in `gather`; this block is borrowed mutably.
-            let to = unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), columns) };
-            for (c, value) in to.iter_mut().enumerate() {
-                *value = from[c * length + row];
+            for (value, column) in self.row_mut(row).iter_mut().zip(from.chunks_exact(length)) {
+                *value = column[row];
             }
         }
+    }
+
+    /// The block's part of a row.
+    fn row(&self, row: usize) -> &[Complex<T>] {
+        assert!(row < self.rows);
+        // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which
+        // `for_each_block` borrows exclusively, and no other block overlaps this one.
+        unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
+    }
+
+    fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
+        assert!(row < self.rows);
+        // SAFETY: as in `row`; this block is borrowed mutably.
+        unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), self.columns()) }
     }
 }

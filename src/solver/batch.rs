@@ -111,6 +111,7 @@ impl Solver {
             ledger: Vec::new(),
             workers: Vec::new(),
             solved_before: false,
+            u_is_product: false,
             setup_seconds: 0.0,
         })
     }

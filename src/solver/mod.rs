@@ -11,6 +11,7 @@ mod norm_method;
 mod options;
 mod projected_method;
 mod report;
+mod start;
 
 use std::time::Instant;
 
@@ -30,6 +31,7 @@ use crate::threads::Threads;
 use monitor::{Monitor, Rule};
 use norm_method::Displace;
 use projected_method::Projected;
+use start::Start;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +68,8 @@ pub struct Solver {
     /// For batches: solvers of one thread, made when first needed.
     workers: Vec<Option<Solver>>,
     solved_before: bool,
+    /// Whether u of the finest state is a fresh A p of its p.
+    u_is_product: bool,
     setup_seconds: f64,
 }
 
@@ -102,6 +106,7 @@ impl Solver {
             ledger: Vec::new(),
             workers: Vec::new(),
             solved_before: false,
+            u_is_product: false,
             setup_seconds: began.elapsed().as_secs_f64(),
         })
     }
@@ -148,13 +153,14 @@ impl Solver {
             fixed: options.active_set == ActiveSet::Fixed,
             max_cycles: options.max_cycles as u64,
         };
-        let has_start = self.start(scene, options, guess)?;
+        let start = self.start(scene, options, guess, monitor)?;
         let stop = if self.without_contact(scene.load, rule.fixed) {
             Stop::Converged
         } else {
-            self.run(options, &rule, has_start, monitor)?
+            self.run(options, &rule, start, monitor)?
         };
         self.solved_before = true;
+        self.u_is_product = stop == Stop::Converged;
         monitor.close_grid(&self.states[0]);
         Ok(stop)
     }
@@ -230,80 +236,6 @@ impl Solver {
         Ok(())
     }
 
-    /// Takes over the undeformed distance, the load and the initial guess; whether there is one.
-    fn start(&mut self, scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<bool> {
-        let fixed = options.active_set == ActiveSet::Fixed;
-        let state = &mut self.states[0];
-        let has_guess = match (options.initial_guess, guess) {
-            (InitialGuess::Previous, Some(guess)) if fixed => {
-                check_guess(guess, &state.grid)?;
-                if !self.solved_before {
-                    state.p.fill(0.0);
-                }
-                state.contact.copy_from_slice(guess.contact);
-                true
-            }
-            (InitialGuess::Previous, _) => self.solved_before,
-            (InitialGuess::Given, Some(guess)) => {
-                check_guess(guess, &state.grid)?;
-                state.p.copy_from_slice(guess.pressure);
-                state.contact.copy_from_slice(guess.contact);
-                true
-            }
-            (InitialGuess::Given, None) => {
-                return invalid("initial_guess is GIVEN, but no pressures and contact area are".into())
-            }
-            (InitialGuess::None, Some(guess)) if fixed => {
-                check_guess(guess, &state.grid)?;
-                state.p.fill(0.0);
-                state.contact.copy_from_slice(guess.contact);
-                true
-            }
-            (InitialGuess::None, _) => false,
-        };
-        if fixed && !has_guess {
-            return invalid("active_set is FIXED, but no contact area is given".into());
-        }
-
-        let state = &mut self.states[0];
-        state.h.copy_from_slice(scene.undeformed_distance);
-        state.load = scene.load;
-        if let Load::Approach(approach) = scene.load {
-            state.approach = approach;
-        }
-        if !has_guess {
-            state.p.fill(0.0);
-            state.u.fill(0.0);
-            state.contact.fill(false);
-        }
-
-        let state = &mut self.states[0];
-        if !has_guess {
-            // The other methods begin on coarser grids.
-            if matches!(options.method, Method::Norm | Method::Multigrid) {
-                state.start(self.projected.influence().at(0, 0));
-            }
-            return Ok(false);
-        }
-        for i in 0..state.p.len() {
-            state.contact[i] &= state.h[i].is_finite();
-            if !state.contact[i] || (!fixed && state.p[i] < 0.0) {
-                state.p[i] = 0.0;
-            }
-        }
-        if state.contact_count() == 0 {
-            if fixed {
-                return invalid("active_set is FIXED, but the given contact area is empty".into());
-            }
-            state.start(self.projected.influence().at(0, 0));
-            return Ok(false);
-        }
-        state.balance_force();
-        self.projected.displace(&state.p, &mut state.u);
-        state.fit_approach();
-        Ok(true)
-    }
-
     /// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.
     fn without_contact(&mut self, load: Load, fixed: bool) -> bool {
         let state = &mut self.states[0];
@@ -323,28 +255,25 @@ impl Solver {
         nothing
     }
 
-    fn run(&mut self, options: &Options, rule: &Rule, has_start: bool, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        if has_start {
-            monitor.count_products(1, 1.0);
-        }
+    fn run(&mut self, options: &Options, rule: &Rule, start: Start, monitor: &mut Monitor<'_>) -> Result<Stop> {
         if options.initial_guess != InitialGuess::Previous {
             self.projected.forget_windows();
         }
         match options.method {
             Method::Norm => self.norm(rule, monitor),
             Method::Multigrid => self.multigrid(rule, monitor),
-            Method::FullMultigrid => self.full_multigrid(options, rule, has_start, monitor),
+            Method::FullMultigrid => self.full_multigrid(options, rule, start, monitor),
             Method::ProjectedCg if !self.symmetric => Err(Error::Unsupported(
                 "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
             )),
             Method::ProjectedCg => {
-                self.projected.solve(&mut self.states[0], rule, has_start, options.error_ratio, monitor)
+                self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)
             }
             Method::Auto => {
                 let stop = if self.symmetric {
-                    self.projected.solve(&mut self.states[0], rule, has_start, options.error_ratio, monitor)?
+                    self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)?
                 } else {
-                    self.full_multigrid(options, rule, has_start, monitor)?
+                    self.full_multigrid(options, rule, start, monitor)?
                 };
                 if stop != Stop::Stagnated {
                     return Ok(stop);
@@ -373,10 +302,10 @@ impl Solver {
         &mut self,
         options: &Options,
         rule: &Rule,
-        has_start: bool,
+        start: Start,
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
-        if has_start || rule.fixed {
+        if start != Start::Nothing || rule.fixed {
             return self.multigrid(rule, monitor);
         }
         self.set_up_multigrid()?;
@@ -403,20 +332,5 @@ impl Solver {
         let states: usize = self.states.iter().map(|state| state.p.len() * 25).sum();
         let workers: usize = self.workers.iter().flatten().map(Solver::bytes).sum();
         self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states + workers
-    }
-}
-
-fn check_guess(guess: Guess<'_>, grid: &Grid) -> Result<()> {
-    if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
-        return invalid(format!(
-            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
-            guess.pressure.len(),
-            guess.contact.len(),
-            grid.len()
-        ));
-    }
-    match guess.pressure.iter().find(|p| !p.is_finite()) {
-        Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
-        None => Ok(()),
     }
 }

@@ -5,6 +5,7 @@
 //! certificate. If it does not hold, the iteration goes on from there.
 
 mod coarse;
+mod history;
 mod level;
 
 use std::sync::Arc;
@@ -13,15 +14,16 @@ use super::full_multigrid::discretisation_error;
 use super::monitor::{Monitor, Rule};
 use super::options::Precision;
 use super::report::Stop;
+use super::start::Start;
 use crate::active_set::{admit, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::{Toeplitz, Workspace};
 use crate::projected_cg::{End, Stopping};
-use crate::scene::Load;
 use crate::threads::Threads;
 use coarse::CoarseGrids;
+use history::History;
 use level::{Displacement, Level};
 
 /// The iteration aims at this part of the tolerance, so that what is owed and the rounding of its single precision products do
@@ -41,6 +43,7 @@ pub struct Projected {
     finest: Level,
     /// None before it is first needed.
     coarse: Option<CoarseGrids>,
+    history: History,
     /// With criterion UPDATE: p before the last round.
     before: Vec<f64>,
     precision: Precision,
@@ -57,6 +60,7 @@ impl Projected {
             finest: Level::new(*grid, influence.clone(), precision, threads).with_operator(operator.clone()),
             operator,
             coarse: None,
+            history: History::default(),
             before: Vec::new(),
             precision,
             threads: threads.clone(),
@@ -83,31 +87,31 @@ impl Projected {
     pub fn bytes(&self) -> usize {
         let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);
         let before = self.before.len() * size_of::<f64>();
-        self.operator.bytes() + self.workspace.bytes() + coarse + self.finest.bytes() + before
+        self.operator.bytes() + self.workspace.bytes() + coarse + self.finest.bytes() + before + self.history.bytes()
     }
 
-    /// Solves from `state`: from its pressures and contact area if `has_start` (then its u must be A p), or else from nothing.
-    /// `error_ratio` is that of the options; it needs the coarser grids of a start from nothing.
+    /// Solves from what `state` holds, as `from` says. `error_ratio` is that of the options; it needs the coarser grids of a start from
+    /// nothing.
     pub fn solve(
         &mut self,
         state: &mut State,
         rule: &Rule,
-        has_start: bool,
+        from: Start,
         error_ratio: f64,
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
         let mut rule = *rule;
         let mut displacement = Displacement::Known;
-        if has_start && !rule.fixed {
-            scale_to_load(state);
-        }
-        let mut good_start = has_start;
-        if has_start && !(rule.fixed && rule.by_update) {
+        let mut good_start = from != Start::Nothing;
+        if good_start && !(rule.fixed && rule.by_update) {
             let certified = self.judge(state, &rule, monitor);
             if certified.holds && !rule.by_update {
                 return Ok(Stop::Converged);
             }
             good_start = rule.fixed || certified.violation <= WORTHLESS;
+        }
+        if good_start && from == Start::Previous && !rule.fixed {
+            displacement = self.history.predict(state)?;
         }
         if !good_start {
             displacement = self.start(state, &rule, monitor)?;
@@ -197,24 +201,6 @@ impl Projected {
         };
         let holds = met && (entered == 0 || negligible);
         Certified { holds, violation }
-    }
-}
-
-/// With a prescribed approach: scales p, and u with it, to the least energy. Where the load changes the pressures mostly
-/// grow or shrink, and to know how much takes no product.
-fn scale_to_load(state: &mut State) {
-    if let Load::Force(_) = state.load {
-        return;
-    }
-    let (mut work, mut energy) = (0.0, 0.0);
-    for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
-        work -= state.p[i] * state.deformed_distance(i);
-        energy += state.p[i] * state.u[i];
-    }
-    let factor = 1.0 + work / energy;
-    if factor.is_finite() && factor > 0.0 {
-        state.p.iter_mut().for_each(|p| *p *= factor);
-        state.u.iter_mut().for_each(|u| *u *= factor);
     }
 }
 

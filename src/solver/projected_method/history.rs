@@ -1,0 +1,88 @@
+//! Time stepping: where to start from, given the last two solutions.
+//!
+//! With p_1 the last solution and p_0 the one before it, the start is `p_1 + s_1 p_1 + s_2 d`: what grows or shrinks with the load, and
+//! d, the change of the last step, for bodies go on rolling as they rolled. The s are those of the least energy
+//! `(p, A p)/2 + (p, h - approach)` (Fischer 1998 projects on earlier solutions so); as all u are known, they cost no product.
+//! With a prescribed force s_1 follows from the force, and d carries none.
+
+use crate::active_set::State;
+use crate::error::Result;
+use crate::operator::zeros;
+use crate::scene::Load;
+
+use super::level::Displacement;
+
+/// The solution before the last; empty before there is one.
+#[derive(Default)]
+pub struct History {
+    p: Vec<f64>,
+    u: Vec<f64>,
+}
+
+impl History {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        (self.p.len() + self.u.len()) * size_of::<f64>()
+    }
+
+    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then.
+    pub fn predict(&mut self, state: &mut State) -> Result<Displacement> {
+        scale_to_load(state);
+        if self.p.is_empty() {
+            let n = state.p.len();
+            (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
+            self.p.copy_from_slice(&state.p);
+            self.u.copy_from_slice(&state.u);
+            return Ok(Displacement::Known);
+        }
+
+        // d = (p_1 - p_0) - share p_1, conjugate to p_1, or without a force of its own
+        let (mut with_last, mut last) = (0.0, 0.0);
+        let by_force = matches!(state.load, Load::Force(_));
+        for i in 0..state.p.len() {
+            let weight = if by_force { 1.0 } else { state.u[i] };
+            with_last += weight * (state.p[i] - self.p[i]);
+            last += weight * state.p[i];
+        }
+        let share = with_last / last;
+        let (mut work, mut energy) = (0.0, 0.0);
+        for i in 0..state.p.len() {
+            let change = (1.0 - share) * state.p[i] - self.p[i];
+            if change != 0.0 {
+                let displacement = (1.0 - share) * state.u[i] - self.u[i];
+                work -= change * state.deformed_distance(i);
+                energy += change * displacement;
+            }
+        }
+        let step = work / energy;
+        let step = if energy > 0.0 && step.is_finite() { step } else { 0.0 };
+
+        for i in 0..state.p.len() {
+            let (p, u) = (state.p[i], state.u[i]);
+            let moved = p + step * ((1.0 - share) * p - self.p[i]);
+            state.p[i] = if state.h[i].is_finite() { moved.max(0.0) } else { 0.0 };
+            state.u[i] = u + step * ((1.0 - share) * u - self.u[i]);
+            state.contact[i] = state.p[i] > 0.0;
+            (self.p[i], self.u[i]) = (p, u);
+        }
+        state.fit_approach();
+        Ok(if step == 0.0 { Displacement::Known } else { Displacement::Near })
+    }
+}
+
+/// With a prescribed approach: scales p, and u with it, to the least energy.
+fn scale_to_load(state: &mut State) {
+    if let Load::Force(_) = state.load {
+        return;
+    }
+    let (mut work, mut energy) = (0.0, 0.0);
+    for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
+        work -= state.p[i] * state.deformed_distance(i);
+        energy += state.p[i] * state.u[i];
+    }
+    let factor = 1.0 + work / energy;
+    if factor.is_finite() && factor > 0.0 {
+        state.p.iter_mut().for_each(|p| *p *= factor);
+        state.u.iter_mut().for_each(|u| *u *= factor);
+    }
+}
