@@ -3,9 +3,10 @@
 //! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
 //!
 //! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
-//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps force growth norm memory batch methods.
+//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps force growth norm memory batch dense methods.
 
 mod case;
+mod dense;
 mod measure;
 mod methods;
 mod targets;
@@ -73,6 +74,9 @@ fn main() {
     measure::by_processor(false);
     if wanted("batch") && threads > 1 {
         targets::batch();
+    }
+    if wanted("dense") {
+        dense::direct();
     }
     if wanted("methods") {
         methods::methods(if quick { &[128] } else { &[128, 256, 512] });
