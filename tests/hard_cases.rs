@@ -447,3 +447,57 @@ fn precision_is_of_the_inner_work_only() {
     }
     assert_eq!(mixed.state().contact, double.state().contact);
 }
+
+#[test]
+fn few_elements_are_solved_directly() {
+    let grid = Grid::new(11, 9, 0.5, 0.25).unwrap();
+    let h = paraboloid(&grid, 0.1);
+    let options = Options { tolerance: 1e-2, ..Options::default() };
+    for load in [Load::Approach(0.06), Load::Force(0.1)] {
+        let (solver, stop, report) = solve(&Scene::new(grid, &h, rigid_on(3.0), load), &options).unwrap();
+        assert_eq!(stop, Stop::Converged);
+        assert!(solver.state().contact_count() > 1);
+        // The direct solve leaves round-off, the iteration would stop at the tolerance.
+        let residual = report.measures.certificate.residual;
+        assert!(residual <= 1e-13 && report.measures.certificate.penetration == 0.0, "{load:?}: {residual:e}");
+    }
+}
+
+#[test]
+fn time_steps_begin_with_what_the_last_ones_changed() {
+    let grid = Grid::new(120, 130, 0.5, 0.25).unwrap();
+    let h = paraboloid(&grid, 0.01);
+    let cold = Options::default();
+    let next = Options { initial_guess: InitialGuess::Previous, ..cold };
+    for by_force in [false, true] {
+        let load = |step: i32| {
+            let factor = 1.01f64.powi(step);
+            if by_force {
+                Load::Force(200.0 * factor)
+            } else {
+                Load::Approach(1.5 * factor)
+            }
+        };
+        let mut solver = Solver::new(&Scene::new(grid, &h, rigid_on(3.0), load(0)), &next).unwrap();
+        for step in 0..5 {
+            let scene = Scene::new(grid, &h, rigid_on(3.0), load(step));
+            let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
+            assert_eq!(stop, Stop::Converged);
+            let (from_nothing, _, reference) = solve(&scene, &cold).unwrap();
+            let scale = reference.measures.max_pressure;
+            let pairs = solver.state().p.iter().zip(&from_nothing.state().p);
+            let difference = pairs.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
+            // Two residuals of 1e-6 may differ by so much at the rim.
+            assert!(difference <= 1e-3 * scale, "step {step}: {difference} of {scale}");
+            if step >= 2 {
+                let (warm, cold) = (report.work_units, reference.work_units);
+                assert!(warm < 0.8 * cold, "step {step}: {warm} work units, {cold} from nothing");
+            }
+        }
+        // The same once more: nothing is left to do, and no product is needed to see that.
+        let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
+        let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
+        assert_eq!((stop, report.cycles, report.matrix_products), (Stop::Converged, 0, 0));
+        assert!(report.measures.certificate.residual <= 1e-6);
+    }
+}

@@ -5,6 +5,7 @@
 //! certificate. If it does not hold, the iteration goes on from there.
 
 mod coarse;
+mod direct;
 mod history;
 mod level;
 
@@ -23,6 +24,7 @@ use crate::operator::{Toeplitz, Workspace};
 use crate::projected_cg::{End, Stopping};
 use crate::threads::Threads;
 use coarse::CoarseGrids;
+use direct::Direct;
 use history::History;
 use level::{Displacement, Level};
 
@@ -31,6 +33,8 @@ use level::{Displacement, Level};
 const AIM: f64 = 0.5;
 /// Rounds without progress after which round-off is reached, or the method does not work on this scene.
 const PATIENCE: u32 = 3;
+/// Rounds with direct solves, after which the exchange of elements may be cycling and the iteration takes over.
+const DIRECT_ROUNDS: u32 = 12;
 /// A guess whose relative residual or penetration is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
 
@@ -43,6 +47,8 @@ pub struct Projected {
     finest: Level,
     /// None before it is first needed.
     coarse: Option<CoarseGrids>,
+    /// None on large grids.
+    direct: Option<Direct>,
     history: History,
     /// With criterion UPDATE: p before the last round.
     before: Vec<f64>,
@@ -60,6 +66,7 @@ impl Projected {
             finest: Level::new(*grid, influence.clone(), precision, threads).with_operator(operator.clone()),
             operator,
             coarse: None,
+            direct: Direct::new(influence, grid)?,
             history: History::default(),
             before: Vec::new(),
             precision,
@@ -87,7 +94,13 @@ impl Projected {
     pub fn bytes(&self) -> usize {
         let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);
         let before = self.before.len() * size_of::<f64>();
-        self.operator.bytes() + self.workspace.bytes() + coarse + self.finest.bytes() + before + self.history.bytes()
+        self.operator.bytes()
+            + self.workspace.bytes()
+            + coarse
+            + self.finest.bytes()
+            + before
+            + self.history.bytes()
+            + self.direct.as_ref().map_or(0, Direct::bytes)
     }
 
     /// Solves from what `state` holds, as `from` says. `error_ratio` is that of the options; it needs the coarser grids of a start from
@@ -124,7 +137,7 @@ impl Projected {
             return Ok(Stop::Cancelled);
         }
         let rule = &rule;
-        let (mut best, mut rounds_without_progress) = (f64::INFINITY, 0);
+        let (mut best, mut rounds, mut rounds_without_progress) = (f64::INFINITY, 0, 0);
         loop {
             if rule.by_update {
                 self.before.clone_from(&state.p);
@@ -135,7 +148,15 @@ impl Projected {
                 fixed: rule.fixed,
                 iterations: rule.max_cycles.saturating_sub(monitor.cycles),
             };
-            let end = self.finest.run(state, displacement, &stop, self.grid.len(), monitor)?;
+            let directly = match &mut self.direct {
+                Some(direct) if !rule.fixed && rounds < DIRECT_ROUNDS => direct.run(state, stop.iterations, monitor),
+                _ => None,
+            };
+            rounds += 1;
+            let end = match directly {
+                Some(end) => end,
+                None => self.finest.run(state, displacement, &stop, self.grid.len(), monitor)?,
+            };
             let certified = self.certify(state, rule, monitor);
             // A small last update proves nothing while u was of single precision, or pressures were owed: then all that
             // is done from a fresh u must come to no more than a small update.
@@ -150,7 +171,7 @@ impl Projected {
                 End::Limit if monitor.cycles >= rule.max_cycles => return Ok(Stop::IterationLimit),
                 _ => {}
             }
-            rounds_without_progress += 1;
+            rounds_without_progress += u32::from(directly.is_none());
             if certified.violation < 0.5 * best {
                 best = certified.violation;
                 rounds_without_progress = 0;

@@ -1,0 +1,134 @@
+//! Few elements in contact: the equations on C are solved directly, by Cholesky's method.
+//!
+//! ```text
+//! prescribed approach   A p = approach - h                         on C
+//! prescribed force      A x = 1, A y = h,  p = approach x - y,     sum of p dx dy = force
+//! 4.1  elements with p < 0 leave C, and again, until none does
+//! ```
+//!
+//! Below some fifty elements that is faster than an iteration; who enters C the certificate tells.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::llt::{factor, solve};
+use faer::prelude::ReborrowMut;
+use faer::{MatMut, Par};
+
+use super::super::monitor::Monitor;
+use crate::active_set::State;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Influence;
+use crate::operator::zeros;
+use crate::projected_cg::End;
+use crate::scene::Load;
+
+/// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
+const MOST_IN_CONTACT: usize = 64;
+const LARGEST_GRID: usize = 32 * 32;
+
+/// Coefficients, and memory for as many elements as there have been so far.
+pub struct Direct {
+    grid: Grid,
+    /// Coefficients at offsets >= 0, `[my][mx]`.
+    table: Vec<f64>,
+    elements: Vec<usize>,
+    matrix: Vec<f64>,
+    /// One right-hand side, or two: h and 1.
+    right: Vec<f64>,
+    scratch: MemBuffer,
+}
+
+impl Direct {
+    /// On a small grid with even coefficients; none on others.
+    pub fn new(influence: &Influence, grid: &Grid) -> Result<Option<Direct>> {
+        if grid.len() > LARGEST_GRID || !influence.is_even(grid) {
+            return Ok(None);
+        }
+        let mut table = zeros(grid.len(), "influence coefficients")?;
+        for (row, ky) in table.chunks_exact_mut(grid.mx).zip(0..) {
+            influence.fill_row(0, ky, row);
+        }
+        let scratch = factor::cholesky_in_place_scratch::<f64>(MOST_IN_CONTACT, Par::Seq, Default::default());
+        Ok(Some(Direct {
+            grid: *grid,
+            table,
+            elements: Vec::with_capacity(MOST_IN_CONTACT),
+            matrix: Vec::with_capacity(MOST_IN_CONTACT * MOST_IN_CONTACT),
+            right: Vec::with_capacity(2 * MOST_IN_CONTACT),
+            scratch: MemBuffer::new(StackReq::any_of(&[scratch])),
+        }))
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        (self.table.len() + self.matrix.capacity()) * size_of::<f64>()
+    }
+
+    /// p on C, those that leave it being found on the way; u is not A p then. None if there are too many elements, or the matrix is
+    /// not positive definite.
+    pub fn run(&mut self, state: &mut State, cycles: u64, monitor: &mut Monitor<'_>) -> Option<End> {
+        for _ in 0..cycles {
+            self.elements.clear();
+            self.elements.extend((0..self.grid.len()).filter(|&i| state.contact[i]).take(MOST_IN_CONTACT + 1));
+            if self.elements.len() > MOST_IN_CONTACT || self.elements.is_empty() || !self.solve(state) {
+                return None;
+            }
+            let (mut left, mut change) = (0, 0.0);
+            for (&i, &p) in self.elements.iter().zip(&self.right) {
+                change += (p - state.p[i]) * (p - state.p[i]);
+                state.p[i] = p.max(0.0);
+                if p < 0.0 {
+                    state.contact[i] = false;
+                    left += 1;
+                }
+            }
+            monitor.active_set_steps += 1;
+            let update = (change / self.elements.len() as f64).sqrt();
+            if !monitor.cycle_done(&self.grid, left, update, 0.0) {
+                return Some(End::Cancelled);
+            }
+            if left == 0 {
+                return Some(End::Met);
+            }
+        }
+        Some(End::Limit)
+    }
+
+    /// The first of the right-hand sides becomes p. False if it cannot.
+    fn solve(&mut self, state: &mut State) -> bool {
+        let (mx, n) = (self.grid.mx, self.elements.len());
+        let column_and_row = |i: usize| (i % mx, i / mx);
+        self.matrix.clear();
+        for &j in &self.elements {
+            let (jx, jy) = column_and_row(j);
+            self.matrix.extend(self.elements.iter().map(|&i| {
+                let (ix, iy) = column_and_row(i);
+                self.table[iy.abs_diff(jy) * mx + ix.abs_diff(jx)]
+            }));
+        }
+        self.right.clear();
+        self.right.extend(self.elements.iter().map(|&i| match state.load {
+            Load::Approach(approach) => approach - state.h[i],
+            Load::Force(_) => state.h[i],
+        }));
+        let sides = if let Load::Force(_) = state.load { 2 } else { 1 };
+        self.right.resize(sides * n, 1.0);
+
+        let stack = MemStack::new(&mut self.scratch);
+        let mut matrix = MatMut::from_column_major_slice_mut(&mut self.matrix, n, n);
+        let regularization = Default::default();
+        let done = factor::cholesky_in_place(matrix.rb_mut(), regularization, Par::Seq, stack, Default::default());
+        if done.is_err() {
+            return false;
+        }
+        let right = MatMut::from_column_major_slice_mut(&mut self.right, n, sides);
+        solve::solve_in_place(matrix.as_ref(), right, Par::Seq, stack);
+        if let Load::Force(force) = state.load {
+            let (y, x) = self.right.split_at_mut(n);
+            let sum = |values: &[f64]| values.iter().sum::<f64>();
+            state.approach = (force / self.grid.element_area() + sum(y)) / sum(x);
+            y.iter_mut().zip(x).for_each(|(y, x)| *y = state.approach * *x - *y);
+        }
+        self.right[..n].iter().all(|p| p.is_finite())
+    }
+}
