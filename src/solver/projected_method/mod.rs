@@ -3,6 +3,9 @@
 //! On each coarser grid a few iterations ([`coarse`]); on the finest one as many as the tolerance asks for, on the window around the
 //! contact area and in single precision directions ([`level`]); then u = A p on the full grid, in double precision: the
 //! certificate. If it does not hold, the iteration goes on from there.
+//!
+//! Few elements in contact are solved for directly instead ([`direct`]); a step in time starts from what the last ones found
+//! ([`history`]).
 
 mod coarse;
 mod direct;
