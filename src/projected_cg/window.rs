@@ -76,7 +76,7 @@ impl Window {
     }
 
     /// Number of elements.
-    pub fn len(&self) -> usize {
+    pub fn elements(&self) -> usize {
         self.x.len() * self.y.len()
     }
 

@@ -160,7 +160,7 @@ impl Level {
         }
         self.choose_window(state)?;
         let Some(Windowed { window, inner, part }) = &mut self.windowed else { return Ok(End::Breakdown) };
-        let work = window.len() as f64 / finest as f64;
+        let work = window.elements() as f64 / finest as f64;
         let grid = window.grid(&self.grid);
         if let Some(part) = part {
             window.extract(&self.grid, &state.h, &mut part.h);
