@@ -19,11 +19,11 @@ fn main() {
     }
     arguments.retain(|argument| argument != "--bench");
     if let [first, name, m, rest @ ..] = &arguments[..] {
-        let m = m.parse().expect("a size");
+        let size = || m.parse().expect("a size");
         match (first.as_str(), rest) {
-            (targets::SOLVE_ONCE, []) => return targets::solve_once(name, m),
+            (targets::SOLVE_ONCE, []) => return targets::solve_once(name, size()),
             (targets::SOLVE_AGAIN, [what, seconds]) => {
-                return targets::solve_again(name, m, what == "steps", seconds.parse().expect("seconds"))
+                return targets::solve_again(name, size(), what == "steps", seconds.parse().expect("seconds"))
             }
             _ => {}
         }

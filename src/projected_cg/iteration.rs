@@ -49,6 +49,8 @@ const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
+/// Iterations without a new least residual after which the contact area may be cycling.
+const PATIENCE: u32 = 40;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
 const HELD_BACK: f64 = 1e-6;
 
@@ -117,7 +119,7 @@ pub enum End {
     Limit,
     /// The caller cancelled.
     Cancelled,
-    /// The search direction is no longer one: round-off, or an operator that is not positive definite.
+    /// The search direction is no longer one (round-off, or an operator that is not positive definite), or nothing is gained any more.
     Breakdown,
 }
 
@@ -131,6 +133,8 @@ impl<T: Real> Iteration<T> {
             log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
         }
         let n = grid.len();
+        // A pass takes about a tenth of the time of a product.
+        let threads = &threads.suited_to(n / 10);
         let directions = || zeros(n, "search directions");
         Ok(Iteration {
             workspace: operator.workspace()?,
@@ -190,9 +194,12 @@ impl<T: Real> Iteration<T> {
         self.debts.clear();
         // Without a preconditioner the first forecast is missing.
         let mut forecast = self.preconditioner.as_ref().map(|_| FIRST_FORECAST);
+        // Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
+        let mut may_hold_back = true;
         let mut tq = 0.0;
         let mut cycle: Option<Cycle> = None;
         let mut iterations = 0;
+        let (mut least, mut since_least) = (f64::INFINITY, 0);
         state.fit_approach();
         // 4.2
         self.update_displacements(state, &Update::default(), stop.fixed);
@@ -212,13 +219,20 @@ impl<T: Real> Iteration<T> {
             if iterations == stop.iterations {
                 return End::Limit;
             }
+            if residual < least {
+                (least, since_least) = (residual, 0);
+            }
+            since_least += 1;
+            if since_least > PATIENCE {
+                return End::Breakdown;
+            }
             iterations += 1;
 
             // z = M r
             self.precondition();
 
             // t = z + beta t, held back, and the debts
-            self.direct(state, tq, forecast.filter(|_| !stop.fixed));
+            self.direct(state, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
             let before = forecast.unwrap_or(1.0);
             for &(i, d) in &self.debts {
                 self.t[i] += T::of(d / before);
@@ -244,7 +258,11 @@ impl<T: Real> Iteration<T> {
             // p = p + alpha t, 4.1
             let mut update = Update { alpha, ..Update::default() };
             // A forecast that was far off holds nobody back.
-            let good_forecast = forecast.filter(|forecast| within_factor(alpha, *forecast, FAR_OFF));
+            let good_forecast = forecast.filter(|forecast| may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
+            may_hold_back = !may_hold_back || good_forecast.is_some();
+            if !may_hold_back {
+                tq = 0.0;
+            }
             let left = self.update_pressures(state, alpha, good_forecast, stop.fixed);
             forecast = Some(alpha).filter(|alpha| *alpha > 0.0);
             if let (Some(alpha), Some(_)) = (&mut forecast, &self.preconditioner) {

@@ -27,7 +27,7 @@ impl History {
 
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then.
     pub fn predict(&mut self, state: &mut State) -> Result<Displacement> {
-        scale_to_load(state);
+        state.scale_to_approach();
         if self.p.is_empty() {
             let n = state.p.len();
             (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
@@ -67,22 +67,5 @@ impl History {
         }
         state.fit_approach();
         Ok(if step == 0.0 { Displacement::Known } else { Displacement::Near })
-    }
-}
-
-/// With a prescribed approach: scales p, and u with it, to the least energy.
-fn scale_to_load(state: &mut State) {
-    if let Load::Force(_) = state.load {
-        return;
-    }
-    let (mut work, mut energy) = (0.0, 0.0);
-    for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
-        work -= state.p[i] * state.deformed_distance(i);
-        energy += state.p[i] * state.u[i];
-    }
-    let factor = 1.0 + work / energy;
-    if factor.is_finite() && factor > 0.0 {
-        state.p.iter_mut().for_each(|p| *p *= factor);
-        state.u.iter_mut().for_each(|u| *u *= factor);
     }
 }
