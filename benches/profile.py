@@ -27,7 +27,6 @@ PARTS = [
     ("report", r"close_grid|Measures"),
     ("certificate", r"certify|judge|Survey"),
     ("prediction of a time step", r"History"),
-    ("coarse grids, with their set-up", r"CoarseGrids"),
     ("preconditioner", r"apply_in_place"),
     ("set-up", r"even_spectrum|inverse_circulant|Solver::new|Iteration<T>::new|orkspace<|fill_row|zeros<"),
     ("products", r"\bapply<|apply_rows|::apply"),

@@ -211,19 +211,19 @@ impl Projected {
     fn judge(&self, state: &mut State, rule: &Rule, monitor: &Monitor<'_>) -> Certified {
         let mut survey = Survey::of(state);
         let scale = survey.distance / (survey.contact_count.max(1) as f64).sqrt();
-        let negligible = survey.penetration <= rule.tolerance * scale;
         let violation = (survey.residual / survey.distance).max(survey.penetration / scale);
-        let mut entered = 0;
         if !rule.fixed && survey.penetration > 0.0 {
-            entered = admit(state);
+            admit(state);
+            if !(survey.penetration <= rule.tolerance * scale) {
+                return Certified { holds: false, violation };
+            }
             survey = Survey::of(state);
         }
-        let met = if rule.by_update {
+        let holds = if rule.by_update {
             rule.holds(state, monitor.update)
         } else {
             survey.residual <= rule.tolerance * survey.distance
         };
-        let holds = met && (entered == 0 || negligible);
         Certified { holds, violation }
     }
 }
