@@ -140,10 +140,9 @@ impl Threads {
         &self,
         (a, length_a): (&mut [A], usize),
         (b, length_b): (&mut [B], usize),
-        pieces: usize,
         work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
     ) {
-        let rows_per_piece = a.len().div_ceil(length_a).div_ceil(pieces).max(1);
+        let rows_per_piece = a.len().div_ceil(length_a).div_ceil(self.pieces()).max(1);
         let piece = |k: usize, a: &mut [A], b: &mut [B]| {
             for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
                 work(k * rows_per_piece + i, a, b);

@@ -21,7 +21,7 @@ pub fn direct() {
         solver.solve(&scene, &options, None, None).expect("a solvable scene");
         let contact: Vec<usize> = (0..case.grid.len()).filter(|&i| solver.state().contact[i]).collect();
         let mut matrix = Vec::new();
-        dense::fill_matrix(solver.influence(), &case.grid, &contact, &mut matrix);
+        dense::fill_matrix(&case.grid, &contact, |x, y| solver.influence().at(x, y), &mut matrix);
         let n = contact.len();
         let right = Mat::from_fn(n, 1, |row, _| 0.1091 - case.h[contact[row]]);
         let times = in_turns(&mut [

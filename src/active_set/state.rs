@@ -52,6 +52,11 @@ impl State {
         starting_contact(&self.h, self.approach, &mut self.contact);
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.p.len() * (3 * size_of::<f64>() + size_of::<bool>())
+    }
+
     /// Elements in contact.
     pub fn contact_count(&self) -> usize {
         self.contact.iter().filter(|&&inside| inside).count()

@@ -41,7 +41,7 @@ impl Coarsest {
         if n == 0 {
             return;
         }
-        dense::fill_matrix(influence, grid, &self.elements, &mut self.matrix);
+        dense::fill_matrix(grid, &self.elements, |x, y| influence.at(x, y), &mut self.matrix);
         self.right.clear();
         self.right.extend(self.elements.iter().map(|&i| b[i]));
         if self.permutation.len() < n {

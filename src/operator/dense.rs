@@ -29,14 +29,14 @@ pub fn apply(influence: &Influence, grid: &Grid, p: &[f64], u: &mut [f64]) {
     }
 }
 
-/// The matrix of the elements with the indices `elements` only, column by column.
-pub fn fill_matrix(influence: &Influence, grid: &Grid, elements: &[usize], matrix: &mut Vec<f64>) {
+/// The matrix of the elements with the indices `elements` only, column by column; `coefficient(x, y)` is that of an offset.
+pub fn fill_matrix(grid: &Grid, elements: &[usize], coefficient: impl Fn(i64, i64) -> f64, matrix: &mut Vec<f64>) {
     matrix.clear();
     matrix.reserve(elements.len() * elements.len());
     let offset = |i: usize, j: usize| {
         let x = (i % grid.mx) as i64 - (j % grid.mx) as i64;
         let y = (i / grid.mx) as i64 - (j / grid.mx) as i64;
-        influence.at(x, y)
+        coefficient(x, y)
     };
     for &j in elements {
         matrix.extend(elements.iter().map(|&i| offset(i, j)));

@@ -26,8 +26,6 @@
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::runs::Runs;
 use crate::active_set::State;
 use crate::error::Result;
@@ -67,9 +65,8 @@ pub struct Iteration<T: Real> {
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
     /// Whether an element of a row enters.
-    entering: Vec<AtomicBool>,
+    entering: Vec<bool>,
     threads: Threads,
-    pieces: Vec<()>,
 }
 
 /// When the iteration stops.
@@ -146,9 +143,8 @@ impl<T: Real> Iteration<T> {
             z: directions()?,
             runs: Runs::new(grid, threads),
             debts: Vec::with_capacity(n),
-            entering: (0..grid.my).map(|_| AtomicBool::new(false)).collect(),
+            entering: vec![false; grid.my],
             threads: threads.clone(),
-            pieces: vec![(); threads.pieces()],
         })
     }
 
@@ -496,9 +492,9 @@ impl<T: Real> Iteration<T> {
     fn update_displacements(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
         let State { h, u, contact, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
-        let (q, z, entering) = (&self.q, &self.z, &self.entering);
+        let (q, z) = (&self.q, &self.z);
         let Update { alpha, settled, factor } = *update;
-        self.threads.for_each_row(u, mx, &mut self.pieces, |iy, u, ()| {
+        self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
             for (u, q) in u.iter_mut().zip(&q[row.clone()]) {
                 *u += alpha * q.to_double();
@@ -514,10 +510,10 @@ impl<T: Real> Iteration<T> {
             for ((h, u), inside) in h[row.clone()].iter().zip(u).zip(&contact[row]) {
                 any |= (h - approach + *u < 0.0) & !inside;
             }
-            entering[iy].store(any, Ordering::Relaxed);
+            entering[0] = any;
         });
         let mut entered = 0;
-        for (iy, _) in self.entering.iter().enumerate().filter(|(_, any)| !fixed && any.load(Ordering::Relaxed)) {
+        for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| !fixed && any) {
             self.runs.change(iy * mx);
             for i in iy * mx..(iy + 1) * mx {
                 if !contact[i] && h[i] - approach + u[i] < 0.0 {

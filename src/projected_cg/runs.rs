@@ -119,7 +119,7 @@ impl Runs {
     ) -> [f64; K] {
         let (runs, first, block) = (&self.runs, &self.first, self.block);
         let (data, sums) = ((data, block), (&mut self.sums[..], 1));
-        self.threads.for_each_row_pair(data, sums, self.pieces.len(), |b, data, total| {
+        self.threads.for_each_row_pair(data, sums, |b, data, total| {
             let mut sums = Sums([[0.0; LANES]; K]);
             let block = Block { start: b * block, runs: &runs[first[b] as usize..first[b + 1] as usize] };
             work(block, data, &mut sums);

@@ -329,7 +329,7 @@ impl Solver {
     }
 
     fn bytes(&self) -> usize {
-        let states: usize = self.states.iter().map(|state| state.p.len() * 25).sum();
+        let states: usize = self.states.iter().map(State::bytes).sum();
         let workers: usize = self.workers.iter().flatten().map(Solver::bytes).sum();
         self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states + workers
     }

@@ -74,10 +74,6 @@ impl Solver {
             state.p.fill(0.0);
             state.u.fill(0.0);
             state.contact.fill(false);
-        }
-
-        let state = &mut self.states[0];
-        if from == Start::Nothing {
             // The other methods begin on coarser grids.
             if matches!(options.method, Method::Norm | Method::Multigrid) {
                 state.start(self.projected.influence().at(0, 0));
@@ -99,6 +95,7 @@ impl Solver {
             return Ok(Start::Nothing);
         }
         match state.balance_force() {
+            Some(1.0) if u_is_known => {}
             Some(factor) if u_is_known => state.u.iter_mut().for_each(|u| *u *= factor),
             _ => {
                 self.projected.displace(&state.p, &mut state.u);

@@ -8,7 +8,7 @@
 //!
 //! Below some fifty elements that is faster than an iteration; who enters C the certificate tells.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::{factor, solve};
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par};
@@ -18,7 +18,7 @@ use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::zeros;
+use crate::operator::{dense, zeros};
 use crate::projected_cg::End;
 use crate::scene::Load;
 
@@ -55,7 +55,7 @@ impl Direct {
             elements: Vec::with_capacity(MOST_IN_CONTACT),
             matrix: Vec::with_capacity(MOST_IN_CONTACT * MOST_IN_CONTACT),
             right: Vec::with_capacity(2 * MOST_IN_CONTACT),
-            scratch: MemBuffer::new(StackReq::any_of(&[scratch])),
+            scratch: MemBuffer::new(scratch),
         }))
     }
 
@@ -97,15 +97,8 @@ impl Direct {
     /// The first of the right-hand sides becomes p. False if it cannot.
     fn solve(&mut self, state: &mut State) -> bool {
         let (mx, n) = (self.grid.mx, self.elements.len());
-        let column_and_row = |i: usize| (i % mx, i / mx);
-        self.matrix.clear();
-        for &j in &self.elements {
-            let (jx, jy) = column_and_row(j);
-            self.matrix.extend(self.elements.iter().map(|&i| {
-                let (ix, iy) = column_and_row(i);
-                self.table[iy.abs_diff(jy) * mx + ix.abs_diff(jx)]
-            }));
-        }
+        let coefficient = |x: i64, y: i64| self.table[y.unsigned_abs() as usize * mx + x.unsigned_abs() as usize];
+        dense::fill_matrix(&self.grid, &self.elements, coefficient, &mut self.matrix);
         self.right.clear();
         self.right.extend(self.elements.iter().map(|&i| match state.load {
             Load::Approach(approach) => approach - state.h[i],

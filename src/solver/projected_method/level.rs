@@ -143,7 +143,7 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.windowed.as_ref().map_or(0, |w| w.inner.bytes() + w.part.as_ref().map_or(0, |part| part.p.len() * 25))
+        self.windowed.as_ref().map_or(0, |w| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes))
     }
 
     /// Iterates on the window around the contact area. Outside it u is not known afterwards.
