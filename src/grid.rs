@@ -1,5 +1,7 @@
 //! The potential contact area: `mx` by `my` rectangular elements of size `dx` by `dy`.
 
+use std::f64::consts::PI;
+
 use crate::error::{invalid, require, Result};
 
 /// A grid of `mx * my` elements of size `dx * dy`. Arrays on it are `[my][mx]`, x fastest: element `(ix, iy)`
@@ -50,6 +52,13 @@ impl Grid {
     /// Area of one element.
     pub fn element_area(&self) -> f64 {
         self.dx * self.dy
+    }
+
+    /// E* of half-spaces on which an element displaces itself by `self_influence`: at the centre of a uniformly loaded rectangle
+    /// `E* A = (2/pi) (dx asinh(dy/dx) + dy asinh(dx/dy))` (Love).
+    pub fn modulus(&self, self_influence: f64) -> f64 {
+        let (dx, dy) = (self.dx, self.dy);
+        2.0 / PI * (dx * (dy / dx).asinh() + dy * (dx / dy).asinh()) / self_influence
     }
 
     /// Index of element `(ix, iy)`.

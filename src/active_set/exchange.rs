@@ -37,13 +37,11 @@ pub fn admit(state: &mut State) -> usize {
 
 /// The approach whose starting contact area would carry about this force: area S and mean penetration d of
 /// `{h <= approach}` carry as much as a flat punch of that area, `F = 2 E* sqrt(S/pi) d` (Johnson, eq. 3.36). Grows with
-/// the approach, so bisection finds it; it is a start, not a result. E* is read off the influence of an element on itself.
+/// the approach, so bisection finds it; it is a start, not a result.
 pub fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) -> f64 {
     let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = h.iter().copied().filter(|h| h.is_finite()).fold(lowest, f64::max);
-    let (dx, dy) = (grid.dx, grid.dy);
-    let unit_self_influence = 2.0 / std::f64::consts::PI * (dx * (dy / dx).asinh() + dy * (dx / dy).asinh());
-    let modulus = unit_self_influence / self_influence;
+    let modulus = grid.modulus(self_influence);
     let carried = |approach: f64| {
         let (mut count, mut sum) = (0.0, 0.0);
         for h in h.iter().filter(|h| **h <= approach) {

@@ -47,6 +47,9 @@ const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
+/// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
+/// many roundings without a fresh u.
+const ROUNDINGS: f64 = 200.0;
 /// Iterations without a new least residual after which the contact area may be cycling.
 const PATIENCE: u32 = 40;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
@@ -83,11 +86,11 @@ pub struct Stopping {
 }
 
 impl Stopping {
-    fn met_by(&self, cycle: &Cycle) -> bool {
+    fn met_by(&self, cycle: &Cycle, floor: f64) -> bool {
         if self.by_update {
             cycle.update <= self.tolerance * cycle.pressure
         } else {
-            cycle.residual <= self.tolerance
+            cycle.residual <= self.tolerance.max(floor)
         }
     }
 }
@@ -166,7 +169,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it; then u = A p.
+    /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct(&mut self, state: &mut State) {
         if self.preconditioner.is_some() {
             state.fit_approach();
@@ -179,7 +182,6 @@ impl<T: Real> Iteration<T> {
             self.debts.clear();
             state.balance_force();
         }
-        self.displace(state);
     }
 
     /// Iterates from a state whose u is A p. `after_cycle` is told of every iteration and says whether to go on.
@@ -194,7 +196,7 @@ impl<T: Real> Iteration<T> {
         let mut may_hold_back = true;
         let mut tq = 0.0;
         let mut cycle: Option<Cycle> = None;
-        let mut iterations = 0;
+        let (mut iterations, mut floor) = (0, None);
         let (mut least, mut since_least) = (f64::INFINITY, 0);
         state.fit_approach();
         // 4.2
@@ -209,7 +211,8 @@ impl<T: Real> Iteration<T> {
                     return End::Cancelled;
                 }
             }
-            if residual == 0.0 || cycle.as_ref().is_some_and(|cycle| stop.met_by(cycle)) {
+            let floor = *floor.get_or_insert(ROUNDINGS * T::epsilon().to_double() * residual);
+            if residual == 0.0 || cycle.as_ref().is_some_and(|cycle| stop.met_by(cycle, floor)) {
                 return End::Met;
             }
             if iterations == stop.iterations {

@@ -159,6 +159,7 @@ impl Solver {
         } else {
             self.run(options, &rule, start, monitor)?
         };
+        let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
         self.solved_before = true;
         self.u_is_product = stop == Stop::Converged;
         monitor.close_grid(&self.states[0]);

@@ -58,16 +58,18 @@ impl Inner {
         })
     }
 
-    /// Sees to it that u is A p; returns the number of products done.
-    fn displace(&mut self, state: &mut State, displacement: Displacement) -> u64 {
-        match (self, displacement) {
-            (_, Displacement::Known) => return 0,
-            (Inner::Single(iteration), Displacement::Near) => iteration.correct(state),
-            (Inner::Double(iteration), Displacement::Near) => iteration.correct(state),
-            (Inner::Single(iteration), Displacement::Unknown) => iteration.displace(state),
-            (Inner::Double(iteration), Displacement::Unknown) => iteration.displace(state),
+    fn correct(&mut self, state: &mut State) {
+        match self {
+            Inner::Single(iteration) => iteration.correct(state),
+            Inner::Double(iteration) => iteration.correct(state),
         }
-        1
+    }
+
+    fn displace(&mut self, state: &mut State) {
+        match self {
+            Inner::Single(iteration) => iteration.displace(state),
+            Inner::Double(iteration) => iteration.displace(state),
+        }
     }
 
     fn run(&mut self, state: &mut State, stop: &Stopping, after_cycle: impl FnMut(&Cycle) -> bool) -> End {
@@ -158,32 +160,51 @@ impl Level {
         if displacement != Displacement::Known {
             state.balance_force();
         }
-        self.choose_window(state)?;
-        let Some(Windowed { window, inner, part }) = &mut self.windowed else { return Ok(End::Breakdown) };
-        let work = window.elements() as f64 / finest as f64;
-        let grid = window.grid(&self.grid);
-        if let Some(part) = part {
-            window.extract(&self.grid, &state.h, &mut part.h);
-            window.extract(&self.grid, &state.p, &mut part.p);
-            window.extract(&self.grid, &state.contact, &mut part.contact);
-            if displacement != Displacement::Unknown {
-                window.extract(&self.grid, &state.u, &mut part.u);
+        self.on_window(state, displacement, |inner, grid, state| {
+            let work = grid.len() as f64 / finest as f64;
+            if displacement == Displacement::Near {
+                inner.correct(state);
             }
-            (part.load, part.approach) = (state.load, state.approach);
+            if displacement != Displacement::Known {
+                inner.displace(state);
+                monitor.count_products(1, work);
+            }
+            inner.run(state, stop, |cycle| {
+                monitor.count_products(cycle.products, work);
+                monitor.active_set_steps += 1;
+                monitor.cycle_done(grid, cycle.changes, cycle.update, cycle.residual)
+            })
+        })
+    }
+
+    /// Improves p where u is near A p, without a product; u is not known afterwards.
+    pub fn correct(&mut self, state: &mut State) -> Result<()> {
+        state.balance_force();
+        self.on_window(state, Displacement::Near, |inner, _, state| inner.correct(state))
+    }
+
+    /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
+    fn on_window<R>(
+        &mut self,
+        state: &mut State,
+        displacement: Displacement,
+        work: impl FnOnce(&mut Inner, &Grid, &mut State) -> R,
+    ) -> Result<R> {
+        let Windowed { window, inner, part } = self.choose_window(state)?;
+        let grid = window.grid(&state.grid);
+        let Some(part) = part else { return Ok(work(inner, &grid, state)) };
+        window.extract(&state.grid, &state.h, &mut part.h);
+        window.extract(&state.grid, &state.p, &mut part.p);
+        window.extract(&state.grid, &state.contact, &mut part.contact);
+        if displacement != Displacement::Unknown {
+            window.extract(&state.grid, &state.u, &mut part.u);
         }
-        let on_window = part.as_mut().unwrap_or(state);
-        monitor.count_products(inner.displace(on_window, displacement), work);
-        let end = inner.run(on_window, stop, |cycle| {
-            monitor.count_products(cycle.products, work);
-            monitor.active_set_steps += 1;
-            monitor.cycle_done(&grid, cycle.changes, cycle.update, cycle.residual)
-        });
-        if let Some(part) = part {
-            window.insert(&self.grid, &part.p, &mut state.p, 0.0);
-            window.insert(&self.grid, &part.contact, &mut state.contact, false);
-            state.approach = part.approach;
-        }
-        Ok(end)
+        (part.load, part.approach) = (state.load, state.approach);
+        let result = work(inner, &grid, part);
+        window.insert(&state.grid, &part.p, &mut state.p, 0.0);
+        window.insert(&state.grid, &part.contact, &mut state.contact, false);
+        state.approach = part.approach;
+        Ok(result)
     }
 
     /// The u of the last iteration, for what follows on other grids; infinite outside the window.
@@ -193,24 +214,26 @@ impl Level {
         }
     }
 
-    fn choose_window(&mut self, state: &State) -> Result<()> {
+    fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
         let window = Window::around(state, current);
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
         // The operator of a window depends on its size only.
-        if let Some(windowed) = self.windowed.as_mut().filter(|windowed| windowed.window.grid(&self.grid) == grid) {
-            windowed.window = window;
-            return Ok(());
-        }
-        let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-        let inner = Inner::new(&self.influence, &grid, operator, self.precision, &self.threads)?;
-        let part = if window.is_full(&self.grid) {
-            None
-        } else {
-            Some(State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach)?)
+        let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
+        let windowed = match self.windowed.take().filter(fits) {
+            Some(windowed) => Windowed { window, ..windowed },
+            None => {
+                let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
+                let inner = Inner::new(&self.influence, &grid, operator, self.precision, &self.threads)?;
+                let part = if window.is_full(&self.grid) {
+                    None
+                } else {
+                    Some(State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach)?)
+                };
+                Windowed { window, inner, part }
+            }
         };
-        self.windowed = Some(Windowed { window, inner, part });
-        Ok(())
+        Ok(self.windowed.insert(windowed))
     }
 }
