@@ -1,5 +1,6 @@
 //! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle.
 
+pub mod analysis;
 mod coarsest;
 mod cycle;
 mod hierarchy;
