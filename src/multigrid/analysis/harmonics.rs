@@ -1,16 +1,16 @@
 //! What a cycle makes of the waves that it couples: those that look alike on its coarsest grid.
 
-use super::level::{Left, Level};
+use super::level::{is_low, Left, Level};
 use super::spectral_radius::spectral_radius;
 use crate::operator::fft::Complex;
 
-/// A cycle V(n1, n2), on waves.
+/// A cycle V(n1, n2) on waves.
 pub(super) struct Cycle<'a> {
     /// Finest first; the equations are solved exactly on the last.
     pub levels: &'a [Level],
     /// One sweep on each level but the last.
     pub sweeps: &'a [Vec<Left>],
-    /// n1, n2.
+    /// n1.
     pub pre: usize,
     /// n2.
     pub post: usize,
@@ -40,15 +40,15 @@ impl Cycle<'_> {
         spectral_radius(n, columns(n, |error| self.reduce(0, base, error)))
     }
 
-    /// The spectral radius of `sweeps` sweeps followed by an ideal correction, which removes what the next grid sees.
-    pub fn smoothing(&self, base: [usize; 2], sweeps: usize) -> f64 {
+    /// The spectral radius of n1 sweeps on the finest grid and an ideal correction, which removes what the next grid sees.
+    pub fn smoothing(&self, base: [usize; 2]) -> f64 {
         let waves = self.waves(0, base);
         let n = waves.side * waves.side;
         let smooth = |error: Vec<Complex<f64>>| {
-            let mut error = (0..sweeps).fold(error, |error, _| self.smooth(0, waves, error));
+            let mut error = (0..self.pre).fold(error, |error, _| self.smooth(0, waves, error));
+            let [nx, ny] = self.levels[0].n;
             for (e, [jx, jy]) in error.iter_mut().zip(waves.frequencies()) {
-                let [nx, ny] = self.levels[0].n;
-                if super::level::is_low(jx, nx) && super::level::is_low(jy, ny) {
+                if is_low(jx, nx) && is_low(jy, ny) {
                     *e = Complex::default();
                 }
             }

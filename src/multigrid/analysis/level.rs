@@ -16,8 +16,6 @@ pub struct Level {
     pub(super) values: Vec<Value>,
     /// `(1 + e^(i t))/2` for every frequency of a direction: the mean over two neighbours.
     pub(super) means: [Vec<Complex<f64>>; 2],
-    /// The symbol of the circulant, `[jy][jx]`: see [`circulant`].
-    circulant: Vec<f64>,
 }
 
 /// What one sweep makes of a wave of frequency t: its own amplitude, and that of the wave of frequency t + (pi, pi).
@@ -49,7 +47,7 @@ impl Level {
             }
         }
         let means = n.map(|n| (0..n).map(|j| 0.5 * (1.0 + Complex::from_polar(1.0, frequency(j, n)))).collect());
-        Level { n, diagonal: symbol.diagonal(), values, means, circulant: circulant(dx, dy, n) }
+        Level { n, diagonal: symbol.diagonal(), values, means }
     }
 
     /// Index of the wave of frequency t + (pi, pi).
@@ -73,16 +71,8 @@ impl Level {
                 let [nx, ny] = self.n;
                 (0..nx * ny).map(|i| self.red_black(i, self.opposite(i % nx, i / nx), omega)).collect()
             }
-            SmootherKind::Fft => {
-                // M A, and the step of least energy for a residual in which all waves are equally strong
-                let (mut rz, mut zq) = (0.0, 0.0);
-                for (value, circulant) in self.values.iter().zip(&self.circulant) {
-                    rz += 1.0 / circulant;
-                    zq += value.whole / (circulant * circulant);
-                }
-                let pairs = self.values.iter().zip(&self.circulant);
-                pairs.map(|(value, circulant)| alone((1.0 - omega * rz / zq * value.whole / circulant).into())).collect()
-            }
+            // M A = 1, and the step of least energy is 1
+            SmootherKind::Fft => vec![alone((1.0 - omega).into()); self.values.len()],
         }
     }
 
@@ -99,28 +89,4 @@ impl Level {
         crossed += black;
         (left, crossed)
     }
-}
-
-/// The circulant of the FFT smoother: coefficients at offsets up to half a period, here n, the outermost with half of
-/// their weight at either end.
-fn circulant(dx: f64, dy: f64, [nx, ny]: [usize; 2]) -> Vec<f64> {
-    let half_space = crate::influence::HalfSpace::new(dx, dy, 1.0);
-    let cosines = |n: usize| -> Vec<f64> {
-        let weight = |k: usize| if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
-        (0..n).flat_map(|j| (0..=n / 2).map(move |k| weight(k) * (k as f64 * frequency(j, n)).cos())).collect()
-    };
-    let (in_x, in_y) = (cosines(nx), cosines(ny));
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    // [jx][ky]
-    let mut rows = vec![0.0; nx * (ny / 2 + 1)];
-    let mut row = vec![0.0; nx / 2 + 1];
-    for ky in 0..=ny / 2 {
-        half_space.fill_row(0, ky as i64, &mut row);
-        for (jx, cosines) in in_x.chunks_exact(nx / 2 + 1).enumerate() {
-            rows[jx * (ny / 2 + 1) + ky] = dot(cosines, &row);
-        }
-    }
-    let of = |rows: &[f64]| in_y.chunks_exact(ny / 2 + 1).map(|cosines| dot(cosines, rows)).collect::<Vec<f64>>();
-    let columns: Vec<Vec<f64>> = rows.chunks_exact(ny / 2 + 1).map(of).collect();
-    (0..nx * ny).map(|i| columns[i % nx][i / nx]).collect()
 }
