@@ -25,7 +25,8 @@ def wave_map(axes, waves, name, title, **style):
     field = np.roll(waves[name].reshape(side, side), (side // 2, side // 2), (0, 1))
     image = axes.imshow(field, origin="lower", extent=(-1, 1, -1, 1), **style)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color="white", linewidth=1)
-    axes.set(title=title, xlabel="tx / pi", ylabel="ty / pi")
+    ticks = [-1, -0.5, 0, 0.5, 1]
+    axes.set(title=title, xlabel="tx / pi", ylabel="ty / pi", xticks=ticks, yticks=ticks)
     axes.figure.colorbar(image, ax=axes, shrink=0.8)
 
 
@@ -37,19 +38,19 @@ def over_size(axes, sizes):
         ("fft", "FFT", "v"),
     ]:
         axes.semilogx(sizes["across"], sizes[name], marker=marker, label=label)
-    axes.semilogx(sizes["across"], sizes["two_grids"], "k--", label="Gauss-Seidel, two grids, V(1,1)")
-    axes.set(title="Smoothing factors, omega = 0.8", xlabel="elements across", ylim=(0, 1.02))
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(0.0, 0.4))
+    axes.semilogx(sizes["across"], sizes["two_grids"], "k--", label="Gauss-Seidel, two grids")
+    axes.set(title="Smoothing factors, omega = 0.8", xlabel="elements across", ylim=(0, 1.05))
+    axes.legend(fontsize=8, loc="lower left", ncols=2)
 
 
 def over_relaxation(axes, relaxation):
     for m, colour in [(64, "tab:blue"), (256, "tab:red")]:
         rows = relaxation[relaxation["m"] == m]
-        axes.plot(rows["omega"], rows["three_grids"], color=colour, label=f"analysis, three grids, {m}")
-        axes.plot(rows["omega"], rows["measured"], "o", color=colour, label=f"measured, all grids, {m}")
-        axes.plot(rows["omega"], rows["table_1"], ":", marker="x", color=colour, label=f"measured as in table 1, {m}")
-    axes.set(title="Gauss-Seidel, V(1,1), the paper's ellipse", xlabel="omega", ylabel="factor per cycle", ylim=(0, 0.62))
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(0.0, 0.55))
+        axes.plot(rows["omega"], rows["three_grids"], color=colour, label=f"{m}: analysis, 3 grids")
+        axes.plot(rows["omega"], rows["measured"], "o", color=colour, label=f"{m}: measured, all grids")
+        axes.plot(rows["omega"], rows["table_1"], ":", marker="x", color=colour, label=f"{m}: as in table 1")
+    axes.set(title="Gauss-Seidel, V(1,1), the paper's ellipse", xlabel="omega", ylabel="factor per cycle", ylim=(0, 0.68))
+    axes.legend(fontsize=8, loc="lower left", ncols=2)
 
 
 def main(folder, path):

@@ -15,7 +15,7 @@
 //! coarse A              the symbol of elements 2 dx by 2 dy at 2 t, as the hierarchy computes its coefficients anew
 //! ```
 //!
-//! (L + c(0,0)/omega within a colour: those offsets of L with kx + ky even.) Four waves, t + (0 or pi, 0 or pi), look alike on the
+//! (1/G: within a colour, of L only the offsets with kx + ky even.) Four waves, t + (0 or pi, 0 or pi), look alike on the
 //! next grid. So the two-grid cycle is a 4 x 4 matrix for each such set, V-cycles of more grids are larger ones, and the
 //! factor is the largest spectral radius over all sets. The smoothing factor is that of sweeps with an ideal correction,
 //! which removes the wave with |tx|, |ty| < pi/2 of each set and nothing else.
@@ -33,8 +33,8 @@
 //!   |t|^2/8 of long waves, which balances two sweeps. But a V-cycle corrects inexactly, and each of its grids multiplies
 //!   what the coarser ones have left by the square of that number. It diverges, the worse the more grids. A damping that
 //!   prevents it is about 1/n: it no longer smooths.
-//! * *Gauss-Seidel* divides by c(0,0)/omega + L(t), which grows with A(t): L has about half of A. No wave is amplified,
-//!   however long.
+//! * *Gauss-Seidel* divides by c(0,0)/omega + L(t), which grows with A(t). As A = c(0,0) + 2 Re L, the symbol S has
+//!   `|S|^2 = 1 - A c(0,0) (2/omega - 1)/|c(0,0)/omega + L|^2 < 1` for 0 < omega < 2: no wave is amplified, however long.
 //! * *Red-black order* couples t with t + (pi, pi): the shortest wave of all with the longest.
 //! * *The FFT smoother* divides by A(t) itself; only the boundary, of which this analysis knows nothing, keeps it from
 //!   being exact.
