@@ -230,7 +230,7 @@ fn jacobi_diverges_by_the_factor_of_the_analysis() {
         }
         let ratio = (growth + 1.0) / (predicted + 1.0);
         // 1%: elements instead of points
-        assert!(1.04 <= ratio && ratio <= 1.26, "omega {omega}: {growth} for {predicted}");
+        assert!((1.04..=1.26).contains(&ratio), "omega {omega}: {growth} for {predicted}");
 
         // Two grids hold it; with three, V(1,1) has four sweeps over long waves on two grids, each of them off by the ratio
         // (and a little more, as 1 is subtracted): 1 to 1.3^4.
