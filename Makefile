@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test bench bench-peers install tools clean
+.PHONY: all demo test bench bench-peers analysis install tools clean
 .DEFAULT_GOAL := all
 
 all:
@@ -101,6 +101,11 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 	CFLAGS="-O3 -march=native" CXXFLAGS="-O3 -march=native" build/peers/bin/pip install --quiet --no-binary aspher \
 		-r benches/peers/requirements.txt
 	touch $@
+
+# Local Fourier analysis beside measurement, and docs/local_fourier_analysis.png.
+analysis: tools
+	$(CARGO) run --release --locked --example local_fourier_analysis target/local_fourier_analysis
+	"$(find_python)" benches/local_fourier_analysis.py target/local_fourier_analysis docs/local_fourier_analysis.png
 
 install:
 	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all

@@ -1,5 +1,7 @@
-//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle.
+//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle; and [local Fourier analysis](analysis) of
+//! them.
 
+pub mod analysis;
 mod coarsest;
 mod cycle;
 mod hierarchy;
