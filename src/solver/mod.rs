@@ -4,6 +4,7 @@
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod batch;
+mod estimates;
 mod full_multigrid;
 mod monitor;
 mod multigrid_method;
@@ -18,7 +19,7 @@ use std::time::Instant;
 pub use batch::Problem;
 pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
-pub use report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
+pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
 use crate::active_set::State;
 use crate::error::{invalid, Error, Result};
@@ -121,7 +122,7 @@ impl Solver {
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
         self.check_range(scene)?;
-        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger));
+        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.start_and_run(scene, options, guess, &mut monitor);
         let (mut report, ledger) = monitor.finish();
         self.ledger = ledger;
@@ -163,6 +164,11 @@ impl Solver {
         self.solved_before = true;
         self.u_is_product = stop == Stop::Converged;
         monitor.close_grid(&self.states[0]);
+        if options.estimates && self.symmetric && !rule.fixed && !monitor.is_cancelled() {
+            let state = &self.states[0];
+            let (samples, count) = self.projected.samples(state, monitor)?;
+            monitor.estimate(state, &samples[..count]);
+        }
         Ok(stop)
     }
 
