@@ -100,7 +100,6 @@ pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], se
     };
     let force = of(found, |sample| sample.found);
     let max_pressure = of(measures.max_pressure, |sample| sample.max_pressure);
-    let missed = missed_peak(finest);
     // Distances are those of whole fields: their own order is taken as it is, the square root of the pressures at the rim allows for 1.
     let pressure = near.and_then(|near| {
         let q = trusted_order((near.size, near.distance), far.map(|far| (far.size, far.distance)), 1.0)?;
@@ -129,15 +128,15 @@ pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], se
         let correction = (row.measures.contact_area - row.measures.corrected_area).abs();
         row.error = DiscretisationError {
             force: off(row.measures.found(finest.load), found, force),
-            max_pressure: off(row.measures.max_pressure, measures.max_pressure, max_pressure).max(match max_pressure {
-                Some(_) => missed * row_size * row_size,
-                None => -1.0,
-            }),
+            max_pressure: off(row.measures.max_pressure, measures.max_pressure, max_pressure),
             contact_area: (row.measures.contact_area - area).abs(),
             corrected_area: CORRECTION_OFF * correction,
             pressure: pressure.map_or(-1.0, |(error, q)| error * row_size.powf(q) + residual),
             untrusted,
         };
+    }
+    if let (Some(row), Some(_)) = (ledger.last_mut(), max_pressure) {
+        row.error.max_pressure = row.error.max_pressure.max(missed_peak(finest));
     }
 
     let Some((error, q)) = force else { return Default::default() };
