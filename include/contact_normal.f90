@@ -148,6 +148,7 @@ module contact_normal
     real(c_double) :: max_pressure = 0
     real(c_double) :: contact_area = 0
     integer(c_int64_t) :: contact_count = 0
+    integer(c_int64_t) :: edge_count = 0
     real(c_double) :: error_force = 0
     real(c_double) :: error_max_pressure = 0
     real(c_double) :: error_contact_area = 0

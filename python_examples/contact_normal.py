@@ -158,6 +158,7 @@ class Report(ctypes.Structure):
         ("max_pressure", c_double),
         ("contact_area", c_double),
         ("contact_count", c_int64),
+        ("edge_count", c_int64),
         ("error_force", c_double),
         ("error_max_pressure", c_double),
         ("error_contact_area", c_double),

@@ -94,6 +94,7 @@ int main(void)
     OFFSET(contact_normal_report, max_pressure);
     OFFSET(contact_normal_report, contact_area);
     OFFSET(contact_normal_report, contact_count);
+    OFFSET(contact_normal_report, edge_count);
     OFFSET(contact_normal_report, error_force);
     OFFSET(contact_normal_report, error_max_pressure);
     OFFSET(contact_normal_report, error_contact_area);

@@ -193,7 +193,7 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_report {
             struct_size, cycles, active_set_steps, active_set_changes, matrix_products, work_units, update,
             residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
-            contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
+            contact_count, edge_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger
         }
         contact_normal_hertz_solution {

@@ -166,7 +166,7 @@ fn derived_types_are_laid_out_as_the_structs() {
             max_pressure, contact_area, error_force, error_max_pressure, error_contact_area;
         contact_normal_report: struct_size, cycles, active_set_steps, active_set_changes,
             matrix_products, work_units, update, residual, penetration, complementarity,
-            min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
+            min_pressure, approach, force, max_pressure, contact_area, contact_count, edge_count, error_force,
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,

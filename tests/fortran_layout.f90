@@ -111,6 +111,7 @@ program fortran_layout
   call show("contact_normal_report.max_pressure", c_loc(report%max_pressure))
   call show("contact_normal_report.contact_area", c_loc(report%contact_area))
   call show("contact_normal_report.contact_count", c_loc(report%contact_count))
+  call show("contact_normal_report.edge_count", c_loc(report%edge_count))
   call show("contact_normal_report.error_force", c_loc(report%error_force))
   call show("contact_normal_report.error_max_pressure", c_loc(report%error_max_pressure))
   call show("contact_normal_report.error_contact_area", c_loc(report%error_contact_area))

@@ -179,6 +179,7 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         max_pressure,
         contact_area,
         contact_count,
+        edge_count,
         error_force,
         error_max_pressure,
         error_contact_area,

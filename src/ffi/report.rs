@@ -123,6 +123,8 @@ pub struct contact_normal_report {
     pub contact_area: f64,
     /// Elements in contact.
     pub contact_count: i64,
+    /// Those of them on the first or last row or column: with any, the potential contact area may be too small.
+    pub edge_count: i64,
     /// Estimated discretisation error of the force (of the approach, when the force is prescribed); < 0: not known.
     pub error_force: f64,
     /// Of the largest pressure.
@@ -146,7 +148,7 @@ pub struct contact_normal_report {
 // SAFETY: integers, floats and a raw pointer only, struct_size first.
 unsafe impl Versioned for contact_normal_report {
     const NAME: &'static str = "contact_normal_report";
-    const FIRST_SIZE: usize = 200;
+    const FIRST_SIZE: usize = 208;
     fn defaults() -> Self {
         Self {
             struct_size: size_of::<Self>() as i64,
@@ -165,6 +167,7 @@ unsafe impl Versioned for contact_normal_report {
             max_pressure: 0.0,
             contact_area: 0.0,
             contact_count: 0,
+            edge_count: 0,
             error_force: -1.0,
             error_max_pressure: -1.0,
             error_contact_area: -1.0,
@@ -204,6 +207,7 @@ impl contact_normal_report {
             max_pressure: measures.max_pressure,
             contact_area: measures.contact_area,
             contact_count: measures.contact_count as i64,
+            edge_count: measures.edge_count as i64,
             error_force: report.error.force,
             error_max_pressure: report.error.max_pressure,
             error_contact_area: report.error.contact_area,

@@ -89,6 +89,11 @@ impl HalfSpace {
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 
+    /// The coefficients times `factor`.
+    pub fn times(&self, factor: f64) -> HalfSpace {
+        HalfSpace { compliance: factor * self.compliance, ..self.clone() }
+    }
+
     /// The coefficient at offset `(kx, ky)`.
     pub fn at(&self, kx: i64, ky: i64) -> f64 {
         let mut value = [0.0];

@@ -30,6 +30,14 @@ impl Influence {
         }
     }
 
+    /// The coefficients times `factor`, a power of two: no digit changes.
+    pub fn times(&self, factor: f64) -> Influence {
+        match self {
+            Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.times(factor)),
+            Influence::Table(table) => Influence::Table(table.times(factor)),
+        }
+    }
+
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
     pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         match self {

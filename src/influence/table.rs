@@ -65,6 +65,11 @@ impl Table {
         self.values[clamp(ky, self.cy) * 2 * self.cx + clamp(kx, self.cx)]
     }
 
+    /// The coefficients times `factor`.
+    pub fn times(&self, factor: f64) -> Table {
+        Table { values: self.values.iter().map(|value| value * factor).collect(), ..*self }
+    }
+
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`.
     pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         for (k, value) in out.iter_mut().enumerate() {

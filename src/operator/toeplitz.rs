@@ -138,8 +138,8 @@ impl<T: Real> Toeplitz<T> {
     }
 
     /// The same operator in another precision.
-    pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
-        let convert = |value: T| S::of(value.to_double());
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Toeplitz<S>> {
+        let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
             Spectrum::Even(from) => {
                 let mut to = zeros(from.len(), "the operator's spectrum")?;

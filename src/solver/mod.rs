@@ -4,6 +4,7 @@
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod batch;
+mod descent_method;
 mod full_multigrid;
 mod monitor;
 mod multigrid_method;
@@ -120,7 +121,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
-        self.check_range(scene)?;
+        self.check_range(scene, guess.filter(|_| options.active_set == ActiveSet::Fixed))?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger));
         let outcome = self.start_and_run(scene, options, guess, &mut monitor);
         let (mut report, ledger) = monitor.finish();
@@ -211,16 +212,23 @@ impl Solver {
         Ok(())
     }
 
-    /// Refuses units in which pressures, displacements or their squares leave the range of double precision.
-    fn check_range(&self, scene: &Scene<'_>) -> Result<()> {
+    /// Refuses units in which pressures, displacements or their squares leave the range of double precision. `fixed`: a contact
+    /// area that is given.
+    fn check_range(&self, scene: &Scene<'_>, fixed: Option<Guess<'_>>) -> Result<()> {
         let influence = self.projected.influence().at(0, 0);
-        let (pressure, displacement) = match scene.load {
-            Load::Approach(approach) => {
+        let (pressure, displacement) = match (scene.load, fixed) {
+            (Load::Approach(approach), Some(fixed)) => {
+                let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
+                let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
+                let depth = on_contact.fold(0.0, |depth: f64, (h, _)| depth.max((h - approach).abs()));
+                (depth / influence, depth)
+            }
+            (Load::Approach(approach), None) => {
                 let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
                 let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
                 (depth / influence, depth)
             }
-            Load::Force(force) => {
+            (Load::Force(force), _) => {
                 let pressure = force / scene.grid.element_area();
                 (pressure, pressure * influence)
             }
@@ -278,10 +286,22 @@ impl Solver {
                 if stop != Stop::Stagnated {
                     return Ok(stop);
                 }
-                log::info!("the fast method stagnated on this scene; NORM takes over");
-                self.norm(rule, monitor)
+                if self.symmetric && !rule.fixed {
+                    log::info!("the fast method stagnated on this scene; projected descent takes over");
+                    self.descent(rule, monitor)
+                } else {
+                    log::info!("the fast method stagnated on this scene; NORM takes over");
+                    self.norm(rule, monitor)
+                }
             }
         }
+    }
+
+    fn descent(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
+        let (projected, state) = (&mut self.projected, &mut self.states[0]);
+        let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
+        let by = Displace { product: &mut displace, work: 1.0, symmetric: true };
+        descent_method::solve(state, by, rule, &mut self.workspace.descent, monitor)
     }
 
     fn norm(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {

@@ -60,13 +60,12 @@ pub fn solve(
             }
         }
         let inner = inner_solve(state, &mut by, rule, &mut workspace.inner, monitor)?;
+        // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
+        state.balance_force();
         by.displace(state, monitor);
         monitor.active_set_steps += 1;
         if monitor.is_cancelled() || (monitor.cycles >= rule.max_cycles && !inner.met) {
-            if !rule.fixed && truncate(state) > 0 {
-                state.balance_force();
-                by.displace(state, monitor);
-            }
+            give_up(state, &mut by, rule, monitor);
             return Ok(Stop::interrupted(monitor));
         }
 
@@ -74,6 +73,7 @@ pub fn solve(
         if !rule.holds(state, inner.update) {
             restarts += 1;
             if restarts > RESTARTS {
+                give_up(state, &mut by, rule, monitor);
                 return Ok(Stop::Stagnated);
             }
             warm = true;
@@ -108,10 +108,20 @@ pub fn solve(
             state.p[i] = 0.0;
         }
         if monitor.cycles >= rule.max_cycles {
+            give_up(state, &mut by, rule, monitor);
             return Ok(Stop::IterationLimit);
         }
         warm = false;
     }
+}
+
+/// What is returned has no tension, carries the prescribed force, and has u = A p.
+fn give_up(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) {
+    if !rule.fixed {
+        truncate(state);
+    }
+    state.balance_force();
+    by.displace(state, monitor);
 }
 
 /// Whether the violations are within the tolerance: p truncated satisfies the equations, and nothing penetrates. If so the

@@ -28,6 +28,8 @@ pub struct Measures {
     pub max_pressure: f64,
     /// Elements in contact.
     pub contact_count: usize,
+    /// Those of them on the first or last row or column of the grid.
+    pub edge_count: usize,
     /// Their area.
     pub contact_area: f64,
 }
@@ -42,6 +44,7 @@ impl Measures {
             force: survey.pressures * state.grid.element_area(),
             max_pressure: survey.range.1.max(0.0),
             contact_count: survey.contact_count,
+            edge_count: state.edge_count(),
             contact_area: survey.contact_count as f64 * state.grid.element_area(),
         }
     }

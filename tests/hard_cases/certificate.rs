@@ -78,12 +78,13 @@ pub fn recompute(case: &Case, found: &Found) -> Recomputed {
     let (mut r2, mut h2, mut outside, mut gaps, mut work, mut count) = (0.0, 0.0, 0.0f64, 0.0, 0.0, 0.0f64);
     let (mut energy, mut largest) = (0.0, 0.0f64);
     for (i, &u) in u.iter().enumerate() {
+        largest = largest.max(u.abs());
         let (h, p) = (case.h[i], found.p[i]);
         let e = h - found.approach + u;
         if found.contact[i] {
             assert!(h.is_finite(), "{}: contact where there is no surface", case.name);
             (r2, h2, count) = (r2 + e * e, h2 + (h - found.approach).powi(2), count + 1.0);
-            largest = largest.max(h.abs()).max(u.abs());
+            largest = largest.max(h.abs());
         } else {
             assert_eq!(p, 0.0, "{}: an exterior element carries a pressure", case.name);
             outside = outside.max(-e);
@@ -123,6 +124,10 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     let agree = |a: f64, b: f64| (a - b).abs() <= measures.round_off + 1e-9 * a.abs();
     assert!(agree(certificate.residual, measures.residual), "{name}: reported {certificate:?}, found {measures:?}");
     assert!(agree(certificate.complementarity, measures.complementarity), "{name}: {certificate:?}, {measures:?}");
+    let (mx, my) = (case.grid.mx, case.grid.my);
+    let at_edge = |i: &usize| [0, mx - 1].contains(&(i % mx)) || [0, my - 1].contains(&(i / mx));
+    let touching = (0..found.p.len()).filter(|&i| found.contact[i]).filter(at_edge).count();
+    assert_eq!(reported.edge_count, touching, "{name}");
     assert_eq!(reported.contact_count, found.contact.iter().filter(|&&inside| inside).count(), "{name}");
     measures
 }

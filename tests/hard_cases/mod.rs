@@ -2,9 +2,15 @@
 
 pub mod case;
 pub mod certificate;
+pub mod coefficients;
 pub mod contact_areas;
 pub mod grids;
+pub mod guesses;
+pub mod loads;
+pub mod materials;
+pub mod stops;
 pub mod surfaces;
+pub mod units;
 
 pub use case::Case;
 
@@ -14,5 +20,11 @@ pub fn all() -> Vec<(&'static str, Vec<Case>)> {
         ("contact areas", contact_areas::cases()),
         ("surfaces", surfaces::cases()),
         ("grids", grids::cases()),
+        ("materials", materials::cases()),
+        ("units", units::cases()),
+        ("loads", loads::cases()),
+        ("guesses and stops", [guesses::cases(), stops::cases()].concat()),
+        ("the caller's coefficients", coefficients::cases()),
+        ("coefficients of no elastic body", coefficients::indefinite()),
     ]
 }

@@ -25,6 +25,9 @@ pub fn cases() -> Vec<Case> {
     let wild: Vec<f64> = noise.iter().map(|r| 10f64.powf(24.0 * r - 12.0)).collect();
     add("noise over 24 decades", square, wild, &[Load::Approach(1e-6), Load::Approach(1e3), Load::Force(1e-3)]);
 
+    let extreme: Vec<f64> = noise.iter().map(|r| 10f64.powf(400.0 * r - 200.0)).collect();
+    add("noise over 400 decades", square, extreme, &[Load::Approach(1e-6), Load::Approach(1e100), Load::Force(1e-3)]);
+
     // 100 x 100 bumps of 4 x 4 elements, of heights that differ.
     let islands = grid(400, 400, 0.01, 0.01);
     let heights: Vec<f64> = (0..10_000).map(|_| 1e-3 * random.next()).collect();

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::super::monitor::Monitor;
 use super::super::options::Precision;
+use super::units::Units;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -31,11 +32,12 @@ enum Inner {
 }
 
 impl Inner {
-    /// On `grid`, of which `operator` is the one in double precision if that is known.
+    /// On `grid`, of which `operator` is the one in double precision if that is known. Coefficients are taken times `factor`.
     fn new(
         influence: &Influence,
         grid: &Grid,
         operator: Option<&Toeplitz<f64>>,
+        factor: f64,
         precision: Precision,
         threads: &Threads,
     ) -> Result<Inner> {
@@ -43,18 +45,22 @@ impl Inner {
             influence: &Influence,
             grid: &Grid,
             operator: Option<&Toeplitz<f64>>,
+            factor: f64,
             threads: &Threads,
         ) -> Result<Iteration<T>> {
+            let influence = &influence.times(factor);
             let operator = match operator {
-                Some(operator) => operator.in_precision()?,
+                Some(operator) => operator.in_precision(factor)?,
                 None => Toeplitz::new(influence, grid, threads)?,
             };
             Iteration::new(operator, influence, grid, threads)
         }
         let threads = &threads.suited_to(grid.len());
         Ok(match precision {
-            Precision::Double => Inner::Double(iteration(influence, grid, operator, threads)?),
-            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, threads)?),
+            Precision::Double => Inner::Double(iteration(influence, grid, operator, factor, threads)?),
+            Precision::Auto | Precision::Mixed => {
+                Inner::Single(iteration(influence, grid, operator, factor, threads)?)
+            }
         })
     }
 
@@ -89,7 +95,9 @@ impl Inner {
 struct Windowed {
     window: Window,
     inner: Inner,
-    /// The window's part of the state; none when the window is the whole grid.
+    /// Of the last iteration.
+    units: Units,
+    /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
     part: Option<State>,
 }
 
@@ -159,7 +167,7 @@ impl Level {
             state.balance_force();
         }
         self.choose_window(state)?;
-        let Some(Windowed { window, inner, part }) = &mut self.windowed else { return Ok(End::Breakdown) };
+        let Some(Windowed { window, inner, units, part }) = &mut self.windowed else { return Ok(End::Breakdown) };
         let work = window.elements() as f64 / finest as f64;
         let grid = window.grid(&self.grid);
         if let Some(part) = part {
@@ -170,15 +178,21 @@ impl Level {
                 window.extract(&self.grid, &state.u, &mut part.u);
             }
             (part.load, part.approach) = (state.load, state.approach);
+            if *units != Units::SAME {
+                units.convert(part);
+            }
         }
         let on_window = part.as_mut().unwrap_or(state);
         monitor.count_products(inner.displace(on_window, displacement), work);
         let end = inner.run(on_window, stop, |cycle| {
             monitor.count_products(cycle.products, work);
             monitor.active_set_steps += 1;
-            monitor.cycle_done(&grid, cycle.changes, cycle.update, cycle.residual)
+            monitor.cycle_done(&grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
         });
         if let Some(part) = part {
+            if *units != Units::SAME {
+                units.convert_back(part);
+            }
             window.insert(&self.grid, &part.p, &mut state.p, 0.0);
             window.insert(&self.grid, &part.contact, &mut state.contact, false);
             state.approach = part.approach;
@@ -198,19 +212,29 @@ impl Level {
         let window = Window::around(state, current);
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
+        let units = match self.precision {
+            Precision::Double => Units::SAME,
+            Precision::Auto | Precision::Mixed => Units::for_state(state, self.influence.at(0, 0)),
+        };
+        let part = if window.is_full(&self.grid) && units == Units::SAME {
+            None
+        } else {
+            Some(|| State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach))
+        };
         // The operator of a window depends on its size only.
         if let Some(windowed) = self.windowed.as_mut().filter(|windowed| windowed.window.grid(&self.grid) == grid) {
-            windowed.window = window;
+            windowed.part = match (part, windowed.part.take()) {
+                (Some(new), None) => Some(new()?),
+                (part, known) => known.filter(|_| part.is_some()),
+            };
+            (windowed.window, windowed.units) = (window, units);
             return Ok(());
         }
         let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-        let inner = Inner::new(&self.influence, &grid, operator, self.precision, &self.threads)?;
-        let part = if window.is_full(&self.grid) {
-            None
-        } else {
-            Some(State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach)?)
-        };
-        self.windowed = Some(Windowed { window, inner, part });
+        let factor = units.influence;
+        let inner = Inner::new(&self.influence, &grid, operator, factor, self.precision, &self.threads)?;
+        let part = part.map(|new| new()).transpose()?;
+        self.windowed = Some(Windowed { window, inner, units, part });
         Ok(())
     }
 }

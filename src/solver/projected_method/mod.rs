@@ -11,6 +11,7 @@ mod coarse;
 mod direct;
 mod history;
 mod level;
+mod units;
 
 use std::sync::Arc;
 
@@ -211,7 +212,9 @@ impl Projected {
     fn judge(&self, state: &mut State, rule: &Rule, monitor: &Monitor<'_>) -> Certified {
         let mut survey = Survey::of(state);
         let scale = survey.distance / (survey.contact_count.max(1) as f64).sqrt();
-        let violation = (survey.residual / survey.distance).max(survey.penetration / scale);
+        // What is no number is no good: `max` alone would drop it.
+        let violations = [survey.residual / survey.distance, survey.penetration / scale];
+        let violation = violations.into_iter().fold(0.0, |worst, v| if v <= worst { worst } else { v });
         if !rule.fixed && survey.penetration > 0.0 {
             admit(state);
             if !(survey.penetration <= rule.tolerance * scale) {
@@ -222,7 +225,7 @@ impl Projected {
         let holds = if rule.by_update {
             rule.holds(state, monitor.update)
         } else {
-            survey.residual <= rule.tolerance * survey.distance
+            survey.residual.is_finite() && survey.residual <= rule.tolerance * survey.distance
         };
         Certified { holds, violation }
     }
