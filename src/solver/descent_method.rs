@@ -18,6 +18,7 @@ use super::norm_method::Displace;
 use super::report::Stop;
 use crate::active_set::{norm_of_distance, State, Survey};
 use crate::error::{Error, Result};
+use crate::operator::reserve;
 use crate::scene::Load;
 
 /// Cycles without a new least residual after which round-off is reached.
@@ -48,7 +49,11 @@ pub fn solve(
     let Workspace { free, free_before, residual, t, q, change, product } = workspace;
     for values in [&mut *residual, t, q, change, product] {
         values.clear();
+        reserve(values, state.p.len(), "the workspace of projected descent")?;
         values.resize(state.p.len(), 0.0);
+    }
+    for elements in [&mut *free, free_before] {
+        reserve(elements, state.p.len(), "the workspace of projected descent")?;
     }
     free_before.clear();
     refresh(state, &mut by, monitor);

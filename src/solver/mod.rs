@@ -54,6 +54,8 @@ pub struct Solver {
     bodies: Bodies,
     has_own_influence: bool,
     symmetric: bool,
+    /// The largest coefficient, whatever its sign.
+    largest_influence: f64,
     shape: CycleShape,
     precision: Precision,
     /// As asked for in the options.
@@ -96,6 +98,7 @@ impl Solver {
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
             symmetric: influence.is_symmetric(&scene.grid),
+            largest_influence: influence.largest(&scene.grid),
             shape: options.cycle_shape(),
             precision: options.precision,
             thread_count: options.threads,
@@ -235,10 +238,12 @@ impl Solver {
         };
         let in_range = |value: f64| (1e-140..1e140).contains(&value);
         let loaded = pressure != 0.0 || displacement != 0.0;
-        if loaded && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
+        let largest = self.largest_influence;
+        let coefficients = in_range(influence) && in_range(largest) && in_range(largest * pressure);
+        if loaded && !(in_range(pressure) && in_range(displacement) && coefficients) {
             return invalid(format!(
                 "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
-                 coefficients of order {influence:e}; all must lie between 1e-140 and 1e140: choose other units"
+                 coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"
             ));
         }
         Ok(())
@@ -334,6 +339,7 @@ impl Solver {
     }
 
     fn set_up_multigrid(&mut self) -> Result<()> {
+        self.workspace.cycles.reserve(self.grid.len())?;
         if self.multigrid.is_none() {
             let began = Instant::now();
             let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &self.threads)?;

@@ -21,6 +21,12 @@ pub struct Case {
     pub influence: Option<Table>,
 }
 
+impl std::fmt::Debug for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {:?}, {:?}, {:?}", self.name, self.grid, self.load, self.bodies)
+    }
+}
+
 impl Case {
     /// A case on a rigid body and one with E* = 1.
     pub fn new(name: &str, grid: Grid, h: Vec<f64>, load: Load) -> Case {

@@ -4,6 +4,7 @@ pub mod case;
 pub mod certificate;
 pub mod coefficients;
 pub mod contact_areas;
+pub mod cycling;
 pub mod grids;
 pub mod guesses;
 pub mod loads;
@@ -25,6 +26,7 @@ pub fn all() -> Vec<(&'static str, Vec<Case>)> {
         ("loads", loads::cases()),
         ("guesses and stops", [guesses::cases(), stops::cases()].concat()),
         ("the caller's coefficients", coefficients::cases()),
+        ("an exchange that cycles", cycling::cases()),
         ("coefficients of no elastic body", coefficients::indefinite()),
     ]
 }

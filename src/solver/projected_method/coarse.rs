@@ -40,7 +40,7 @@ impl CoarseGrids {
         let mut grids = Vec::new();
         let (mut fine, mut influence) = (*grid, influence.clone());
         while let Some(coarse) = coarsen(&fine, COARSEST) {
-            influence = influence.coarsen(&fine, &coarse);
+            influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
             let h = zeros(fine.len(), "undeformed distances")?;
             let load = crate::scene::Load::Approach(0.0);

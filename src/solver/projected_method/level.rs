@@ -48,7 +48,7 @@ impl Inner {
             factor: f64,
             threads: &Threads,
         ) -> Result<Iteration<T>> {
-            let influence = &influence.times(factor);
+            let influence = &influence.times(factor)?;
             let operator = match operator {
                 Some(operator) => operator.in_precision(factor)?,
                 None => Toeplitz::new(influence, grid, threads)?,

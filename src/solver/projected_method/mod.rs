@@ -24,7 +24,7 @@ use crate::active_set::{admit, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::{Toeplitz, Workspace};
+use crate::operator::{reserve, Toeplitz, Workspace};
 use crate::projected_cg::{End, Stopping};
 use crate::threads::Threads;
 use coarse::CoarseGrids;
@@ -144,6 +144,7 @@ impl Projected {
         let (mut best, mut rounds, mut rounds_without_progress) = (f64::INFINITY, 0, 0);
         loop {
             if rule.by_update {
+                reserve(&mut self.before, state.p.len(), "the pressures before")?;
                 self.before.clone_from(&state.p);
             }
             let stop = Stopping {
