@@ -89,6 +89,17 @@ fn a_host_with_its_own_floating_point_environment_gets_the_same() {
 }
 
 #[test]
+fn an_example_under_valgrind() {
+    let folder = scratch("fortran_valgrind");
+    let program = compile("fortran_examples/norm_drop_in.f90", &["-g", "-O1"], &folder);
+    let mut valgrind = Command::new("valgrind");
+    // "still reachable" is what the Fortran library keeps for its units.
+    valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full", "--errors-for-leak-kinds=definite"]).arg(program);
+    let printed = run(valgrind.env("LD_LIBRARY_PATH", &folder).current_dir(&folder));
+    assert!(!printed.is_empty());
+}
+
+#[test]
 fn norm_solve_keeps_its_promises() {
     let all = [
         &["-g", "-O1", "-fcheck=all"][..],

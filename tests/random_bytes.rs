@@ -35,8 +35,7 @@ fn tables_of_coefficients() {
 #[test]
 fn the_corpus_of_the_fuzz_targets() {
     let mut found = 0;
-    for (folder, target) in
-        [("scene", target::scene_and_options as fn(&[u8])), ("table", target::tables as fn(&[u8]))]
+    for (folder, target) in [("scene", target::scene_and_options as fn(&[u8])), ("table", target::tables as fn(&[u8]))]
     {
         let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(folder);
         for file in std::fs::read_dir(corpus).expect("the corpus") {

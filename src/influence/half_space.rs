@@ -62,7 +62,9 @@ struct Shape {
 impl Shape {
     fn new(dx: f64, dy: f64) -> Shape {
         let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
-        let (near_x, near_y) = ((reach / dx) as usize + 2, (reach / dy) as usize + 2);
+        // Of a needle of an element there are more than can be counted.
+        let count = |d: f64| ((reach / d) as usize).saturating_add(2);
+        let (near_x, near_y) = (count(dx), count(dy));
         let mut near = Vec::new();
         if near_x.saturating_mul(near_y) <= MOST_KEPT {
             let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));

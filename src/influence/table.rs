@@ -7,6 +7,8 @@
 //! unit pressure on those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y. Where an odd count
 //! asks for an offset just outside the table (the last coarse element sticks out), the outermost coefficient serves.
 
+use std::sync::Arc;
+
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{reserve, zeros};
@@ -22,7 +24,8 @@ const SYMMETRY: f64 = 1e-7;
 pub struct Table {
     cx: usize,
     cy: usize,
-    values: Vec<f64>,
+    /// Shared by all that hold the table.
+    values: Arc<Vec<f64>>,
 }
 
 impl Table {
@@ -53,7 +56,7 @@ impl Table {
                 kept[(ky + kept_y as i64) as usize * 2 * kept_x + (kx + kept_x as i64) as usize] = value;
             }
         }
-        let table = Table { cx: kept_x, cy: kept_y, values: kept };
+        let table = Table { cx: kept_x, cy: kept_y, values: Arc::new(kept) };
         if table.at(0, 0) <= 0.0 {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence.coefficients at offset (0, 0) is {}; a pressure must displace its own element inwards",
@@ -74,7 +77,7 @@ impl Table {
         let mut values = Vec::new();
         reserve(&mut values, self.values.len(), TABLE)?;
         values.extend(self.values.iter().map(|value| value * factor));
-        Ok(Table { values, ..*self })
+        Ok(Table { values: Arc::new(values), ..*self })
     }
 
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`.
@@ -123,7 +126,7 @@ impl Table {
         for ky in -(cy as i64)..cy as i64 {
             values.extend((-(cx as i64)..cx as i64).map(|kx| in_both(kx, ky)));
         }
-        Ok(Table { cx, cy, values })
+        Ok(Table { cx, cy, values: Arc::new(values) })
     }
 
     fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {

@@ -214,18 +214,20 @@ mod tests {
     use crate::influence::{HalfSpace, Influence};
     use crate::operator::dense;
 
-    /// A wavy punch, with steps that make elements leave and enter.
-    fn state(load: Load) -> (Influence, State) {
+    /// A wavy punch, that makes elements leave and enter.
+    fn state(load: Load, wave: f64) -> (Influence, State) {
         let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
-        let h = (0..grid.len()).map(|i| 0.02 * (2.1 * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos()).collect();
+        let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
+        let h = (0..grid.len()).map(h).collect();
         let influence = Influence::HalfSpace(HalfSpace::new(0.1, 0.1, 1.0));
         (influence, State::new(grid, h, load, 0.0).expect("a state"))
     }
 
     #[test]
     fn every_cycle_lowers_the_energy_until_the_conditions_hold() {
-        for load in [Load::Approach(0.03), Load::Force(0.05)] {
-            let (influence, mut state) = state(load);
+        let waves = (0..20).map(|k| 0.1 + 0.15 * f64::from(k));
+        for (load, wave) in waves.flat_map(|wave| [(Load::Approach(0.015), wave), (Load::Force(0.02), wave)]) {
+            let (influence, mut state) = state(load, wave);
             let grid = state.grid;
             let mut last = f64::INFINITY;
             let mut workspace = Workspace::default();
@@ -248,14 +250,14 @@ mod tests {
             }
             let survey = Survey::of(&state);
             assert!(survey.residual <= 1e-9 * survey.distance && survey.penetration <= 1e-9, "{survey:?}");
-            assert!((state.contact_count() > 20) && state.contact_count() < 150, "{}", state.contact_count());
+            assert!(state.contact_count() > 10 && state.contact_count() < 154, "{}", state.contact_count());
         }
     }
 
     #[test]
     fn it_takes_over_from_any_pressures() {
         for start in [0.0, -1.0, 1e6, f64::NAN] {
-            let (influence, mut state) = state(Load::Force(0.05));
+            let (influence, mut state) = state(Load::Force(0.05), 2.1);
             let grid = state.grid;
             state.p.fill(start);
             let mut product = |p: &[f64], u: &mut [f64]| dense::apply(&influence, &grid, p, u);

@@ -63,7 +63,8 @@ pub fn solve(
     workspace.reserve(state.p.len())?;
     let mut guard = ExchangeGuard::default();
     let mut warm = state.p.iter().any(|p| *p != 0.0);
-    let mut restarts = 0;
+    // Restarts of this inner solve, and the true residual before the last.
+    let (mut restarts, mut last_residual) = (0, f64::INFINITY);
     loop {
         // 2. The equations on the contact area.
         if !warm {
@@ -86,12 +87,14 @@ pub fn solve(
 
         // The recursive residual certifies nothing: if the true one is not met, go on from here.
         let holds = rule.holds(state, inner.update);
-        if !holds && restarts < RESTARTS {
-            restarts += 1;
+        let residual = residual_norm(state);
+        let gains = residual < 0.5 * last_residual || rule.by_update;
+        if !holds && gains && restarts < RESTARTS {
+            (restarts, last_residual) = (restarts + 1, residual);
             warm = true;
             continue;
         }
-        restarts = 0;
+        (restarts, last_residual) = (0, f64::INFINITY);
         // At the floor of round-off the contact area is found all the same, as well as it can be.
         let done = if holds { Stop::Converged } else { Stop::Stagnated };
         let tolerance = if holds { rule.tolerance } else { rule.tolerance.max(FLOOR) };

@@ -37,6 +37,7 @@ pub struct Recomputed {
     pub penetration: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
+    #[allow(dead_code)] // for tests/properties.rs
     /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force the approach is no part of it.
     pub energy: f64,
     /// What rounding may do to the first two.

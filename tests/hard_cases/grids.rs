@@ -33,11 +33,23 @@ pub fn cases() -> Vec<Case> {
 
 #[cfg(test)]
 mod promises {
-    use super::super::certificate::assert_solved_or_told;
+    use super::super::certificate::{assert_solved_or_told, assert_sound, run};
     use super::*;
+    use contact_normal::solver::Method;
 
     #[test]
     fn grids_of_odd_shapes() {
         assert_solved_or_told(&cases());
+    }
+
+    #[test]
+    fn elements_of_any_aspect_end_with_a_result_or_a_status() {
+        for ratio in [1e-300, 1e-30, 1e-9, 1e9, 1e30, 1e300] {
+            let grid = grid(7, 5, ratio, 1.0);
+            let case = Case::new("a needle of an element", grid, vec![0.0; grid.len()], Load::Approach(1.0));
+            if let Ok(found) = run(&case, Method::Auto) {
+                assert_sound(&case, "AUTO", &found);
+            }
+        }
     }
 }

@@ -103,13 +103,11 @@ mod promises {
                 let options = Options { method, tolerance: 1e-9, ..Options::default() };
                 let exact = run_with(&case, &options).expect("a solve");
                 for criterion in [Criterion::Residual, Criterion::Update] {
-                    let options =
-                        Options { initial_guess: InitialGuess::Given, tolerance: 1e-8, criterion, ..options };
+                    let options = Options { initial_guess: InitialGuess::Given, tolerance: 1e-8, criterion, ..options };
                     let mut solver = Solver::new(&case.scene(), &options).expect("a solver");
                     let mut from = |pressure: &[f64]| {
                         let guess = Guess { pressure, contact: &exact.contact };
-                        let (stop, report) =
-                            solver.solve(&case.scene(), &options, Some(guess), None).expect("a solve");
+                        let (stop, report) = solver.solve(&case.scene(), &options, Some(guess), None).expect("a solve");
                         found(&solver, stop, report)
                     };
                     let again = from(&exact.p);

@@ -16,6 +16,7 @@ pub mod units;
 pub use case::Case;
 
 /// Every case of every family.
+#[allow(dead_code)] // for docs/reliability.md
 pub fn all() -> Vec<(&'static str, Vec<Case>)> {
     vec![
         ("contact areas", contact_areas::cases()),

@@ -116,8 +116,7 @@ impl Call {
         call.pressure = (0..ROOM).map(|i| if given && i < n { bytes.number() } else { SENTINEL }).collect();
         let fixed = call.options.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
         let chosen = given || fixed;
-        call.contact =
-            (0..ROOM).map(|i| if chosen && i < n { bytes.integer(2) } else { SENTINEL_CONTACT }).collect();
+        call.contact = (0..ROOM).map(|i| if chosen && i < n { bytes.integer(2) } else { SENTINEL_CONTACT }).collect();
         call.scene.undeformed_distance = if bytes.byte() == 99 { null() } else { call.h.as_ptr() };
         call.fields.pressure = call.pressure.as_mut_ptr();
         call.fields.contact = call.contact.as_mut_ptr();
@@ -204,7 +203,10 @@ impl Call {
         assert!(p.iter().all(|p| p.is_finite() && (fixed || *p >= 0.0)), "status {status}: {p:?}");
         assert!(u.iter().all(|u| u.is_finite()), "status {status}: {u:?}");
         assert!(contact.iter().all(|&c| c == 0 || c == 1));
-        assert!((0..n).all(|i| contact[i] == 1 || p[i] == 0.0));
+        let options = &self.options;
+        let how = (options.method, options.active_set, options.initial_guess, self.scene.load, options.max_cycles);
+        let outside: Vec<_> = (0..n).filter(|&i| contact[i] == 0 && p[i] != 0.0).map(|i| (p[i], self.h[i])).collect();
+        assert!(outside.is_empty(), "status {status}, {how:?}: pressures outside, and h: {outside:?}");
         assert!(self.pressure[n..].iter().all(|&p| p.to_bits() == SENTINEL.to_bits()), "written beyond the grid");
         assert!(self.report.approach.is_finite() && self.report.force.is_finite());
         let by_residual = self.options.criterion == CONTACT_NORMAL_CRITERION_RESIDUAL;
@@ -221,9 +223,8 @@ impl Call {
             let scene = &self.scene;
             let (g, nu) = (scene.shear_modulus.as_ptr(), scene.poisson_ratio.as_ptr());
             // SAFETY: two values each, and room for 2 my by 2 mx.
-            let status = unsafe {
-                contact_normal_influence_half_space(mx, my, scene.dx, scene.dy, g, nu, table.as_mut_ptr())
-            };
+            let status =
+                unsafe { contact_normal_influence_half_space(mx, my, scene.dx, scene.dy, g, nu, table.as_mut_ptr()) };
             assert_eq!(status, CONTACT_NORMAL_OK);
         } else {
             table.copy_from_slice(&self.table);
@@ -232,9 +233,9 @@ impl Call {
         let (mut rr, mut dd, mut outside, mut largest, mut count) = (0.0, 0.0, 0.0f64, 0.0f64, 0.0);
         for i in 0..p.len() {
             let at = |k: usize| table[(i / mx + my - k / mx) * 2 * mx + i % mx + mx - k % mx];
-            let (u, terms) = (0..p.len()).filter(|&k| p[k] != 0.0).fold((0.0, 0.0), |(u, terms), k| {
-                (u + at(k) * p[k], terms + (at(k) * p[k]).abs())
-            });
+            let (u, terms) = (0..p.len())
+                .filter(|&k| p[k] != 0.0)
+                .fold((0.0, 0.0), |(u, terms), k| (u + at(k) * p[k], terms + (at(k) * p[k]).abs()));
             let distance = self.h[i] - self.report.approach;
             largest = largest.max(terms);
             if contact[i] == 1 {

@@ -72,6 +72,9 @@ impl CoarseGrids {
     ) -> Result<Displacement> {
         let count = self.grids.len();
         if count == 0 {
+            // A guess that was worth nothing is gone.
+            fine.p.fill(0.0);
+            fine.u.fill(0.0);
             fine.start(self_influence);
             return Ok(Displacement::Unknown);
         }

@@ -58,9 +58,7 @@ impl Inner {
         let threads = &threads.suited_to(grid.len());
         Ok(match precision {
             Precision::Double => Inner::Double(iteration(influence, grid, operator, factor, threads)?),
-            Precision::Auto | Precision::Mixed => {
-                Inner::Single(iteration(influence, grid, operator, factor, threads)?)
-            }
+            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, factor, threads)?),
         })
     }
 
