@@ -153,7 +153,9 @@ impl HalfSpace {
     /// The integral of 1/rho at an offset nearer than the series reaches.
     fn near(&self, kx: usize, ky: usize) -> f64 {
         let Shape { near, near_x, .. } = &*self.shape;
-        let kept = if kx < *near_x { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
+        // Nothing is kept where there is too much of it to be counted.
+        let is_kept = !near.is_empty() && kx < *near_x;
+        let kept = if is_kept { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
         if kept.is_nan() {
             near_integral(kx as f64, ky as f64, self.dx, self.dy)
         } else {
