@@ -580,6 +580,10 @@ typedef struct contact_normal_report {
    */
   int64_t contact_count;
   /*
+   Those of them on the first or last row or column: with any, the potential contact area may be too small.
+   */
+  int64_t edge_count;
+  /*
    Estimated discretisation error of the force (of the approach, when the force is prescribed); < 0: not known.
    */
   double error_force;
