@@ -65,7 +65,7 @@ fn of(changes: &[Change]) -> Vec<Case> {
         let influence = table(&grid, change);
         // Loads that suit coefficients of order 1e100.
         let unit = influence.at(0, 0) / 0.1;
-        let unit = if unit > 1e50 || unit < 1e-50 { unit } else { 1.0 };
+        let unit = if (1e-50..=1e50).contains(&unit) { 1.0 } else { unit };
         for load in [Load::Approach(0.04), Load::Force(0.1 / unit)] {
             cases.push(Case { influence: Some(influence.clone()), ..Case::new(name, grid, h.clone(), load) });
         }
