@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test bench bench-peers analysis install tools clean
+.PHONY: all demo test soak bench bench-peers analysis install tools clean
 .DEFAULT_GOAL := all
 
 all:
@@ -68,10 +68,15 @@ demo: tools all
 		"$(find_python)" python_examples/wheel_rail.py $(WHEEL_RAIL) build/wheel_rail.png
 	@echo; echo "The picture: build/wheel_rail.png"
 
-# Optimised, with debug assertions and overflow checks on.
+# Optimised, with debug assertions and overflow checks on; the feature is for tests/panics.rs.
 test: tools
-	$(CARGO) test --profile checked --locked --lib --tests --examples
-	$(CARGO) test --profile checked --locked --doc
+	$(CARGO) test --profile checked --locked --features test-panics --lib --tests --examples
+	$(CARGO) test --profile checked --locked --features test-panics --doc
+
+# 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
+SOAK ?= 100000
+soak:
+	$(CARGO) run --release --locked --example soak -- $(SOAK)
 
 # What a solve costs, in products, beside what it may cost. BENCH="--large" goes up to 4096 x 4096; see benches/performance.
 BENCH ?=

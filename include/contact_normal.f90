@@ -45,6 +45,12 @@ module contact_normal
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_PRECISION_AUTO = 0, CONTACT_NORMAL_PRECISION_DOUBLE = 1, &
     CONTACT_NORMAL_PRECISION_MIXED = 2
   ! contact_normal_set_log
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_UNTRUSTED_FORCE = 1, CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE = 2, &
+    CONTACT_NORMAL_UNTRUSTED_PRESSURE = 4
+
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LIMITED_BY_UNKNOWN = 0, CONTACT_NORMAL_LIMITED_BY_GRID = 1, &
+    CONTACT_NORMAL_LIMITED_BY_TOLERANCE = 2
+
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LOG_OFF = 0, CONTACT_NORMAL_LOG_WARNING = 1, &
     CONTACT_NORMAL_LOG_INFO = 2
 
@@ -125,9 +131,15 @@ module contact_normal
     real(c_double) :: force = 0
     real(c_double) :: max_pressure = 0
     real(c_double) :: contact_area = 0
+    real(c_double) :: corrected_area = 0
     real(c_double) :: error_force = 0
     real(c_double) :: error_max_pressure = 0
     real(c_double) :: error_contact_area = 0
+    real(c_double) :: error_corrected_area = 0
+    real(c_double) :: error_pressure = 0
+    integer(c_int64_t) :: contact_count = 0
+    integer(c_int32_t) :: untrusted = 0                   ! CONTACT_NORMAL_UNTRUSTED_... bits
+    integer(c_int32_t) :: reserved = 0
   end type
 
   ! What a solve found and what it cost. Since 0.1.
@@ -157,6 +169,14 @@ module contact_normal
     integer(c_int64_t) :: ledger_rows = 0
     integer(c_int64_t) :: ledger_capacity = 0
     type(c_ptr) :: ledger = c_null_ptr                    ! contact_normal_set_ledger
+    real(c_double) :: corrected_area = -1
+    real(c_double) :: error_corrected_area = -1
+    real(c_double) :: error_pressure = -1
+    integer(c_int32_t) :: untrusted = 0                   ! CONTACT_NORMAL_UNTRUSTED_... bits
+    integer(c_int32_t) :: limited_by = 0                  ! CONTACT_NORMAL_LIMITED_BY_...
+    real(c_double) :: halved_seconds = -1
+    real(c_double) :: halved_error_force = -1
+    integer(c_int64_t) :: edge_count = 0
   end type
 
   ! The exact Hertz solution. Since 0.1.

@@ -33,6 +33,8 @@ INITIAL_GUESS_NONE, INITIAL_GUESS_GIVEN, INITIAL_GUESS_PREVIOUS = 0, 1, 2
 CRITERION_RESIDUAL, CRITERION_UPDATE = 0, 1
 PRECISION_AUTO, PRECISION_DOUBLE, PRECISION_MIXED = 0, 1, 2
 LOG_OFF, LOG_WARNING, LOG_INFO = 0, 1, 2
+UNTRUSTED_FORCE, UNTRUSTED_MAX_PRESSURE, UNTRUSTED_PRESSURE = 1, 2, 4
+LIMITED_BY_UNKNOWN, LIMITED_BY_GRID, LIMITED_BY_TOLERANCE = 0, 1, 2
 
 
 class Influence(ctypes.Structure):
@@ -132,9 +134,15 @@ class LedgerRow(ctypes.Structure):
         ("force", c_double),
         ("max_pressure", c_double),
         ("contact_area", c_double),
+        ("corrected_area", c_double),
         ("error_force", c_double),
         ("error_max_pressure", c_double),
         ("error_contact_area", c_double),
+        ("error_corrected_area", c_double),
+        ("error_pressure", c_double),
+        ("contact_count", c_int64),
+        ("untrusted", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -167,6 +175,14 @@ class Report(ctypes.Structure):
         ("ledger_rows", c_int64),
         ("ledger_capacity", c_int64),
         ("ledger", POINTER(LedgerRow)),
+        ("corrected_area", c_double),
+        ("error_corrected_area", c_double),
+        ("error_pressure", c_double),
+        ("untrusted", c_int32),
+        ("limited_by", c_int32),
+        ("halved_seconds", c_double),
+        ("halved_error_force", c_double),
+        ("edge_count", c_int64),
     ]
 
 

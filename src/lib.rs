@@ -65,9 +65,13 @@ pub mod error;
 pub mod ffi;
 pub mod grid;
 pub mod influence;
+mod memory;
 pub mod multigrid;
 pub mod norm;
 pub mod operator;
+#[cfg(feature = "test-panics")]
+#[doc(hidden)]
+pub mod panics;
 pub mod projected_cg;
 pub mod scene;
 pub mod solver;

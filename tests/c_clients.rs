@@ -187,14 +187,16 @@ fn c_and_rust_agree_on_every_struct() {
             struct_size, pressure, deformed_distance, displacement, contact
         }
         contact_normal_ledger_row {
-            mx, my, cycles, seconds, work_units, residual, approach, force, max_pressure, contact_area, error_force,
-            error_max_pressure, error_contact_area
+            mx, my, cycles, seconds, work_units, residual, approach, force, max_pressure, contact_area,
+            corrected_area, error_force, error_max_pressure, error_contact_area, error_corrected_area, error_pressure,
+            contact_count, untrusted, reserved
         }
         contact_normal_report {
             struct_size, cycles, active_set_steps, active_set_changes, matrix_products, work_units, update,
             residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
-            ledger_rows, ledger_capacity, ledger
+            ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
+            halved_seconds, halved_error_force, edge_count
         }
         contact_normal_hertz_solution {
             semi_axis_x, semi_axis_y, max_pressure, approach, force, area

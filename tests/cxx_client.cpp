@@ -115,14 +115,15 @@ static void the_ledger_has_a_row_per_grid() {
     expect(rows[4].force == problem.report.force, "the last row holds the result's force");
     expect(rows[4].max_pressure == problem.report.max_pressure, "and its largest pressure");
 
-    // Too little room: as many rows as fit, and the number there would have been.
+    // Too little room: the rows of the finest grids, and the number there would have been.
     std::vector<contact_normal_ledger_row> few(3);
     few[2].mx = -1;
     problem.report.ledger = few.data();
     problem.report.ledger_capacity = 2;
     expect(problem.solve() == CONTACT_NORMAL_OK, "the status is OK with little room");
     expect(problem.report.ledger_rows == 5, "the report tells how many rows there are");
-    expect(few[1].mx == 8 && few[2].mx == -1, "no row beyond the room is written");
+    expect(few[0].mx == 32 && few[1].mx == 64, "the finest grids are kept");
+    expect(few[2].mx == -1, "no row beyond the room is written");
 }
 
 static void a_handle_has_an_owner() {

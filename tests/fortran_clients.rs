@@ -89,6 +89,17 @@ fn a_host_with_its_own_floating_point_environment_gets_the_same() {
 }
 
 #[test]
+fn an_example_under_valgrind() {
+    let folder = scratch("fortran_valgrind");
+    let program = compile("fortran_examples/norm_drop_in.f90", &["-g", "-O1"], &folder);
+    let mut valgrind = Command::new("valgrind");
+    // "still reachable" is what the Fortran library keeps for its units.
+    valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full", "--errors-for-leak-kinds=definite"]).arg(program);
+    let printed = run(valgrind.env("LD_LIBRARY_PATH", &folder).current_dir(&folder));
+    assert!(!printed.is_empty());
+}
+
+#[test]
 fn norm_solve_keeps_its_promises() {
     let all = [
         &["-g", "-O1", "-fcheck=all"][..],
@@ -163,12 +174,14 @@ fn derived_types_are_laid_out_as_the_structs() {
             work_units, update, residual;
         contact_normal_fields: struct_size, pressure, deformed_distance, displacement, contact;
         contact_normal_ledger_row: mx, my, cycles, seconds, work_units, residual, approach, force,
-            max_pressure, contact_area, error_force, error_max_pressure, error_contact_area;
+            max_pressure, contact_area, corrected_area, error_force, error_max_pressure, error_contact_area,
+            error_corrected_area, error_pressure, contact_count, untrusted, reserved;
         contact_normal_report: struct_size, cycles, active_set_steps, active_set_changes,
             matrix_products, work_units, update, residual, penetration, complementarity,
             min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
-            ledger_rows, ledger_capacity, ledger;
+            ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
+            untrusted, limited_by, halved_seconds, halved_error_force, edge_count;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
     };

@@ -155,9 +155,15 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         force,
         max_pressure,
         contact_area,
+        corrected_area,
         error_force,
         error_max_pressure,
-        error_contact_area
+        error_contact_area,
+        error_corrected_area,
+        error_pressure,
+        contact_count,
+        untrusted,
+        reserved
     );
     layout!(
         ours,
@@ -187,7 +193,15 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         bytes,
         ledger_rows,
         ledger_capacity,
-        ledger
+        ledger,
+        corrected_area,
+        error_corrected_area,
+        error_pressure,
+        untrusted,
+        limited_by,
+        halved_seconds,
+        halved_error_force,
+        edge_count
     );
     layout!(
         ours,
@@ -378,4 +392,46 @@ print(solve(2) == before)
 ";
     let printed = run(python_in(&scratch("python_fork")).args(["-c", script]));
     assert_eq!(printed, "1 True\n2 True\n2\nhandle True\nTrue\n");
+}
+
+#[test]
+fn threads_of_python_solve_at_once_while_python_goes_on() {
+    // ctypes releases the interpreter's lock around a call: another thread counts on while one call lasts.
+    let script = "
+import threading
+import numpy as np, contact_normal as cn
+x = np.arange(200) - 99.5
+h = 0.0001 * (x[None, :] ** 2 + x[:, None] ** 2)
+def solve(force):
+    return cn.solve(h, 0.2, 0.2, force=force, shear_modulus=82000.0, poisson_ratio=0.28, tolerance=1e-10).pressure.tobytes()
+forces = [1e4 * (k + 1) for k in range(6)]
+expected = [solve(force) for force in forces]
+found = [None] * len(forces)
+def run(k):
+    for _ in range(5):
+        found[k] = solve(forces[k])
+        if found[k] != expected[k]:
+            return
+threads = [threading.Thread(target=run, args=(k,)) for k in range(len(forces))]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print(found == expected)
+counted = 0
+inside = threading.Event()
+def one():
+    inside.set()
+    for _ in range(10):
+        solve(1e5)
+    inside.clear()
+thread = threading.Thread(target=one)
+thread.start()
+inside.wait()
+while inside.is_set():
+    counted += 1
+thread.join()
+# Ten calls hand the lock over some ten times if they keep it, and a thread without it counts nothing.
+print(counted > 1000)
+";
+    let printed = run(python_in(&scratch("python_threads")).args(["-c", script]));
+    assert_eq!(printed, "True\nTrue\n");
 }

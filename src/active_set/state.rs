@@ -7,6 +7,9 @@ use crate::scene::Load;
 
 use super::exchange::starting_contact;
 
+/// Undeformed distances of more than so many times the approach are no part of a contact.
+const OUT_OF_REACH: f64 = 1e6;
+
 /// Pressures, displacements and contact area on one grid, with the undeformed distance that they belong to.
 pub struct State {
     /// The grid.
@@ -62,6 +65,13 @@ impl State {
         self.contact.iter().filter(|&&inside| inside).count()
     }
 
+    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+    pub fn edge_count(&self) -> usize {
+        let Grid { mx, my, .. } = self.grid;
+        let at_edge = |i: usize| i % mx == 0 || i % mx == mx - 1 || i / mx == 0 || i / mx == my - 1;
+        (0..self.contact.len()).filter(|&i| self.contact[i] && at_edge(i)).count()
+    }
+
     /// `sum of p dx dy`.
     pub fn force(&self) -> f64 {
         self.p.iter().sum::<f64>() * self.grid.element_area()
@@ -73,21 +83,43 @@ impl State {
     }
 
     /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed. Returns the factor; none when the
-    /// pressures were replaced by uniform ones.
+    /// pressures were replaced by uniform ones, on the lowest element if there was no contact.
     pub fn balance_force(&mut self) -> Option<f64> {
         let Load::Force(force) = self.load else { return Some(1.0) };
         let carried = self.force();
         let factor = force / carried;
-        if carried > 0.0 && factor.is_finite() {
+        if carried > 0.0 && factor.is_finite() && factor > 0.0 {
             if factor != 1.0 {
                 self.p.iter_mut().for_each(|p| *p *= factor);
             }
             return Some(factor);
         }
-        // Pressures too small to be scaled (none yet, or all truncated) start again from a uniform pressure.
+        // Pressures too small or too large to be scaled (none yet, all truncated, a guess) start again from a uniform pressure.
+        if force > 0.0 && self.contact_count() == 0 {
+            if let Some(lowest) = self.lowest() {
+                self.contact[lowest] = true;
+            }
+        }
         let uniform = force / (self.grid.element_area() * self.contact_count().max(1) as f64);
         self.p.iter_mut().zip(&self.contact).for_each(|(p, &inside)| *p = if inside { uniform } else { 0.0 });
         None
+    }
+
+    /// What coarser grids take larger distances for: far above what any approach closes, and no number that rules a mean.
+    pub fn out_of_reach(&self, self_influence: f64) -> f64 {
+        let lowest = self.lowest().map_or(0.0, |i| self.h[i]);
+        let depth = match self.load {
+            Load::Approach(approach) => approach - lowest,
+            // One element alone goes deepest.
+            Load::Force(force) => force / self.grid.element_area() * self_influence,
+        };
+        lowest + OUT_OF_REACH * depth.max(0.0)
+    }
+
+    /// The element that is touched first; none if there is no surface.
+    fn lowest(&self) -> Option<usize> {
+        let surface = (0..self.h.len()).filter(|&i| self.h[i].is_finite());
+        surface.min_by(|&i, &k| self.h[i].total_cmp(&self.h[k]))
     }
 
     /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.

@@ -188,6 +188,8 @@ pub struct contact_normal_report {
     pub halved_seconds: f64,
     /// And the error of the force (or the approach) that it would leave.
     pub halved_error_force: f64,
+    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+    pub edge_count: i64,
 }
 
 // SAFETY: integers, floats and a raw pointer only, struct_size first.
@@ -212,6 +214,7 @@ unsafe impl Versioned for contact_normal_report {
             max_pressure: 0.0,
             contact_area: 0.0,
             contact_count: 0,
+            edge_count: 0,
             error_force: -1.0,
             error_max_pressure: -1.0,
             error_contact_area: -1.0,
@@ -258,6 +261,7 @@ impl contact_normal_report {
             max_pressure: measures.max_pressure,
             contact_area: measures.contact_area,
             contact_count: measures.contact_count as i64,
+            edge_count: measures.edge_count as i64,
             error_force: report.error.force,
             error_max_pressure: report.error.max_pressure,
             error_contact_area: report.error.contact_area,

@@ -6,6 +6,7 @@ use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_no
 use super::scene::{self, contact_normal_scene};
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
 use super::structs;
+use crate::memory::reserve;
 use crate::scene::Scene;
 use crate::solver::{ActiveSet, Guess, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 
@@ -86,15 +87,22 @@ impl Outputs {
     }
 
     /// The caller's initial guess: pressures and contact area.
-    fn guess<'a>(&self, options: &Options, n: usize, buffer: &'a mut GuessBuffer) -> Option<Guess<'a>> {
+    fn guess<'a>(
+        &self,
+        options: &Options,
+        n: usize,
+        buffer: &'a mut GuessBuffer,
+    ) -> Result<Option<Guess<'a>>, Refusal> {
         let given = options.initial_guess == InitialGuess::Given;
         let fixed = options.active_set == ActiveSet::Fixed;
         if !given && !fixed {
-            return None;
+            return Ok(None);
         }
         let GuessBuffer { pressure, contact } = buffer;
         pressure.clear();
         contact.clear();
+        reserve(pressure, n, "the initial guess")?;
+        reserve(contact, n, "the initial guess")?;
         if given {
             // SAFETY: not null (check_inputs): n values, by the conventions of the ABI.
             pressure.extend_from_slice(unsafe { std::slice::from_raw_parts(self.fields.pressure, n) });
@@ -107,7 +115,7 @@ impl Outputs {
             // SAFETY: likewise.
             contact.extend(unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().map(|&c| c != 0));
         }
-        Some(Guess { pressure, contact })
+        Ok(Some(Guess { pressure, contact }))
     }
 
     /// The caller's arrays that a solve on `n` elements writes: name, address, bytes.
@@ -215,7 +223,7 @@ pub(super) fn run(
     let n = scene.grid.len();
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
-    let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, guess), progress)?;
+    let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, guess)?, progress)?;
     outputs.write(solver, &report)?;
     let message = if stop == Stop::Converged { String::new() } else { explain(stop, &report) };
     Ok(Outcome { status: stop.into(), message })

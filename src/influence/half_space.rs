@@ -62,7 +62,9 @@ struct Shape {
 impl Shape {
     fn new(dx: f64, dy: f64) -> Shape {
         let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
-        let (near_x, near_y) = ((reach / dx) as usize + 2, (reach / dy) as usize + 2);
+        // Of a needle of an element there are more than can be counted.
+        let count = |d: f64| ((reach / d) as usize).saturating_add(2);
+        let (near_x, near_y) = (count(dx), count(dy));
         let mut near = Vec::new();
         if near_x.saturating_mul(near_y) <= MOST_KEPT {
             let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
@@ -87,6 +89,11 @@ impl HalfSpace {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
+    }
+
+    /// The coefficients times `factor`.
+    pub fn times(&self, factor: f64) -> HalfSpace {
+        HalfSpace { compliance: factor * self.compliance, ..self.clone() }
     }
 
     /// The coefficient at offset `(kx, ky)`.
@@ -146,7 +153,9 @@ impl HalfSpace {
     /// The integral of 1/rho at an offset nearer than the series reaches.
     fn near(&self, kx: usize, ky: usize) -> f64 {
         let Shape { near, near_x, .. } = &*self.shape;
-        let kept = if kx < *near_x { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
+        // Nothing is kept where there is too much of it to be counted.
+        let is_kept = !near.is_empty() && kx < *near_x;
+        let kept = if is_kept { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
         if kept.is_nan() {
             near_integral(kx as f64, ky as f64, self.dx, self.dy)
         } else {

@@ -10,6 +10,7 @@ mod table;
 pub use half_space::HalfSpace;
 pub use table::Table;
 
+use crate::error::Result;
 use crate::grid::Grid;
 
 /// Where the coefficients of one grid come from.
@@ -28,6 +29,14 @@ impl Influence {
             Influence::HalfSpace(half_space) => half_space.at(kx, ky),
             Influence::Table(table) => table.at(kx, ky),
         }
+    }
+
+    /// The coefficients times `factor`, a power of two: no digit changes.
+    pub fn times(&self, factor: f64) -> Result<Influence> {
+        Ok(match self {
+            Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.times(factor)),
+            Influence::Table(table) => Influence::Table(table.times(factor)?),
+        })
     }
 
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
@@ -52,6 +61,14 @@ impl Influence {
         }
     }
 
+    /// The largest coefficient within `grid`, whatever its sign.
+    pub fn largest(&self, grid: &Grid) -> f64 {
+        match self {
+            Influence::HalfSpace(half_space) => half_space.at(0, 0),
+            Influence::Table(table) => table.largest(grid),
+        }
+    }
+
     /// Whether `c(kx, ky) = c(-kx, ky) = c(kx, -ky)` for all offsets within `grid`.
     pub fn is_even(&self, grid: &Grid) -> bool {
         match self {
@@ -70,10 +87,10 @@ impl Influence {
 
     /// The coefficients on a grid coarsened from `fine` to `coarse`: for the half-space computed anew for the larger
     /// element (the paper's direct coarse-grid operator), for a table summed from the fine coefficients.
-    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Influence {
-        match self {
+    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Influence> {
+        Ok(match self {
             Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.for_element(coarse.dx, coarse.dy)),
-            Influence::Table(table) => Influence::Table(table.coarsen(fine, coarse)),
-        }
+            Influence::Table(table) => Influence::Table(table.coarsen(fine, coarse)?),
+        })
     }
 }

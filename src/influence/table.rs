@@ -7,8 +7,14 @@
 //! unit pressure on those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y. Where an odd count
 //! asks for an offset just outside the table (the last coarse element sticks out), the outermost coefficient serves.
 
+use std::sync::Arc;
+
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
+use crate::memory::{reserve, zeros};
+
+/// What memory is for.
+const TABLE: &str = "the influence coefficients";
 
 /// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
 const SYMMETRY: f64 = 1e-7;
@@ -18,7 +24,8 @@ const SYMMETRY: f64 = 1e-7;
 pub struct Table {
     cx: usize,
     cy: usize,
-    values: Vec<f64>,
+    /// Shared by all that hold the table.
+    values: Arc<Vec<f64>>,
 }
 
 impl Table {
@@ -37,7 +44,7 @@ impl Table {
         }
         // Only the offsets of the grid matter, so only they are kept: the table may be far larger.
         let (kept_x, kept_y) = (grid.mx, grid.my);
-        let mut kept = vec![0.0; 4 * kept_x * kept_y];
+        let mut kept = zeros(4 * kept_x * kept_y, TABLE)?;
         for ky in -(kept_y as i64) + 1..kept_y as i64 {
             for kx in -(kept_x as i64) + 1..kept_x as i64 {
                 let value = values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
@@ -49,7 +56,7 @@ impl Table {
                 kept[(ky + kept_y as i64) as usize * 2 * kept_x + (kx + kept_x as i64) as usize] = value;
             }
         }
-        let table = Table { cx: kept_x, cy: kept_y, values: kept };
+        let table = Table { cx: kept_x, cy: kept_y, values: Arc::new(kept) };
         if table.at(0, 0) <= 0.0 {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence.coefficients at offset (0, 0) is {}; a pressure must displace its own element inwards",
@@ -63,6 +70,14 @@ impl Table {
     pub fn at(&self, kx: i64, ky: i64) -> f64 {
         let clamp = |k: i64, c: usize| (k.clamp(1 - c as i64, c as i64 - 1) + c as i64) as usize;
         self.values[clamp(ky, self.cy) * 2 * self.cx + clamp(kx, self.cx)]
+    }
+
+    /// The coefficients times `factor`.
+    pub fn times(&self, factor: f64) -> Result<Table> {
+        let mut values = Vec::new();
+        reserve(&mut values, self.values.len(), TABLE)?;
+        values.extend(self.values.iter().map(|value| value * factor));
+        Ok(Table { values: Arc::new(values), ..*self })
     }
 
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`.
@@ -80,14 +95,20 @@ impl Table {
         })
     }
 
+    /// The largest coefficient within `grid`, whatever its sign.
+    pub fn largest(&self, grid: &Grid) -> f64 {
+        let both = self.offsets(grid).map(|(kx, ky)| self.at(kx, ky).abs().max(self.at(-kx, -ky).abs()));
+        both.fold(0.0, f64::max)
+    }
+
     /// Whether A is symmetric on `grid` to within round-off.
     pub fn is_symmetric(&self, grid: &Grid) -> bool {
-        let largest = self.offsets(grid).fold(0.0, |m: f64, (kx, ky)| m.max(self.at(kx, ky).abs()));
+        let largest = self.largest(grid);
         self.offsets(grid).all(|(kx, ky)| (self.at(kx, ky) - self.at(-kx, -ky)).abs() <= SYMMETRY * largest)
     }
 
     /// The coefficients of the coarser grid, as means of the finer ones.
-    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Table {
+    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Table> {
         let (half_x, half_y) = (coarse.mx < fine.mx, coarse.my < fine.my);
         // The outer two are added first: so the coarser coefficients of an even table are even to the last bit, as the
         // operator's shorter period (and the workspace that the grids share) needs them.
@@ -100,11 +121,12 @@ impl Table {
             false => in_x(kx, ky),
         };
         let (cx, cy) = (coarse.mx, coarse.my);
-        let mut values = Vec::with_capacity(4 * cx * cy);
+        let mut values = Vec::new();
+        reserve(&mut values, 4 * cx * cy, TABLE)?;
         for ky in -(cy as i64)..cy as i64 {
             values.extend((-(cx as i64)..cx as i64).map(|kx| in_both(kx, ky)));
         }
-        Table { cx, cy, values }
+        Ok(Table { cx, cy, values: Arc::new(values) })
     }
 
     fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {

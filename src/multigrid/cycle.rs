@@ -68,7 +68,7 @@ impl Multigrid {
                 correction: array()?,
                 defect: array()?,
                 residual: array()?,
-                contact: vec![false; n],
+                contact: zeros(n, "the multigrid levels")?,
             });
         }
         let products = vec![0; hierarchy.levels.len()];

@@ -38,7 +38,7 @@ impl Hierarchy {
             let operator = Toeplitz::new(&influence, &grid, threads)?;
             levels.push(Level { grid, influence: influence.clone(), operator });
             let Some(coarse) = coarsen(&grid, coarsest) else { break };
-            influence = influence.coarsen(&grid, &coarse);
+            influence = influence.coarsen(&grid, &coarse)?;
             grid = coarse;
         }
         let mut workspace = levels[0].operator.workspace()?;

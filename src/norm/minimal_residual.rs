@@ -4,6 +4,7 @@
 use super::{Inner, InnerStop, Workspace};
 use crate::active_set::{norm_of_distance, State};
 use crate::error::Result;
+use crate::memory::reserve;
 use crate::scene::Load;
 
 /// Directions kept before a restart.
@@ -36,6 +37,7 @@ pub fn minimal_residual(
     let Krylov { elements, basis, change, columns, rotations, right, y } = krylov;
     let mean_free = matches!(state.load, Load::Force(_));
     elements.clear();
+    reserve(elements, state.p.len(), "GMRES")?;
     elements.extend((0..state.p.len()).filter(|&i| state.contact[i]));
     let (m, count) = (elements.len(), elements.len() as f64);
     let project = |values: &mut [f64]| {
@@ -44,6 +46,8 @@ pub fn minimal_residual(
             values.iter_mut().for_each(|value| *value -= mean);
         }
     };
+    reserve(basis, (RESTART + 1) * m, "GMRES's directions")?;
+    reserve(change, m, "GMRES")?;
     let mut inner = Inner::default();
     let stop = InnerStop { residual: stop.residual.max(f64::EPSILON * norm_of_distance(state)), ..stop };
     full.clear();

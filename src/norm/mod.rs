@@ -11,6 +11,9 @@ mod minimal_residual;
 pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
 pub use minimal_residual::minimal_residual;
 
+use crate::error::Result;
+use crate::memory::reserve;
+
 /// Memory for inner solves, kept from one to the next.
 #[derive(Default)]
 pub struct Workspace {
@@ -18,4 +21,14 @@ pub struct Workspace {
     direction: Vec<f64>,
     product: Vec<f64>,
     krylov: minimal_residual::Krylov,
+}
+
+impl Workspace {
+    /// Room for all that conjugate gradients on n elements need.
+    pub(crate) fn reserve(&mut self, n: usize) -> Result<()> {
+        for values in [&mut self.residual, &mut self.direction, &mut self.product] {
+            reserve(values, n, "NORM's workspace")?;
+        }
+        Ok(())
+    }
 }

@@ -6,5 +6,5 @@ pub mod dense;
 pub mod fft;
 mod toeplitz;
 
-pub(crate) use toeplitz::zeros;
+pub(crate) use crate::memory::{reserve, zeros};
 pub use toeplitz::{Toeplitz, Workspace};

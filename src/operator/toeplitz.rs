@@ -14,9 +14,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::columns::{for_each_block, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
+use crate::memory::zeros;
 use crate::threads::Threads;
 
 /// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
@@ -67,13 +68,6 @@ struct Piece<T: Real> {
     row: Vec<T>,
     columns: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
-}
-
-pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> {
-    let mut v = Vec::new();
-    v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
-    v.resize(n, A::default());
-    Ok(v)
 }
 
 impl<T: Real> Workspace<T> {
@@ -138,8 +132,8 @@ impl<T: Real> Toeplitz<T> {
     }
 
     /// The same operator in another precision.
-    pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
-        let convert = |value: T| S::of(value.to_double());
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Toeplitz<S>> {
+        let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
             Spectrum::Even(from) => {
                 let mut to = zeros(from.len(), "the operator's spectrum")?;
@@ -244,6 +238,8 @@ impl<T: Real> Toeplitz<T> {
 
     /// Multiplies the transformed columns of a block, the first of which has x bin `first`, by the spectrum.
     fn multiply(&self, first: usize, block: &mut [Complex<T>]) {
+        #[cfg(feature = "test-panics")]
+        crate::panics::at_a_block();
         let py = self.columns.length();
         for (c, column) in block.chunks_exact_mut(py).enumerate() {
             match &self.spectrum {

@@ -32,7 +32,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::fft::{good_length, Real};
-use crate::operator::{zeros, Toeplitz, Workspace};
+use crate::operator::{reserve, zeros, Toeplitz, Workspace};
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -136,6 +136,8 @@ impl<T: Real> Iteration<T> {
         // A pass takes about a tenth of the time of a product.
         let threads = &threads.suited_to(n / 10);
         let directions = || zeros(n, "search directions");
+        let mut debts = Vec::new();
+        reserve(&mut debts, n, "truncated elements")?;
         Ok(Iteration {
             workspace: operator.workspace()?,
             preconditioner_workspace: preconditioner.as_ref().map(Toeplitz::workspace).transpose()?,
@@ -144,8 +146,8 @@ impl<T: Real> Iteration<T> {
             t: directions()?,
             q: directions()?,
             z: directions()?,
-            runs: Runs::new(grid, threads),
-            debts: Vec::with_capacity(n),
+            runs: Runs::new(grid, threads)?,
+            debts,
             entering: vec![false; grid.my],
             threads: threads.clone(),
         })

@@ -6,7 +6,9 @@
 
 use std::ops::Range;
 
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::operator::reserve;
 use crate::threads::Threads;
 
 /// Blocks of rows at most.
@@ -38,23 +40,26 @@ pub struct Runs {
 
 impl Runs {
     /// No contact. Memory for any contact area is reserved, and touched when it is needed.
-    pub fn new(grid: &Grid, threads: &Threads) -> Runs {
+    pub fn new(grid: &Grid, threads: &Threads) -> Result<Runs> {
         let most = grid.my * grid.mx.div_ceil(2);
         let rows = grid.my.div_ceil(BLOCKS);
         let blocks = grid.my.div_ceil(rows);
-        Runs {
+        let (mut runs, mut runs_before) = (Vec::new(), Vec::new());
+        reserve(&mut runs, most, "the contact area")?;
+        reserve(&mut runs_before, most, "the contact area")?;
+        Ok(Runs {
             mx: grid.mx,
             block: rows * grid.mx,
-            runs: Vec::with_capacity(most),
+            runs,
             first: vec![0; blocks + 1],
             count: 0,
             changed: vec![true; blocks],
-            runs_before: Vec::with_capacity(most),
+            runs_before,
             first_before: vec![0; blocks + 1],
             sums: vec![[0.0; MOST_SUMS]; blocks],
             threads: threads.clone(),
             pieces: vec![(); threads.pieces()],
-        }
+        })
     }
 
     /// Number of elements in contact.

@@ -100,6 +100,7 @@ impl Solver {
             bodies: self.bodies,
             has_own_influence: self.has_own_influence,
             symmetric: self.symmetric,
+            largest_influence: self.largest_influence,
             shape: self.shape,
             precision: self.precision,
             thread_count: self.thread_count,

@@ -144,13 +144,6 @@ pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], se
     let halved = error.abs() / 2.0_f64.powf(q);
     let halving = Halving { seconds: GROWTH * seconds, force: halved + hidden };
     let limit = if error.abs() >= hidden { Limit::Grid } else { Limit::Tolerance };
-    let what = if limit == Limit::Grid { "the grid, not the tolerance," } else { "the tolerance, not the grid," };
-    log::info!(
-        "{what} limits this answer: halving the elements would cost about {:.2e} seconds and bring the error of the force or \
-         approach from {:.2e} to {halved:.2e}",
-        halving.seconds,
-        error.abs()
-    );
     (limit, halving)
 }
 

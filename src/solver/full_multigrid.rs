@@ -1,5 +1,6 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first.
 
+use super::descent_method;
 use super::monitor::{Monitor, Rule};
 use super::multigrid_method;
 use super::norm_method::{self, Displace};
@@ -16,6 +17,8 @@ const COARSE_CYCLES: u64 = 30;
 pub struct Workspace {
     /// NORM's.
     pub norm: norm_method::Workspace,
+    /// That of projected descent.
+    pub descent: descent_method::Workspace,
     /// That of cycles in an active-set loop.
     pub cycles: multigrid_method::Workspace,
 }
@@ -30,12 +33,14 @@ pub fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Stop> {
     let coarsest = states.len() - 1;
+    let highest = states[0].out_of_reach(multigrid.hierarchy.levels[0].influence.at(0, 0));
+    let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
     let coarse_rule = Rule { max_cycles: rule.max_cycles.min(COARSE_CYCLES), ..*rule };
 
     for l in 1..states.len() {
         let (finer, coarser) = states.split_at_mut(l);
         let (fine, coarse) = (&finer[l - 1], &mut coarser[0]);
-        transfer::restrict_distance(&fine.grid, &coarse.grid, |i| fine.h[i], &mut coarse.h);
+        transfer::restrict_distance(&fine.grid, &coarse.grid, |i| within(fine.h[i]), &mut coarse.h);
         (coarse.load, coarse.approach) = (fine.load, fine.approach);
         coarse.p.fill(0.0);
         coarse.u.fill(0.0);
@@ -61,7 +66,7 @@ pub fn solve(
         }
         let (finer, coarser) = states.split_at_mut(l + 1);
         let state = &mut finer[l];
-        interpolate(&coarser[0], state);
+        interpolate(&coarser[0], state, highest);
         state.balance_force();
         multigrid.displace(l, &state.p, &mut state.u);
         state.fit_approach();
@@ -77,14 +82,14 @@ pub fn solve(
     Ok(stop)
 }
 
-/// p and u of the coarser grid, piecewise constant; contact where p > 0 or e <= 0.
-fn interpolate(coarse: &State, fine: &mut State) {
+/// p and u of the coarser grid, piecewise constant; contact where p > 0 or e <= 0. Elements above `highest` are out of reach.
+fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
     transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
     transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
     fine.approach = coarse.approach;
     for i in 0..fine.p.len() {
-        if fine.h[i].is_infinite() {
+        if fine.h[i].is_infinite() || fine.h[i] > highest {
             fine.p[i] = 0.0;
         }
         fine.contact[i] = fine.p[i] > 0.0 || fine.deformed_distance(i) <= 0.0;

@@ -4,6 +4,7 @@
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod batch;
+mod descent_method;
 mod estimates;
 mod full_multigrid;
 mod monitor;
@@ -54,6 +55,8 @@ pub struct Solver {
     bodies: Bodies,
     has_own_influence: bool,
     symmetric: bool,
+    /// The largest coefficient, whatever its sign.
+    largest_influence: f64,
     shape: CycleShape,
     precision: Precision,
     /// As asked for in the options.
@@ -96,6 +99,7 @@ impl Solver {
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
             symmetric: influence.is_symmetric(&scene.grid),
+            largest_influence: influence.largest(&scene.grid),
             shape: options.cycle_shape(),
             precision: options.precision,
             thread_count: options.threads,
@@ -121,7 +125,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
-        self.check_range(scene)?;
+        self.check_range(scene, guess.filter(|_| options.active_set == ActiveSet::Fixed))?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.start_and_run(scene, options, guess, &mut monitor);
         let (mut report, ledger) = monitor.finish();
@@ -138,6 +142,9 @@ impl Solver {
             report.work_units,
             report.measures.certificate.residual
         );
+        if let Some(advice) = report.advice() {
+            log::info!("{advice}");
+        }
         Ok((stop, report))
     }
 
@@ -218,26 +225,35 @@ impl Solver {
         Ok(())
     }
 
-    /// Refuses units in which pressures, displacements or their squares leave the range of double precision.
-    fn check_range(&self, scene: &Scene<'_>) -> Result<()> {
+    /// Refuses units in which pressures, displacements or their squares leave the range of double precision. `fixed`: a contact
+    /// area that is given.
+    fn check_range(&self, scene: &Scene<'_>, fixed: Option<Guess<'_>>) -> Result<()> {
         let influence = self.projected.influence().at(0, 0);
-        let (pressure, displacement) = match scene.load {
-            Load::Approach(approach) => {
+        let (pressure, displacement) = match (scene.load, fixed) {
+            (Load::Approach(approach), Some(fixed)) => {
+                let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
+                let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
+                let depth = on_contact.fold(0.0, |depth: f64, (h, _)| depth.max((h - approach).abs()));
+                (depth / influence, depth)
+            }
+            (Load::Approach(approach), None) => {
                 let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
                 let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
                 (depth / influence, depth)
             }
-            Load::Force(force) => {
+            (Load::Force(force), _) => {
                 let pressure = force / scene.grid.element_area();
                 (pressure, pressure * influence)
             }
         };
         let in_range = |value: f64| (1e-140..1e140).contains(&value);
         let loaded = pressure != 0.0 || displacement != 0.0;
-        if loaded && !(in_range(pressure) && in_range(displacement) && in_range(influence)) {
+        let largest = self.largest_influence;
+        let coefficients = in_range(influence) && in_range(largest) && in_range(largest * pressure);
+        if loaded && !(in_range(pressure) && in_range(displacement) && coefficients) {
             return invalid(format!(
                 "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
-                 coefficients of order {influence:e}; all must lie between 1e-140 and 1e140: choose other units"
+                 coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"
             ));
         }
         Ok(())
@@ -285,10 +301,22 @@ impl Solver {
                 if stop != Stop::Stagnated {
                     return Ok(stop);
                 }
-                log::info!("the fast method stagnated on this scene; NORM takes over");
-                self.norm(rule, monitor)
+                if self.symmetric && !rule.fixed {
+                    log::info!("the fast method stagnated on this scene; projected descent takes over");
+                    self.descent(rule, monitor)
+                } else {
+                    log::info!("the fast method stagnated on this scene; NORM takes over");
+                    self.norm(rule, monitor)
+                }
             }
         }
+    }
+
+    fn descent(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
+        let (projected, state) = (&mut self.projected, &mut self.states[0]);
+        let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
+        let by = Displace { product: &mut displace, work: 1.0, symmetric: true };
+        descent_method::solve(state, by, rule, &mut self.workspace.descent, monitor)
     }
 
     fn norm(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
@@ -321,6 +349,7 @@ impl Solver {
     }
 
     fn set_up_multigrid(&mut self) -> Result<()> {
+        self.workspace.cycles.reserve(self.grid.len())?;
         if self.multigrid.is_none() {
             let began = Instant::now();
             let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &self.threads)?;

@@ -192,7 +192,8 @@ impl Rule {
             // not `>` so that a NaN does not pass
             return update <= self.tolerance * rms;
         }
-        residual_norm(state) <= self.tolerance * norm_of_distance(state)
+        let residual = residual_norm(state);
+        residual.is_finite() && residual <= self.tolerance * norm_of_distance(state)
     }
 }
 

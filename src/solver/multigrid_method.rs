@@ -3,7 +3,9 @@
 use super::monitor::{Monitor, Rule};
 use super::report::Stop;
 use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, State};
+use crate::error::Result;
 use crate::multigrid::Multigrid;
+use crate::operator::reserve;
 use crate::scene::Load;
 
 /// Cycles without a new smallest residual after which the method is given up.
@@ -17,6 +19,18 @@ pub struct Workspace {
     residual: Vec<f64>,
     best: Best,
     unit: UnitApproach,
+}
+
+impl Workspace {
+    /// Room for all that a solve on n elements needs.
+    pub fn reserve(&mut self, n: usize) -> Result<()> {
+        let Workspace { residual, best, unit } = self;
+        for values in [residual, &mut best.p, &mut unit.response, &mut unit.product, &mut unit.ones] {
+            reserve(values, n, "multigrid's workspace")?;
+        }
+        reserve(&mut best.contact, n, "multigrid's workspace")?;
+        reserve(&mut unit.contact, n, "multigrid's workspace")
+    }
 }
 
 /// Steps 2 to 6 on level `l`, from a state whose contact area is chosen (step 1) and whose u is A p.

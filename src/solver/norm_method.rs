@@ -5,10 +5,13 @@ use super::report::Stop;
 use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, ExchangeGuard, State};
 use crate::error::Result;
 use crate::norm::{self, conjugate_gradients, minimal_residual, Inner, InnerStop};
+use crate::operator::reserve;
 use crate::scene::Load;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
+/// Where an inner solve ends at round-off, violations of this size are round-off too.
+const FLOOR: f64 = 1e-12;
 
 /// Memory for solves, kept from one to the next.
 #[derive(Default)]
@@ -17,6 +20,17 @@ pub struct Workspace {
     p: Vec<f64>,
     u: Vec<f64>,
     contact: Vec<bool>,
+}
+
+impl Workspace {
+    /// Room for all that a solve on n elements needs.
+    fn reserve(&mut self, n: usize) -> Result<()> {
+        const NORM: &str = "NORM's workspace";
+        reserve(&mut self.p, n, NORM)?;
+        reserve(&mut self.u, n, NORM)?;
+        reserve(&mut self.contact, n, NORM)?;
+        self.inner.reserve(n)
+    }
 }
 
 /// The operator as NORM sees it.
@@ -46,9 +60,11 @@ pub fn solve(
     workspace: &mut Workspace,
     monitor: &mut Monitor<'_>,
 ) -> Result<Stop> {
+    workspace.reserve(state.p.len())?;
     let mut guard = ExchangeGuard::default();
     let mut warm = state.p.iter().any(|p| *p != 0.0);
-    let mut restarts = 0;
+    // Restarts of this inner solve, and the true residual before the last.
+    let (mut restarts, mut last_residual) = (0, f64::INFINITY);
     loop {
         // 2. The equations on the contact area.
         if !warm {
@@ -60,28 +76,30 @@ pub fn solve(
             }
         }
         let inner = inner_solve(state, &mut by, rule, &mut workspace.inner, monitor)?;
+        // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
+        state.balance_force();
         by.displace(state, monitor);
         monitor.active_set_steps += 1;
         if monitor.is_cancelled() || (monitor.cycles >= rule.max_cycles && !inner.met) {
-            if !rule.fixed && truncate(state) > 0 {
-                state.balance_force();
-                by.displace(state, monitor);
-            }
+            give_up(state, &mut by, rule, monitor);
             return Ok(Stop::interrupted(monitor));
         }
 
         // The recursive residual certifies nothing: if the true one is not met, go on from here.
-        if !rule.holds(state, inner.update) {
-            restarts += 1;
-            if restarts > RESTARTS {
-                return Ok(Stop::Stagnated);
-            }
+        let holds = rule.holds(state, inner.update);
+        let residual = residual_norm(state);
+        let gains = residual < 0.5 * last_residual || rule.by_update;
+        if !holds && gains && restarts < RESTARTS {
+            (restarts, last_residual) = (restarts + 1, residual);
             warm = true;
             continue;
         }
-        restarts = 0;
+        (restarts, last_residual) = (0, f64::INFINITY);
+        // At the floor of round-off the contact area is found all the same, as well as it can be.
+        let done = if holds { Stop::Converged } else { Stop::Stagnated };
+        let tolerance = if holds { rule.tolerance } else { rule.tolerance.max(FLOOR) };
         if rule.fixed {
-            return Ok(Stop::Converged);
+            return Ok(done);
         }
 
         // 3. The contact conditions.
@@ -95,23 +113,33 @@ pub fn solve(
         let violators = (0..state.p.len()).filter(|&i| violates(state, i)).count();
         // 4. Done if all hold.
         if violators == 0 {
-            return Ok(Stop::Converged);
+            return Ok(done);
         }
         monitor.active_set_changes += violators as u64;
         if guard.allows_all(violators) {
             admit(state);
             truncate(state);
-        } else if settled(state, &mut by, rule, workspace, monitor) {
-            return Ok(Stop::Converged);
+        } else if settled(state, &mut by, tolerance, workspace, monitor) {
+            return Ok(done);
         } else if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, i)) {
             state.contact[i] = !state.contact[i];
             state.p[i] = 0.0;
         }
         if monitor.cycles >= rule.max_cycles {
+            give_up(state, &mut by, rule, monitor);
             return Ok(Stop::IterationLimit);
         }
         warm = false;
     }
+}
+
+/// What is returned has no tension, carries the prescribed force, and has u = A p.
+fn give_up(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) {
+    if !rule.fixed {
+        truncate(state);
+    }
+    state.balance_force();
+    by.displace(state, monitor);
 }
 
 /// Whether the violations are within the tolerance: p truncated satisfies the equations, and nothing penetrates. If so the
@@ -119,7 +147,7 @@ pub fn solve(
 fn settled(
     state: &mut State,
     by: &mut Displace<'_>,
-    rule: &Rule,
+    tolerance: f64,
     before: &mut Workspace,
     monitor: &mut Monitor<'_>,
 ) -> bool {
@@ -132,7 +160,7 @@ fn settled(
     by.displace(state, monitor);
     let h = norm_of_distance(state);
     let scale = h / (state.contact_count().max(1) as f64).sqrt();
-    if residual_norm(state) <= rule.tolerance * h && certify(state).penetration <= rule.tolerance * scale {
+    if residual_norm(state) <= tolerance * h && certify(state).penetration <= tolerance * scale {
         return true;
     }
     state.p.copy_from_slice(&before.p);

@@ -29,6 +29,8 @@ pub struct Measures {
     pub max_pressure: f64,
     /// Elements in contact.
     pub contact_count: usize,
+    /// Those of them on the first or last row or column of the grid.
+    pub edge_count: usize,
     /// Their area.
     pub contact_area: f64,
     /// The same, corrected for the elements along the outline; negative when errors are not estimated.
@@ -45,6 +47,7 @@ impl Measures {
             force: survey.pressures * state.grid.element_area(),
             max_pressure: survey.range.1.max(0.0),
             contact_count: survey.contact_count,
+            edge_count: state.edge_count(),
             contact_area: survey.contact_count as f64 * state.grid.element_area(),
             corrected_area: -1.0,
         }
@@ -175,4 +178,21 @@ pub struct Report {
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,
+}
+
+impl Report {
+    /// What limits the answer, and what a finer grid would bring; none when it is not known.
+    pub fn advice(&self) -> Option<String> {
+        let what = match self.limit {
+            Limit::Unknown => return None,
+            Limit::Grid => "the grid, not the tolerance,",
+            Limit::Tolerance => "the tolerance, not the grid,",
+        };
+        let Halving { seconds, force } = self.halving;
+        let error = self.error.force;
+        Some(format!(
+            "{what} limits this answer: halving the elements would cost about {seconds:.2e} s and bring the error of the force or \
+             approach from {error:.2e} to {force:.2e}"
+        ))
+    }
 }

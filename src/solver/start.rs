@@ -2,9 +2,13 @@
 
 use super::monitor::Monitor;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Solver};
+use crate::active_set::{norm_of_distance, residual_norm};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Load, Scene};
+
+/// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
+const WORSE_THAN_NONE: f64 = 1e3;
 
 /// What the finest grid's state holds at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +107,22 @@ impl Solver {
             }
         }
         state.fit_approach();
+        // A guess that is far worse than none costs time, or cannot be computed with.
+        let (residual, distance) = (residual_norm(state), norm_of_distance(state));
+        if residual.is_finite() && residual <= WORSE_THAN_NONE * distance {
+            return Ok(from);
+        }
+        state.p.fill(0.0);
+        state.u.fill(0.0);
+        if !fixed {
+            state.start(self.projected.influence().at(0, 0));
+            return Ok(Start::Nothing);
+        }
+        if state.balance_force().is_none() {
+            self.projected.displace(&state.p, &mut state.u);
+            monitor.count_products(1, 1.0);
+            state.fit_approach();
+        }
         Ok(from)
     }
 }

@@ -44,7 +44,7 @@ impl CoarseGrids {
         let mut grids = Vec::new();
         let (mut fine, mut influence) = (*grid, influence.clone());
         while let Some(coarse) = coarsen(&fine, COARSEST) {
-            influence = influence.coarsen(&fine, &coarse);
+            influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
             let h = zeros(fine.len(), "undeformed distances")?;
             let load = crate::scene::Load::Approach(0.0);
@@ -80,12 +80,17 @@ impl CoarseGrids {
     ) -> Result<Displacement> {
         let count = self.grids.len();
         if count == 0 {
+            // A guess that was worth nothing is gone.
+            fine.p.fill(0.0);
+            fine.u.fill(0.0);
             fine.start(self_influence);
             return Ok(Displacement::Unknown);
         }
+        let highest = fine.out_of_reach(self_influence);
+        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
         for l in 0..count {
             let (from, to) = self.pair(l, fine);
-            transfer::restrict_distance(&from.grid, &to.state.grid, |i| from.h[i], &mut to.state.h);
+            transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
             (to.state.load, to.state.approach) = (from.load, from.approach);
         }
         let coarsest = &mut self.grids[count - 1];
@@ -101,7 +106,7 @@ impl CoarseGrids {
                 displacement = Displacement::Near;
             }
             let (to, from) = self.pair(l, fine);
-            prolong(&from.state, to);
+            prolong(&from.state, to, highest);
         }
         monitor.enter_grid();
         Ok(displacement)
@@ -140,14 +145,14 @@ impl CoarseGrids {
 }
 
 /// The pressures of the coarser grid, piecewise constant (what smoother interpolation would add the preconditioner kills), its
-/// contact area, and its displacements, linearly interpolated.
-fn prolong(coarse: &State, fine: &mut State) {
+/// contact area, and its displacements, linearly interpolated. Elements above `highest` are out of reach.
+fn prolong(coarse: &State, fine: &mut State, highest: f64) {
     let (from, to) = (coarse.grid, fine.grid);
     transfer::interpolate(&to, &from, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
     transfer::interpolate_linearly(&to, &from, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
     fine.approach = coarse.approach;
     for ((p, inside), h) in fine.p.iter_mut().zip(&mut fine.contact).zip(&fine.h) {
-        if h.is_infinite() {
+        if h.is_infinite() || *h > highest {
             *p = 0.0;
         }
         *inside = *p > 0.0;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::super::monitor::Monitor;
 use super::super::options::Precision;
+use super::units::Units;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -31,11 +32,12 @@ enum Inner {
 }
 
 impl Inner {
-    /// On `grid`, of which `operator` is the one in double precision if that is known.
+    /// On `grid`, of which `operator` is the one in double precision if that is known. Coefficients are taken times `factor`.
     fn new(
         influence: &Influence,
         grid: &Grid,
         operator: Option<&Toeplitz<f64>>,
+        factor: f64,
         precision: Precision,
         threads: &Threads,
     ) -> Result<Inner> {
@@ -43,18 +45,20 @@ impl Inner {
             influence: &Influence,
             grid: &Grid,
             operator: Option<&Toeplitz<f64>>,
+            factor: f64,
             threads: &Threads,
         ) -> Result<Iteration<T>> {
+            let influence = &influence.times(factor)?;
             let operator = match operator {
-                Some(operator) => operator.in_precision()?,
+                Some(operator) => operator.in_precision(factor)?,
                 None => Toeplitz::new(influence, grid, threads)?,
             };
             Iteration::new(operator, influence, grid, threads)
         }
         let threads = &threads.suited_to(grid.len());
         Ok(match precision {
-            Precision::Double => Inner::Double(iteration(influence, grid, operator, threads)?),
-            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, threads)?),
+            Precision::Double => Inner::Double(iteration(influence, grid, operator, factor, threads)?),
+            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, factor, threads)?),
         })
     }
 
@@ -91,7 +95,9 @@ impl Inner {
 struct Windowed {
     window: Window,
     inner: Inner,
-    /// The window's part of the state; none when the window is the whole grid.
+    /// Of the last iteration.
+    units: Units,
+    /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
     part: Option<State>,
 }
 
@@ -160,7 +166,7 @@ impl Level {
         if displacement != Displacement::Known {
             state.balance_force();
         }
-        self.on_window(state, displacement, |inner, grid, state| {
+        self.on_window(state, displacement, |inner, grid, units, state| {
             let work = grid.len() as f64 / finest as f64;
             if displacement == Displacement::Near {
                 inner.correct(state);
@@ -172,7 +178,7 @@ impl Level {
             inner.run(state, stop, |cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.active_set_steps += 1;
-                monitor.cycle_done(grid, cycle.changes, cycle.update, cycle.residual)
+                monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             })
         })
     }
@@ -180,7 +186,7 @@ impl Level {
     /// Improves p where u is near A p, without a product; u is not known afterwards.
     pub fn correct(&mut self, state: &mut State) -> Result<()> {
         state.balance_force();
-        self.on_window(state, Displacement::Near, |inner, _, state| inner.correct(state))
+        self.on_window(state, Displacement::Near, |inner, _, _, state| inner.correct(state))
     }
 
     /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
@@ -188,11 +194,11 @@ impl Level {
         &mut self,
         state: &mut State,
         displacement: Displacement,
-        work: impl FnOnce(&mut Inner, &Grid, &mut State) -> R,
+        work: impl FnOnce(&mut Inner, &Grid, &Units, &mut State) -> R,
     ) -> Result<R> {
-        let Windowed { window, inner, part } = self.choose_window(state)?;
+        let Windowed { window, inner, units, part } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
-        let Some(part) = part else { return Ok(work(inner, &grid, state)) };
+        let Some(part) = part else { return Ok(work(inner, &grid, units, state)) };
         window.extract(&state.grid, &state.h, &mut part.h);
         window.extract(&state.grid, &state.p, &mut part.p);
         window.extract(&state.grid, &state.contact, &mut part.contact);
@@ -200,7 +206,13 @@ impl Level {
             window.extract(&state.grid, &state.u, &mut part.u);
         }
         (part.load, part.approach) = (state.load, state.approach);
-        let result = work(inner, &grid, part);
+        if *units != Units::SAME {
+            units.convert(part);
+        }
+        let result = work(inner, &grid, units, part);
+        if *units != Units::SAME {
+            units.convert_back(part);
+        }
         window.insert(&state.grid, &part.p, &mut state.p, 0.0);
         window.insert(&state.grid, &part.contact, &mut state.contact, false);
         state.approach = part.approach;
@@ -219,19 +231,31 @@ impl Level {
         let window = Window::around(state, current);
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
+        let units = match self.precision {
+            Precision::Double => Units::SAME,
+            Precision::Auto | Precision::Mixed => Units::for_state(state, self.influence.at(0, 0)),
+        };
+        let part = if window.is_full(&self.grid) && units == Units::SAME {
+            None
+        } else {
+            Some(|| State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach))
+        };
         // The operator of a window depends on its size only.
         let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
         let windowed = match self.windowed.take().filter(fits) {
-            Some(windowed) => Windowed { window, ..windowed },
+            Some(windowed) => {
+                let part = match (part, windowed.part) {
+                    (Some(new), None) => Some(new()?),
+                    (part, known) => known.filter(|_| part.is_some()),
+                };
+                Windowed { window, units, inner: windowed.inner, part }
+            }
             None => {
                 let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-                let inner = Inner::new(&self.influence, &grid, operator, self.precision, &self.threads)?;
-                let part = if window.is_full(&self.grid) {
-                    None
-                } else {
-                    Some(State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach)?)
-                };
-                Windowed { window, inner, part }
+                let factor = units.influence;
+                let inner = Inner::new(&self.influence, &grid, operator, factor, self.precision, &self.threads)?;
+                let part = part.map(|new| new()).transpose()?;
+                Windowed { window, inner, units, part }
             }
         };
         Ok(self.windowed.insert(windowed))

@@ -12,6 +12,7 @@ mod direct;
 mod history;
 mod level;
 mod samples;
+mod units;
 
 use std::sync::Arc;
 
@@ -24,13 +25,14 @@ use crate::active_set::{admit, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::{Toeplitz, Workspace};
+use crate::operator::{reserve, Toeplitz, Workspace};
 use crate::projected_cg::{End, Stopping};
 use crate::threads::Threads;
 use coarse::CoarseGrids;
 use direct::Direct;
 use history::History;
 use level::{Displacement, Level};
+use samples::{PREDICTS, SHOWS_ORDER};
 
 /// The iteration aims at this part of the tolerance, so that what is owed and the rounding of its single precision products do
 /// not fail the certificate.
@@ -153,6 +155,7 @@ impl Projected {
         let (mut best, mut rounds, mut rounds_without_progress) = (f64::INFINITY, 0, 0);
         loop {
             if rule.by_update {
+                reserve(&mut self.before, state.p.len(), "the pressures before")?;
                 self.before.clone_from(&state.p);
             }
             let stop = Stopping {
@@ -203,12 +206,12 @@ impl Projected {
 
     /// What the scene of `state` is on coarser grids: up to two samples.
     pub fn samples(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<([Sample; 2], usize)> {
-        self.coarse_grids()?.samples(state, monitor)
+        self.coarse_grids()?.samples(state, SHOWS_ORDER, monitor)
     }
 
     /// Relative discretisation error of the force (or the approach), before the finest grid is solved; 0 where it is not known.
     fn predicted_error(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<f64> {
-        let ([near, far], count) = self.samples(state, monitor)?;
+        let ([near, far], count) = self.coarse_grids()?.samples(state, PREDICTS, monitor)?;
         Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
     }
 
@@ -246,7 +249,9 @@ impl Projected {
     fn judge(&self, state: &mut State, rule: &Rule, monitor: &Monitor<'_>) -> Certified {
         let mut survey = Survey::of(state);
         let scale = survey.distance / (survey.contact_count.max(1) as f64).sqrt();
-        let violation = (survey.residual / survey.distance).max(survey.penetration / scale);
+        // What is no number is no good: `max` alone would drop it.
+        let violations = [survey.residual / survey.distance, survey.penetration / scale];
+        let violation = violations.into_iter().fold(0.0, |worst, v| if v <= worst { worst } else { v });
         if !rule.fixed && survey.penetration > 0.0 {
             admit(state);
             if !(survey.penetration <= rule.tolerance * scale) {
@@ -257,7 +262,7 @@ impl Projected {
         let holds = if rule.by_update {
             rule.holds(state, monitor.update)
         } else {
-            survey.residual <= rule.tolerance * survey.distance
+            survey.residual.is_finite() && survey.residual <= rule.tolerance * survey.distance
         };
         Certified { holds, violation }
     }

@@ -18,14 +18,22 @@ use crate::solver::monitor::Monitor;
 const NEAR: [(usize, f64); 3] = [(3, 200.0), (2, 50.0), (1, 10.0)];
 /// That of the grid that shows the order, by how often it is coarsened more.
 const FAR: [usize; 2] = [2, 1];
-const FAR_CONTACT: f64 = 50.0;
+/// The elements in contact that it needs to show an order, and to predict an error when the order is taken for granted.
+pub const SHOWS_ORDER: f64 = 50.0;
+pub const PREDICTS: f64 = 10.0;
 /// A sample is solved well enough for its error not to matter among those of the grids.
 const TOLERANCE: f64 = 1e-7;
 const ITERATIONS: u64 = 40;
 
 impl CoarseGrids {
-    /// Up to two samples, of the nearer grid first, starting from the pressures of `fine`.
-    pub fn samples(&mut self, fine: &State, monitor: &mut Monitor<'_>) -> Result<([Sample; 2], usize)> {
+    /// Up to two samples, of the nearer grid first, starting from the pressures of `fine`; the farther one has at least `far_contact`
+    /// elements in contact.
+    pub fn samples(
+        &mut self,
+        fine: &State,
+        far_contact: f64,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<([Sample; 2], usize)> {
         let mut samples = [Sample { size: 1.0, found: 0.0, max_pressure: 0.0, distance: 0.0 }; 2];
         let contact = fine.contact_count() as f64;
         let enough = |grids: &Self, l: usize, least: f64| {
@@ -34,7 +42,7 @@ impl CoarseGrids {
         let Some((near, _)) = NEAR.into_iter().find(|(l, least)| enough(self, *l, *least)) else {
             return Ok((samples, 0));
         };
-        let far = FAR.into_iter().map(|more| near + more).find(|l| enough(self, *l, FAR_CONTACT));
+        let far = FAR.into_iter().map(|more| near + more).find(|l| enough(self, *l, far_contact));
         let mut count = 0;
         for l in [Some(near), far].into_iter().flatten() {
             let Some(sample) = self.sample(l - 1, fine, monitor)? else { break };

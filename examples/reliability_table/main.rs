@@ -1,0 +1,73 @@
+//! The table of docs/reliability.md: every hard case by every method, the residual reached and the products spent.
+//!
+//! `cargo run --release --locked --example reliability_table`
+
+#[allow(dead_code)] // the tests' cases, of which this takes a part
+#[path = "../../tests/hard_cases/mod.rs"]
+mod families;
+
+use contact_normal::error::Error;
+use contact_normal::scene::Load;
+use contact_normal::solver::{Method, Options, Stop};
+use families::certificate::{recompute, run, Found};
+use families::{all, Case};
+
+const METHODS: [(&str, Method); 4] = [
+    ("AUTO", Method::Auto),
+    ("FULL_MULTIGRID", Method::FullMultigrid),
+    ("MULTIGRID", Method::Multigrid),
+    ("NORM", Method::Norm),
+];
+
+fn main() {
+    let names: Vec<&str> = METHODS.iter().map(|(name, _)| *name).collect();
+    println!("| case | grid | load | {} |", names.join(" | "));
+    println!("|---|---|---|{}", "---|".repeat(names.len()));
+    let mut solved = [0; METHODS.len()];
+    let mut count = 0;
+    for (family, cases) in all() {
+        println!("| **{family}** |||{}", "|".repeat(names.len()));
+        for case in cases {
+            count += 1;
+            let mut cells = Vec::new();
+            for (k, (_, method)) in METHODS.iter().enumerate() {
+                let outcome = run(&case, *method);
+                solved[k] += usize::from(is_solved(&case, &outcome));
+                cells.push(cell(&case, &outcome));
+            }
+            let load = match case.load {
+                Load::Approach(approach) => format!("approach {approach:.3}"),
+                Load::Force(force) => format!("force {force:.3}"),
+            };
+            println!("| {} | {} x {} | {load} | {} |", case.name, case.grid.mx, case.grid.my, cells.join(" | "));
+        }
+    }
+    let sums: Vec<String> = solved.iter().map(|solved| format!("{solved} of {count}")).collect();
+    println!("| **solved** | | | {} |", sums.join(" | "));
+}
+
+/// Whether status OK came back and the certificate, recomputed from the returned arrays, holds.
+fn is_solved(case: &Case, outcome: &Result<Found, Error>) -> bool {
+    outcome.as_ref().is_ok_and(|found| {
+        let measures = recompute(case, found);
+        let worst = measures.residual.max(measures.penetration).max(measures.complementarity);
+        found.stop == Stop::Converged && worst <= Options::default().tolerance + measures.round_off
+    })
+}
+
+/// Residual and work units, after the status where it is not OK.
+fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
+    let found = match outcome {
+        Ok(found) => found,
+        Err(Error::NotPositiveDefinite(_)) => return "**NOT_POSITIVE_DEFINITE**".into(),
+        Err(error) => return format!("**{error}**"),
+    };
+    let numbers = format!("{:.0e}, {:.1}", recompute(case, found).residual, found.report.work_units);
+    match found.stop {
+        _ if is_solved(case, outcome) => numbers,
+        Stop::Converged => format!("**WRONG** {numbers}"),
+        Stop::IterationLimit => format!("**ITERATION_LIMIT** {numbers}"),
+        Stop::Cancelled => format!("**CANCELLED** {numbers}"),
+        Stop::Stagnated => format!("**STAGNATED** {numbers}"),
+    }
+}

@@ -1,0 +1,86 @@
+//! Units for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
+//! powers of two, so that they change no digit.
+
+use crate::active_set::State;
+use crate::scene::Load;
+
+/// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
+/// room in the range 2^-126 to 2^127 then.
+const AS_IT_IS: i32 = 48;
+
+/// Factors from the scene's units to the iteration's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    /// Of influence coefficients.
+    pub influence: f64,
+    /// Of lengths.
+    pub length: f64,
+}
+
+impl Units {
+    /// The scene's own.
+    pub const SAME: Units = Units { influence: 1.0, length: 1.0 };
+
+    /// Units that suit a state, where an element's influence on itself is `self_influence`.
+    pub fn for_state(state: &State, self_influence: f64) -> Units {
+        let alone = match state.load {
+            Load::Approach(_) => 0.0,
+            Load::Force(force) => force / state.grid.element_area() * self_influence,
+        };
+        let approach = state.approach;
+        let touching = state.h.iter().zip(&state.contact).filter(|(h, inside)| **inside || **h < approach);
+        let length = touching.fold(alone, |largest: f64, (h, _)| largest.max((h - approach).abs()));
+        let pressure = length / self_influence;
+        let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);
+        Units { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
+    }
+
+    /// Of pressures: u = A p holds in both units.
+    pub fn pressure(&self) -> f64 {
+        self.length / self.influence
+    }
+
+    /// Converts what the iteration reads.
+    pub fn convert(&self, state: &mut State) {
+        let (length, pressure) = (self.length, self.pressure());
+        state.h.iter_mut().chain(&mut state.u).for_each(|value| *value *= length);
+        state.p.iter_mut().for_each(|p| *p *= pressure);
+        state.approach *= length;
+        state.load = match state.load {
+            Load::Approach(approach) => Load::Approach(approach * length),
+            Load::Force(force) => Load::Force(force * pressure),
+        };
+    }
+
+    /// Converts what the iteration wrote back.
+    pub fn convert_back(&self, state: &mut State) {
+        let (length, pressure) = (1.0 / self.length, 1.0 / self.pressure());
+        state.u.iter_mut().for_each(|u| *u *= length);
+        state.p.iter_mut().for_each(|p| *p *= pressure);
+        state.approach *= length;
+    }
+}
+
+/// The exponent of two of a normal number.
+fn exponent(value: f64) -> i32 {
+    (value.to_bits() >> 52 & 0x7ff) as i32 - 1023
+}
+
+/// 1 for a value that may stay as it is, or else what brings it to [1, 2).
+fn towards_one(value: f64) -> f64 {
+    if exponent(value).abs() <= AS_IT_IS {
+        1.0
+    } else {
+        to_one(value)
+    }
+}
+
+/// What brings a value to [1, 2); 1 for one that nothing does.
+fn to_one(value: f64) -> f64 {
+    // 2^1022 and beyond have an inverse that is not normal.
+    if value.is_normal() && value > 0.0 && exponent(value) < 1022 {
+        2f64.powi(-exponent(value))
+    } else {
+        1.0
+    }
+}

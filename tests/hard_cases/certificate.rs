@@ -1,0 +1,158 @@
+//! The certificate, recomputed from the returned arrays with a product of our own.
+
+use contact_normal::active_set::State;
+use contact_normal::error::Result;
+use contact_normal::influence::Influence;
+use contact_normal::operator::{dense, Toeplitz};
+use contact_normal::scene::Load;
+use contact_normal::solver::{solve, Method, Options, Report, Solver, Stop};
+use contact_normal::threads::Threads;
+
+use super::case::Case;
+
+/// Grids up to this size are summed directly, larger ones go by an FFT in double precision (tests/operator.rs compares both).
+const SUMMED: usize = 1600;
+
+/// What a solve returned.
+pub struct Found {
+    pub stop: Stop,
+    pub report: Report,
+    pub p: Vec<f64>,
+    pub contact: Vec<bool>,
+    pub approach: f64,
+}
+
+impl Found {
+    pub fn of(stop: Stop, report: Report, state: &State) -> Found {
+        Found { stop, report, p: state.p.clone(), contact: state.contact.clone(), approach: state.approach }
+    }
+}
+
+/// The conditions, recomputed.
+#[derive(Clone, Copy, Debug)]
+pub struct Recomputed {
+    /// `||h - approach + A p|| / ||h - approach||` over C.
+    pub residual: f64,
+    /// Largest `-e` outside C, over the rms of `h - approach` in C.
+    pub penetration: f64,
+    /// `sum of p |e| / sum of p |u|`.
+    pub complementarity: f64,
+    #[allow(dead_code)] // for tests/properties.rs
+    /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force the approach is no part of it.
+    pub energy: f64,
+    /// What rounding may do to the first two.
+    pub round_off: f64,
+}
+
+/// Solves a case by one method with the default options.
+pub fn run(case: &Case, method: Method) -> Result<Found> {
+    run_with(case, &Options { method, ..Options::default() })
+}
+
+/// Solves a case.
+pub fn run_with(case: &Case, options: &Options) -> Result<Found> {
+    let (solver, stop, report) = solve(&case.scene(), options)?;
+    Ok(found(&solver, stop, report))
+}
+
+/// What a solver holds.
+pub fn found(solver: &Solver, stop: Stop, report: Report) -> Found {
+    Found::of(stop, report, solver.state())
+}
+
+/// u = A p.
+pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
+    let influence: Influence = case.scene().influence();
+    let mut u = vec![0.0; p.len()];
+    if p.len() <= SUMMED {
+        dense::apply(&influence, &case.grid, p, &mut u);
+    } else {
+        let operator = Toeplitz::<f64>::new(&influence, &case.grid, &Threads::One).expect("an operator");
+        operator.apply(p, &mut u, &mut operator.workspace().expect("memory"));
+    }
+    u
+}
+
+/// Recomputes the conditions.
+pub fn recompute(case: &Case, found: &Found) -> Recomputed {
+    let u = displace(case, &found.p);
+    let (mut r2, mut h2, mut outside, mut gaps, mut work, mut count) = (0.0, 0.0, 0.0f64, 0.0, 0.0, 0.0f64);
+    let (mut energy, mut largest) = (0.0, 0.0f64);
+    for (i, &u) in u.iter().enumerate() {
+        largest = largest.max(u.abs());
+        let (h, p) = (case.h[i], found.p[i]);
+        let e = h - found.approach + u;
+        if found.contact[i] {
+            assert!(h.is_finite(), "{}: contact where there is no surface", case.name);
+            (r2, h2, count) = (r2 + e * e, h2 + (h - found.approach).powi(2), count + 1.0);
+            largest = largest.max(h.abs());
+        } else {
+            assert_eq!(p, 0.0, "{}: an exterior element carries a pressure", case.name);
+            outside = outside.max(-e);
+        }
+        if p != 0.0 {
+            (gaps, work) = (gaps + p * e.abs(), work + p * u.abs());
+            energy += p * (0.5 * u + if let Load::Force(_) = case.load { h } else { h - found.approach });
+        }
+    }
+    let part = |value: f64, whole: f64| if value == 0.0 { 0.0 } else { value / whole };
+    let scale = (h2 / count.max(1.0)).sqrt();
+    Recomputed {
+        residual: part(r2.sqrt(), h2.sqrt()),
+        penetration: part(outside, scale),
+        complementarity: part(gaps, work),
+        energy,
+        // A product is good to some units of round-off of its largest value, and so is the difference h - approach.
+        round_off: part(64.0 * f64::EPSILON * (largest + found.approach.abs()), scale),
+    }
+}
+
+/// What holds whatever the status: numbers, no tension, the prescribed force, and a report that tells what was found.
+pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
+    let name = format!("{}, {what}, {:?}", case.name, found.stop);
+    assert!(found.p.iter().all(|p| p.is_finite() && *p >= 0.0), "{name}: pressures");
+    assert!(found.approach.is_finite(), "{name}: approach {}", found.approach);
+    let measures = recompute(case, found);
+    let force = found.p.iter().sum::<f64>() * case.grid.element_area();
+    if let Load::Force(prescribed) = case.load {
+        // A sum of n terms of one sign, taken in another order.
+        let rounding = f64::EPSILON * case.grid.len() as f64;
+        assert!((force - prescribed).abs() <= rounding * prescribed, "{name}: force {force} for {prescribed}");
+    }
+    let reported = found.report.measures;
+    let certificate = reported.certificate;
+    // Two products of the same pressures differ by round-off.
+    let agree = |a: f64, b: f64| (a - b).abs() <= measures.round_off + 1e-9 * a.abs();
+    assert!(agree(certificate.residual, measures.residual), "{name}: reported {certificate:?}, found {measures:?}");
+    assert!(agree(certificate.complementarity, measures.complementarity), "{name}: {certificate:?}, {measures:?}");
+    let (mx, my) = (case.grid.mx, case.grid.my);
+    let at_edge = |i: &usize| [0, mx - 1].contains(&(i % mx)) || [0, my - 1].contains(&(i / mx));
+    let touching = (0..found.p.len()).filter(|&i| found.contact[i]).filter(at_edge).count();
+    assert_eq!(reported.edge_count, touching, "{name}");
+    assert_eq!(reported.contact_count, found.contact.iter().filter(|&&inside| inside).count(), "{name}");
+    measures
+}
+
+/// What status OK promises: residual, penetration and complementarity are at most `tolerance`.
+pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) -> Recomputed {
+    assert_eq!(found.stop, Stop::Converged, "{}, {what}: {:?}", case.name, found.report);
+    let measures = assert_sound(case, what, found);
+    let allowed = tolerance + measures.round_off;
+    let worst = measures.residual.max(measures.penetration).max(measures.complementarity);
+    assert!(worst <= allowed, "{}, {what}: {measures:?}", case.name);
+    measures
+}
+
+/// Every case by every method: AUTO solves it; the others solve it or say that they did not.
+pub fn assert_solved_or_told(cases: &[Case]) {
+    for case in cases {
+        for method in [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm] {
+            let found = run(case, method).unwrap_or_else(|e| panic!("{}, {method:?}: {e}", case.name));
+            if found.stop == Stop::Converged || method == Method::Auto {
+                assert_certified(case, &format!("{method:?}"), &found, Options::default().tolerance);
+            } else {
+                assert_sound(case, &format!("{method:?}"), &found);
+            }
+        }
+    }
+}

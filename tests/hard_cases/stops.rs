@@ -1,0 +1,103 @@
+//! Early stops: whatever ends a solve, what it returns is sound, and the status says why.
+
+use contact_normal::scene::Load;
+
+use super::case::{distance, grid, Case};
+
+pub fn cases() -> Vec<Case> {
+    let grid = grid(66, 52, 0.1, 0.1);
+    let h = distance(&grid, |x, y| 0.05 * (x * x + y * y) + 0.004 * (7.0 * x).sin() * (5.0 * y).cos());
+    [Load::Approach(0.12), Load::Force(0.3)].map(|load| Case::new("a stop", grid, h.clone(), load)).to_vec()
+}
+
+#[cfg(test)]
+mod promises {
+    use super::super::certificate::{assert_certified, assert_sound, found, run_with};
+    use super::*;
+    use contact_normal::solver::{Criterion, Method, Options, Progress, Solver, Stop};
+
+    const METHODS: [Method; 5] =
+        [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm, Method::ProjectedCg];
+
+    #[test]
+    fn a_tolerance_below_round_off_stagnates_at_the_floor() {
+        for case in cases() {
+            for method in METHODS {
+                for criterion in [Criterion::Residual, Criterion::Update] {
+                    let options =
+                        Options { method, criterion, tolerance: 1e-30, max_cycles: 3000, ..Options::default() };
+                    let found = run_with(&case, &options).expect("a solve");
+                    let what = format!("{method:?} {criterion:?}");
+                    let measures = assert_sound(&case, &what, &found);
+                    // NORM may exchange elements of no pressure and no gap one by one until the limit: it says so.
+                    if method == Method::Norm && found.stop == Stop::IterationLimit {
+                        continue;
+                    }
+                    // A product rounds to about 1e-15 of u; a few hundred of them, and p a hundred times more by the
+                    // condition of A.
+                    assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
+                    let floor_or_exact = found.stop == Stop::Stagnated
+                        || criterion == Criterion::Update && found.stop == Stop::Converged;
+                    assert!(floor_or_exact, "{what}: {:?} after {}", found.stop, found.report.cycles);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_few_cycles_return_the_best_there_is() {
+        for case in cases() {
+            for method in METHODS {
+                for max_cycles in [1, 2, 3] {
+                    let options = Options { method, max_cycles, tolerance: 1e-12, ..Options::default() };
+                    let found = run_with(&case, &options).expect("a solve");
+                    assert_eq!(
+                        (found.stop, found.report.cycles),
+                        (Stop::IterationLimit, max_cycles as u64),
+                        "{method:?}"
+                    );
+                    assert_sound(&case, &format!("{method:?}, {max_cycles} cycles"), &found);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cancel_at_any_call_of_the_callback_returns_what_there_is() {
+        for case in cases() {
+            for method in METHODS {
+                let options = Options { method, tolerance: 1e-9, ..Options::default() };
+                let mut solver = Solver::new(&case.scene(), &options).expect("a solver");
+                let mut calls = 0;
+                let mut count = |_: &Progress| {
+                    calls += 1;
+                    false
+                };
+                solver.solve(&case.scene(), &options, None, Some(&mut count)).expect("a solve");
+                let all = calls;
+                assert!(all > 5, "{method:?}: {all} calls");
+                for at in 1..=all {
+                    let mut calls = 0;
+                    let mut cancel = |_: &Progress| {
+                        calls += 1;
+                        calls == at
+                    };
+                    let (stop, report) =
+                        solver.solve(&case.scene(), &options, None, Some(&mut cancel)).expect("a solve");
+                    assert_eq!(calls, at, "{method:?}: called after the cancellation");
+                    let (what, found) = (format!("{method:?}, cancelled at {at}"), found(&solver, stop, report));
+                    // What was all but done may turn out to be solved.
+                    if stop == Stop::Converged {
+                        assert_certified(&case, &what, &found, options.tolerance);
+                    } else {
+                        assert_eq!(stop, Stop::Cancelled, "{what}");
+                        assert_sound(&case, &what, &found);
+                    }
+                }
+                // And the handle is as good as before.
+                let (stop, report) = solver.solve(&case.scene(), &options, None, None).expect("a solve");
+                assert_certified(&case, "after cancellations", &found(&solver, stop, report), options.tolerance);
+            }
+        }
+    }
+}

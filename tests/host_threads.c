@@ -1,0 +1,118 @@
+/* A host with threads of its own: host_threads own_handles | openmp. Built with -Ofast, which flushes denormals to zero. Prints nothing
+ * but what goes wrong. */
+#define _POSIX_C_SOURCE 200809L
+#include <omp.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact_normal.h"
+
+enum { M = 45, N = M * M, THREADS = 8, ROUNDS = 20 };
+
+static double h[THREADS][N], expected[THREADS][N];
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "%s (last error: %s)\n", what, contact_normal_last_error());
+    return EXIT_FAILURE;
+}
+
+/* Problem k: an ellipsoid of its own. */
+static contact_normal_scene scene(int k)
+{
+    contact_normal_scene scene;
+    int i;
+
+    contact_normal_scene_init(&scene);
+    scene.mx = scene.my = M;
+    scene.dx = 20.0 / M;
+    scene.dy = 12.0 / M;
+    for (i = 0; i < N; i++) {
+        const double x = (i % M + 0.5) * scene.dx - 10.0, y = (i / M + 0.5) * scene.dy - 6.0;
+        h[k][i] = 0.0016681 * x * x + 0.001 * (k + 2) * y * y;
+    }
+    scene.undeformed_distance = h[k];
+    scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
+    scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
+    scene.approach = 0.1091;
+    return scene;
+}
+
+/* Many solves on a handle of one's own; each has the expected bits. */
+static int rounds(const contact_normal_scene *scene, int threads, const double *bits)
+{
+    contact_normal_options options;
+    contact_normal_fields fields;
+    contact_normal_solver *solver = NULL;
+    double p[N];
+    int round, good = 1;
+
+    contact_normal_options_init(&options);
+    options.threads = threads;
+    contact_normal_fields_init(&fields);
+    fields.pressure = p;
+    if (contact_normal_solver_new(scene, &options, &solver) != CONTACT_NORMAL_OK) return 0;
+    for (round = 0; round < ROUNDS && good; round++) {
+        memset(p, 0, sizeof p);
+        good = contact_normal_solver_solve(solver, scene, &options, &fields, NULL) == CONTACT_NORMAL_OK
+            && memcmp(p, bits, sizeof p) == 0;
+    }
+    contact_normal_solver_free(solver);
+    return good;
+}
+
+static contact_normal_scene scenes[THREADS];
+
+static void *run(void *argument)
+{
+    const int k = (int)((contact_normal_scene *)argument - scenes);
+    return rounds(&scenes[k], 1 + k % 2, expected[k]) ? argument : NULL;
+}
+
+static int own_handles(void)
+{
+    pthread_t threads[THREADS];
+    int k, good = 1;
+
+    for (k = 0; k < THREADS; k++)
+        if (pthread_create(&threads[k], NULL, run, &scenes[k]) != 0) return fail("pthread_create");
+    for (k = 0; k < THREADS; k++) {
+        void *returned = NULL;
+        pthread_join(threads[k], &returned);
+        good = good && returned == &scenes[k];
+    }
+    return good ? EXIT_SUCCESS : fail("a thread's solve failed, or differs from the one before");
+}
+
+/* OpenMP's threads wait actively (OMP_WAIT_POLICY) while one of them solves, and then all solve at once. */
+static int openmp(void)
+{
+    int k, good = 1;
+
+#pragma omp parallel num_threads(4)
+    {
+#pragma omp single
+        if (!rounds(&scenes[0], 2, expected[0])) good = 0;
+    }
+#pragma omp parallel for num_threads(4) reduction(&& : good)
+    for (k = 0; k < THREADS; k++) good = good && rounds(&scenes[k], 1, expected[k]);
+    return good ? EXIT_SUCCESS : fail("a solve beside OpenMP failed, or differs from the one before");
+}
+
+int main(int argc, char **argv)
+{
+    contact_normal_fields fields;
+    int k;
+
+    contact_normal_fields_init(&fields);
+    for (k = 0; k < THREADS; k++) {
+        scenes[k] = scene(k);
+        fields.pressure = expected[k];
+        if (contact_normal_solve(&scenes[k], NULL, &fields, NULL) != CONTACT_NORMAL_OK) return fail("the first solve");
+    }
+    if (argc == 2 && strcmp(argv[1], "own_handles") == 0) return own_handles();
+    if (argc == 2 && strcmp(argv[1], "openmp") == 0) return openmp();
+    return fail("usage: host_threads own_handles | openmp");
+}

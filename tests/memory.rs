@@ -1,0 +1,204 @@
+//! Lack of memory is a status, at whichever allocation it comes; what was allocated is freed.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::ptr::null_mut;
+
+use contact_normal::ffi::*;
+
+/// The system's memory, of which this thread gets no more than it is allowed.
+struct Limited;
+
+thread_local! {
+    /// Bytes of an allocation that counts as large.
+    static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
+    /// Large allocations until one fails; all after it fail too.
+    static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
+    /// Bytes held.
+    static HELD: Cell<i64> = const { Cell::new(0) };
+}
+
+fn may_have(bytes: usize) -> bool {
+    if bytes >= LARGE.get() {
+        let allowed = ALLOWED.get();
+        ALLOWED.set(allowed.saturating_sub(1));
+        if allowed == 0 {
+            return false;
+        }
+    }
+    HELD.set(HELD.get() + bytes as i64);
+    true
+}
+
+// SAFETY: the system's allocator, or null.
+unsafe impl GlobalAlloc for Limited {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if may_have(layout.size()) {
+            // SAFETY: by the caller.
+            unsafe { System.alloc(layout) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        if may_have(layout.size()) {
+            // SAFETY: by the caller.
+            unsafe { System.alloc_zeroed(layout) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        if may_have(size) {
+            HELD.set(HELD.get() - layout.size() as i64);
+            // SAFETY: by the caller.
+            unsafe { System.realloc(old, layout, size) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn dealloc(&self, old: *mut u8, layout: Layout) {
+        HELD.set(HELD.get() - layout.size() as i64);
+        // SAFETY: by the caller.
+        unsafe { System.dealloc(old, layout) }
+    }
+}
+
+#[global_allocator]
+static LIMITED: Limited = Limited;
+
+fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
+    let mut value = std::mem::MaybeUninit::uninit();
+    // SAFETY: `_init` fills a whole struct.
+    unsafe {
+        init(value.as_mut_ptr());
+        value.assume_init()
+    }
+}
+
+/// A ball on m x m elements, pressed by an approach that leaves contact a part of them.
+fn scene(m: usize, h: &mut Vec<f64>) -> contact_normal_scene {
+    let centre = |i: usize| i as f64 + 0.5 - 0.5 * m as f64;
+    *h = (0..m * m).map(|i| (centre(i % m).powi(2) + centre(i / m).powi(2)) / (m * m) as f64).collect();
+    let mut scene = initialised(contact_normal_scene_init);
+    (scene.mx, scene.my, scene.dx, scene.dy) = (m as i32, m as i32, 1.0 / m as f64, 1.0 / m as f64);
+    (scene.shear_modulus, scene.poisson_ratio) = ([1.0, f64::INFINITY], [0.3, 0.3]);
+    (scene.approach, scene.undeformed_distance) = (0.15, h.as_ptr());
+    scene
+}
+
+const METHODS: [i32; 5] = [
+    CONTACT_NORMAL_METHOD_AUTO,
+    CONTACT_NORMAL_METHOD_NORM,
+    CONTACT_NORMAL_METHOD_MULTIGRID,
+    CONTACT_NORMAL_METHOD_FULL_MULTIGRID,
+    CONTACT_NORMAL_METHOD_PROJECTED_CG,
+];
+
+/// Solves with so many large allocations allowed. Outputs must be untouched if there are too few.
+fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, allowed: u64, p: &mut [f64]) -> i32 {
+    let mut fields = initialised(contact_normal_fields_init);
+    fields.pressure = p.as_mut_ptr();
+    let before = p.to_vec();
+    ALLOWED.set(allowed);
+    LARGE.set(p.len());
+    // SAFETY: structs with their arrays.
+    let status = unsafe { contact_normal_solve(scene, options, &mut fields, null_mut()) };
+    LARGE.set(usize::MAX);
+    ALLOWED.set(u64::MAX);
+    assert!(status >= 0 || p == before, "outputs were written");
+    status
+}
+
+#[test]
+fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
+    // An array of one byte an element is large then, and no array of a row or a transform is.
+    let m = 520;
+    let mut h = Vec::new();
+    let scene = scene(m, &mut h);
+    let mut table = vec![0.0; 4 * m * m];
+    let mut influence = initialised(contact_normal_influence_init);
+    let (g, nu) = (scene.shear_modulus, scene.poisson_ratio);
+    // SAFETY: two values each, and room for 2 m by 2 m.
+    let status = unsafe {
+        let (size, values) = (m as i32, table.as_mut_ptr());
+        contact_normal_influence_half_space(size, size, scene.dx, scene.dy, g.as_ptr(), nu.as_ptr(), values)
+    };
+    assert_eq!(status, CONTACT_NORMAL_OK);
+    (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
+    let with_table = contact_normal_scene { influence: &influence, ..scene };
+    for (name, scene, methods) in [("half-space", &scene, &METHODS[..]), ("table", &with_table, &METHODS[..1])] {
+        for &method in methods {
+            let mut options = initialised(contact_normal_options_init);
+            (options.method, options.tolerance, options.max_cycles) = (method, 1e-3, 2);
+            // What the first solve of a kind leaves is for the process.
+            assert!(solve_with(scene, &options, u64::MAX, &mut vec![0.0; m * m]) >= 0);
+            let mut refused = 0;
+            for allowed in 0.. {
+                let mut p = vec![-7.0; m * m];
+                let held = HELD.get();
+                let status = solve_with(scene, &options, allowed, &mut p);
+                // The message of the last refusal is kept for the thread.
+                let kept = HELD.get() - held;
+                assert!(kept.abs() < 500, "{name}, method {method}, {allowed} allocations: {kept} bytes are held");
+                if status >= 0 {
+                    break;
+                }
+                assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{name}, method {method}, {allowed} allocations");
+                refused += 1;
+            }
+            assert!(refused > 8, "{name}, method {method}: {refused} refusals");
+        }
+    }
+}
+
+#[test]
+fn an_absurd_size_is_out_of_memory() {
+    // 3.2 GB of zeros that no page stands behind: the operator would be larger still.
+    let m = 20_000;
+    let bytes = m * m * size_of::<f64>();
+    let flags = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_NORESERVE;
+    // SAFETY: a new mapping, unmapped below.
+    let h = unsafe { libc::mmap(null_mut(), bytes, libc::PROT_READ, flags, -1, 0) };
+    assert!(h != libc::MAP_FAILED);
+    let mut none = Vec::new();
+    let mut scene = scene(1, &mut none);
+    (scene.mx, scene.my, scene.undeformed_distance) = (m as i32, m as i32, h.cast());
+    LARGE.set(1 << 28);
+    ALLOWED.set(0);
+    let mut handle = null_mut();
+    // SAFETY: the scene's array has m * m zeros.
+    let status = unsafe { contact_normal_solver_new(&scene, std::ptr::null(), &mut handle) };
+    LARGE.set(usize::MAX);
+    // SAFETY: mapped above.
+    unsafe { libc::munmap(h, bytes) };
+    assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY);
+    assert!(handle.is_null());
+}
+
+#[test]
+fn ten_thousand_handles_leave_nothing_behind() {
+    let mut h = Vec::new();
+    let scene = scene(9, &mut h);
+    let mut p = vec![0.0; 81];
+    let mut fields = initialised(contact_normal_fields_init);
+    fields.pressure = p.as_mut_ptr();
+    let mut held = 0;
+    for number in 0..10_000 {
+        let mut options = initialised(contact_normal_options_init);
+        options.method = METHODS[number % METHODS.len()];
+        let mut handle = null_mut();
+        // SAFETY: structs with their arrays; the handle is freed once.
+        unsafe {
+            assert_eq!(contact_normal_solver_new(&scene, &options, &mut handle), CONTACT_NORMAL_OK);
+            let status = contact_normal_solver_solve(handle, &scene, &options, &mut fields, null_mut());
+            assert_eq!(status, CONTACT_NORMAL_OK);
+            contact_normal_solver_free(handle);
+        }
+        // What the first of each kind leaves is for the process.
+        if number == METHODS.len() {
+            held = HELD.get();
+        }
+    }
+    assert_eq!(HELD.get(), held, "bytes are held after 10^4 handles");
+}

@@ -1,0 +1,88 @@
+//! A panic in the core comes back as INTERNAL, with its text, untouched outputs and nothing on stderr; the next call works.
+
+#[path = "bad_input/call.rs"]
+#[allow(dead_code)] // of the bad input, the call
+mod call;
+
+use std::ptr::null_mut;
+use std::sync::atomic::Ordering;
+
+use call::{Call, Through};
+use contact_normal::ffi::*;
+use contact_normal::panics::BLOCKS;
+
+/// A call whose product panics after so many blocks; true when it came to that.
+fn panics_at(block: i64, call: &mut Call, through: Through, handle: *mut contact_normal_solver) -> bool {
+    BLOCKS.store(block, Ordering::Relaxed);
+    let before = call.outputs();
+    let (status, message) = call.run(through, handle);
+    if BLOCKS.swap(-1, Ordering::Relaxed) >= 0 {
+        assert_eq!(status, CONTACT_NORMAL_OK, "{through:?}, block {block}: {message}");
+        return false;
+    }
+    assert_eq!(status, CONTACT_NORMAL_INTERNAL, "{through:?}, block {block}: {message}");
+    assert!(message.contains("on demand of a test") && message.contains("report"), "\"{message}\"");
+    assert!(call.outputs() == before, "{through:?}, block {block}: outputs were written");
+    true
+}
+
+/// One test: the demand for a panic is one for the process.
+#[test]
+fn a_panic_anywhere_is_a_status_and_the_next_call_works() {
+    let methods = [
+        CONTACT_NORMAL_METHOD_AUTO,
+        CONTACT_NORMAL_METHOD_NORM,
+        CONTACT_NORMAL_METHOD_MULTIGRID,
+        CONTACT_NORMAL_METHOD_FULL_MULTIGRID,
+    ];
+    for threads in [1, 2] {
+        for method in methods {
+            let new = || {
+                let mut call = Call::new();
+                (call.options.known.method, call.options.known.threads) = (method, threads);
+                call
+            };
+            let handle = new().new_handle();
+            let mut expected = new();
+            assert_eq!(expected.run(Through::SolverSolve, handle).0, CONTACT_NORMAL_OK);
+            for through in [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch] {
+                for block in 0.. {
+                    let panicked = panics_at(block, &mut new(), through, handle);
+                    assert!(panicked || block > 0, "{through:?}, method {method}: no product");
+                    let mut next = new();
+                    assert_eq!(next.run(through, handle), (CONTACT_NORMAL_OK, String::new()), "block {block}");
+                    assert_eq!(next.pressure, expected.pressure, "{through:?}, block {block}: another result");
+                    if !panicked {
+                        break;
+                    }
+                }
+            }
+            // SAFETY: made above.
+            unsafe { contact_normal_solver_free(handle) };
+        }
+    }
+    on_a_worker();
+}
+
+/// A grid that several threads share: the panic is a worker's.
+fn on_a_worker() {
+    const M: usize = 160;
+    let centre = |i: usize| i as f64 + 0.5 - 0.5 * M as f64;
+    let h: Vec<f64> = (0..M * M).map(|i| 1e-5 * (centre(i % M).powi(2) + centre(i / M).powi(2))).collect();
+    let mut scene = call::initialised(contact_normal_scene_init);
+    (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 0.1, 0.1);
+    (scene.shear_modulus, scene.poisson_ratio) = ([1.0; 2], [0.3; 2]);
+    (scene.approach, scene.undeformed_distance) = (0.1, h.as_ptr());
+    let mut options = call::initialised(contact_normal_options_init);
+    options.threads = 2;
+    for block in [0, 1, 5, 40, -1] {
+        let (mut p, mut fields) = (vec![-7.0; M * M], call::initialised(contact_normal_fields_init));
+        fields.pressure = p.as_mut_ptr();
+        BLOCKS.store(block, Ordering::Relaxed);
+        // SAFETY: structs with their arrays.
+        let status = unsafe { contact_normal_solve(&scene, &options, &mut fields, null_mut()) };
+        let panicked = BLOCKS.swap(-1, Ordering::Relaxed) < -1 || block >= 0;
+        assert_eq!(status, if panicked { CONTACT_NORMAL_INTERNAL } else { CONTACT_NORMAL_OK }, "block {block}");
+        assert!(p.iter().all(|&p| if panicked { p == -7.0 } else { p >= 0.0 }), "block {block}");
+    }
+}
