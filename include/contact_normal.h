@@ -242,6 +242,62 @@ typedef struct contact_normal_influence {
 } contact_normal_influence;
 
 /*
+ Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain what the layer gives way.
+ */
+typedef struct contact_normal_layer {
+  /*
+   Set by `contact_normal_layer_init`.
+   */
+  int64_t struct_size;
+  /*
+   c of all elements, a length per pressure, >= 0. Not read if there are `compliances`.
+   */
+  double compliance;
+  /*
+   c of each element, `[my][mx]`, or NULL.
+   */
+  const double *compliances;
+} contact_normal_layer;
+
+/*
+ Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
+ `deformed_distance` <= 0: the plastic penetration, with its sign turned.
+ */
+typedef struct contact_normal_pressure_limit {
+  /*
+   Set by `contact_normal_pressure_limit_init`.
+   */
+  int64_t struct_size;
+  /*
+   The limit of all elements, a pressure > 0; +infinity: none. Not read if there are `limits`.
+   */
+  double limit;
+  /*
+   That of each element, `[my][mx]`, or NULL.
+   */
+  const double *limits;
+} contact_normal_pressure_limit;
+
+/*
+ Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
+ displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
+ */
+typedef struct contact_normal_period {
+  /*
+   Set by `contact_normal_period_init`.
+   */
+  int64_t struct_size;
+  /*
+   1: it repeats itself in x; 0: it does not.
+   */
+  int32_t x;
+  /*
+   The same in y.
+   */
+  int32_t y;
+} contact_normal_period;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -298,6 +354,18 @@ typedef struct contact_normal_scene {
    Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
    */
   const struct contact_normal_influence *influence;
+  /*
+   Effect, or NULL: a thin compliant layer.
+   */
+  const struct contact_normal_layer *layer;
+  /*
+   Effect, or NULL: pressures do not exceed a limit.
+   */
+  const struct contact_normal_pressure_limit *pressure_limit;
+  /*
+   Effect, or NULL: the scene repeats itself.
+   */
+  const struct contact_normal_period *period;
 } contact_normal_scene;
 
 /*
@@ -447,7 +515,7 @@ typedef struct contact_normal_fields {
    */
   double *displacement;
   /*
-   0: exterior, 1: contact. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+   0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
    */
   int32_t *contact;
 } contact_normal_fields;
@@ -689,6 +757,21 @@ void contact_normal_scene_init(struct contact_normal_scene *scene);
 void contact_normal_influence_init(struct contact_normal_influence *influence);
 
 /*
+ Fills a period with none. Since 0.1.
+ */
+void contact_normal_period_init(struct contact_normal_period *period);
+
+/*
+ Fills a layer with a compliance of 0. Since 0.1.
+ */
+void contact_normal_layer_init(struct contact_normal_layer *layer);
+
+/*
+ Fills a pressure limit with +infinity. Since 0.1.
+ */
+void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
+
+/*
  Fills options with the defaults. Since 0.1.
  */
 void contact_normal_options_init(struct contact_normal_options *options);
@@ -722,7 +805,8 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
 
 /*
  Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+ for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
+ whether there is a layer, whose compliances are those of the set-up; the pressure limit is the scene's. After a first solve,
  further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,

@@ -41,6 +41,24 @@ class Influence(ctypes.Structure):
     _fields_ = [("struct_size", c_int64), ("cx", c_int32), ("cy", c_int32), ("coefficients", POINTER(c_double))]
 
 
+class Layer(ctypes.Structure):
+    """contact_normal_layer."""
+
+    _fields_ = [("struct_size", c_int64), ("compliance", c_double), ("compliances", POINTER(c_double))]
+
+
+class PressureLimit(ctypes.Structure):
+    """contact_normal_pressure_limit."""
+
+    _fields_ = [("struct_size", c_int64), ("limit", c_double), ("limits", POINTER(c_double))]
+
+
+class Period(ctypes.Structure):
+    """contact_normal_period."""
+
+    _fields_ = [("struct_size", c_int64), ("x", c_int32), ("y", c_int32)]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -58,6 +76,9 @@ class Scene(ctypes.Structure):
         ("approach", c_double),
         ("force", c_double),
         ("influence", POINTER(Influence)),
+        ("layer", POINTER(Layer)),
+        ("pressure_limit", POINTER(PressureLimit)),
+        ("period", POINTER(Period)),
     ]
 
 
@@ -191,6 +212,9 @@ _PROTOTYPES = {
     "abi_version": (c_int32, []),
     "scene_init": (None, [POINTER(Scene)]),
     "influence_init": (None, [POINTER(Influence)]),
+    "layer_init": (None, [POINTER(Layer)]),
+    "pressure_limit_init": (None, [POINTER(PressureLimit)]),
+    "period_init": (None, [POINTER(Period)]),
     "options_init": (None, [POINTER(Options)]),
     "fields_init": (None, [POINTER(Fields)]),
     "report_init": (None, [POINTER(Report)]),
@@ -214,7 +238,8 @@ _PROTOTYPES = {
 }
 
 # The structs that begin with their size, by the name of their _init.
-_SIZED = {"scene": Scene, "influence": Influence, "options": Options, "fields": Fields, "report": Report}
+_SIZED = {"scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
+          "options": Options, "fields": Fields, "report": Report}
 
 
 class ContactNormalError(Exception):
@@ -330,12 +355,15 @@ class _Watched:
 
 
 class Result:
-    """What a solve found: arrays (my, mx), the report's numbers, the ledger (one dict per grid, coarsest first)."""
+    """What a solve found: arrays (my, mx), the report's numbers, the ledger (one dict per grid, coarsest first).
+
+    `contact` holds the elements at the pressure limit too; `at_limit` those alone.
+    """
 
     def __init__(self, status, message, arrays, report, rows):
         self.status, self.message = status, message
         self.pressure, self.deformed_distance, self.displacement = arrays[:3]
-        self.contact = arrays[3] != 0
+        self.contact, self.at_limit = arrays[3] != 0, arrays[3] == 2
         hidden = ("struct_size", "ledger", "ledger_capacity")
         self.report = {name: getattr(report, name) for name, _ in Report._fields_ if name not in hidden}
         count = min(report.ledger_rows, len(rows))
@@ -352,7 +380,20 @@ class Result:
         return self.report["force"]
 
 
-def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
+def _effect(scene, kept, name, number, array, value, shape):
+    """Names an effect of one number, or of one per element: an array."""
+    effect = _initialised(name)
+    if np.ndim(value) == 0:
+        setattr(effect, number, value)
+    else:
+        kept.append(_array(name, value, np.float64, shape))
+        setattr(effect, array, _pointer(kept[-1]))
+    setattr(scene, name, ctypes.pointer(effect))
+    kept.append(effect)
+
+
+def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=None, layer=None, pressure_limit=None,
+           period=None):
     """A scene, and the arrays that must live as long as it is used."""
     if (approach is None) == (force is None):
         raise TypeError("give either approach or force")
@@ -376,6 +417,17 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
         effect.coefficients = _pointer(table)
         scene.influence = ctypes.pointer(effect)
         kept += [table, effect]
+    if layer is not None:
+        _effect(scene, kept, "layer", "compliance", "compliances", layer, h.shape)
+    if pressure_limit is not None:
+        _effect(scene, kept, "pressure_limit", "limit", "limits", pressure_limit, h.shape)
+    if period is not None:
+        if period not in ("x", "y", "xy"):
+            raise ValueError(f"period is {period!r}; it must be 'x', 'y' or 'xy'")
+        effect = _initialised("period")
+        effect.x, effect.y = "x" in period, "y" in period
+        scene.period = ctypes.pointer(effect)
+        kept.append(effect)
     return scene, kept
 
 
@@ -423,6 +475,9 @@ def solve(
     shear_modulus,
     poisson_ratio,
     influence=None,
+    layer=None,
+    pressure_limit=None,
+    period=None,
     pressure=None,
     contact=None,
     progress=None,
@@ -430,12 +485,12 @@ def solve(
 ):
     """Solves one scene: undeformed distance `h` (my, mx), prescribed approach or prescribed force.
 
-    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); pressure, contact:
-    initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
+    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); layer: compliance,
+    and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; pressure, contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
     a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
     Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
     """
-    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence)
+    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period)
     watched = _Watched(progress)
     struct = _options(options, watched.callback)
 
@@ -455,22 +510,24 @@ class Solver:
         next = solver.solve(h2, force=1e4, initial_guess=INITIAL_GUESS_PREVIOUS)
     """
 
-    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, **options):
+    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, layer=None, period=None, **options):
         self._handle = c_void_p()
         self._grid = (dx, dy, shear_modulus, poisson_ratio)
+        self._effects = {"layer": layer, "period": period}
         self._shape, self._set_up = (my, mx), options
         # The set-up reads neither the undeformed distance nor the load, but checks them.
-        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, 0.0, None, shear_modulus, poisson_ratio, influence)
+        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, None, 0.0, shear_modulus, poisson_ratio, influence, **self._effects)
         struct = _options(options)
         _check(_library.contact_normal_solver_new(ctypes.byref(scene), ctypes.byref(struct), ctypes.byref(self._handle)))
 
-    def solve(self, h, *, approach=None, force=None, pressure=None, contact=None, progress=None, **options):
-        """Solves for `h` and the load, with the options of the set-up and further ones."""
+    def solve(self, h, *, approach=None, force=None, pressure_limit=None, pressure=None, contact=None, progress=None,
+              **options):
+        """Solves for `h` and the load, with the options and effects of the set-up and further ones."""
         if not self._handle:
             raise ValueError("this solver is closed")
         dx, dy, shear_modulus, poisson_ratio = self._grid
         scene, kept = _scene(_array("h", h, np.float64, self._shape), dx, dy, approach, force, shear_modulus,
-                             poisson_ratio, None)
+                             poisson_ratio, pressure_limit=pressure_limit, **self._effects)
         watched = _Watched(progress)
         struct = _options({**self._set_up, **options}, watched.callback)
 
@@ -483,7 +540,7 @@ class Solver:
         watched.check()
         return result
 
-    def solve_batch(self, h, *, approach=None, force=None, pressure=None, contact=None, **options):
+    def solve_batch(self, h, *, approach=None, force=None, pressure_limit=None, pressure=None, contact=None, **options):
         """Solves one problem for each of `h` (count, my, mx), as many at a time as `threads` says, each on one thread.
 
         approach, force: one value for all, or one for each; pressure, contact: (count, my, mx). Returns a list of Results.
@@ -497,7 +554,8 @@ class Solver:
         scenes, outputs, kept = [], [], []
         for i in range(count):
             load = [values if values is None else values[i] for values in each]
-            scene, arrays = _scene(_array("h", h[i], np.float64, self._shape), *self._grid[:2], *load, *self._grid[2:], None)
+            scene, arrays = _scene(_array("h", h[i], np.float64, self._shape), *self._grid[:2], *load, *self._grid[2:],
+                                   pressure_limit=pressure_limit, **self._effects)
             scenes.append(scene)
             kept.append(arrays)
             guess = [values if values is None else values[i] for values in (pressure, contact)]

@@ -14,6 +14,18 @@ int main(void)
     OFFSET(contact_normal_influence, cx);
     OFFSET(contact_normal_influence, cy);
     OFFSET(contact_normal_influence, coefficients);
+    SIZE(contact_normal_layer);
+    OFFSET(contact_normal_layer, struct_size);
+    OFFSET(contact_normal_layer, compliance);
+    OFFSET(contact_normal_layer, compliances);
+    SIZE(contact_normal_pressure_limit);
+    OFFSET(contact_normal_pressure_limit, struct_size);
+    OFFSET(contact_normal_pressure_limit, limit);
+    OFFSET(contact_normal_pressure_limit, limits);
+    SIZE(contact_normal_period);
+    OFFSET(contact_normal_period, struct_size);
+    OFFSET(contact_normal_period, x);
+    OFFSET(contact_normal_period, y);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -28,6 +40,9 @@ int main(void)
     OFFSET(contact_normal_scene, approach);
     OFFSET(contact_normal_scene, force);
     OFFSET(contact_normal_scene, influence);
+    OFFSET(contact_normal_scene, layer);
+    OFFSET(contact_normal_scene, pressure_limit);
+    OFFSET(contact_normal_scene, period);
     SIZE(contact_normal_progress);
     OFFSET(contact_normal_progress, struct_size);
     OFFSET(contact_normal_progress, mx);

@@ -106,6 +106,18 @@ fn time_steps() {
     assert_force(measures.force, 80000.0 * (1.0 + 0.1 * phase.sin()));
 }
 
+/// Their solutions are compared with closed forms and direct sums in tests of their own.
+#[test]
+fn the_effects() {
+    for name in ["layer", "pressure_limit", "period"] {
+        let folder = scratch(&format!("c_{name}"));
+        let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
+        let printed = run_linked(&program, &[], &folder);
+        let expected = std::fs::read_to_string(root().join(format!("c_examples/{name}.expected"))).expect("expected");
+        assert!(printed == expected, "{name} printed\n{printed}\nexpected was\n{expected}");
+    }
+}
+
 #[test]
 fn an_example_under_valgrind() {
     assert!(
@@ -172,9 +184,18 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_influence {
             struct_size, cx, cy, coefficients
         }
+        contact_normal_layer {
+            struct_size, compliance, compliances
+        }
+        contact_normal_pressure_limit {
+            struct_size, limit, limits
+        }
+        contact_normal_period {
+            struct_size, x, y
+        }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
-            approach, force, influence
+            approach, force, influence, layer, pressure_limit, period
         }
         contact_normal_progress {
             struct_size, mx, my, cycles, active_set_changes, seconds, work_units, update, residual

@@ -73,6 +73,18 @@ fn wheel_rail_prints_what_is_expected() {
     check_example("wheel_rail", &[&wheel_rail_case()], &["-O2"], PER_UPDATE * 1e-8);
 }
 
+/// Their solutions are compared with closed forms and direct sums in tests of their own.
+#[test]
+fn the_effects_print_what_is_expected() {
+    for name in ["layer", "pressure_limit", "period"] {
+        let folder = scratch(&format!("fortran_{name}"));
+        let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
+        let expected =
+            std::fs::read_to_string(root().join(format!("fortran_examples/{name}.expected"))).expect("expected");
+        assert_eq!(run_linked(&program, &[], &folder), expected, "{name}");
+    }
+}
+
 #[test]
 fn norm_drop_in_prints_what_is_expected() {
     check_example("norm_drop_in", &[], &["-O2"], PER_UPDATE * 1e-9);

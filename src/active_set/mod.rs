@@ -3,6 +3,7 @@
 mod certificate;
 mod exchange;
 mod guard;
+mod limited;
 mod state;
 
 pub use certificate::{certify, norm_of_distance, residual_norm, Certificate, Survey};

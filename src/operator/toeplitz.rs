@@ -7,7 +7,9 @@
 //! The period must keep the offsets `-(m-1)..m-1` apart: `2m - 1`, or `2m - 2` when the coefficients are even
 //! (offsets `m-1` and `-(m-1)` are then alike). The product is fused and pruned: real transforms of those rows only that
 //! hold pressures; per block of eight columns gather, transform, multiply, transform back, scatter; real transforms of
-//! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept.
+//! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept. In a direction in which
+//! the coefficients repeat themselves after the grid A is circulant: the period is the grid's, and nothing is padded. A diagonal of its
+//! own that A may have is added as the rows come back.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,6 +36,8 @@ pub struct Toeplitz<T: Real> {
     rows: RowTransform<T>,
     columns: ColumnTransform<T>,
     spectrum: Spectrum<T>,
+    /// What A has on its diagonal beyond the coefficients; empty: nothing.
+    diagonal: Vec<T>,
     threads: Threads,
 }
 
@@ -87,12 +91,18 @@ impl<T: Real> Toeplitz<T> {
     /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
     pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
         let even = influence.is_even(grid);
-        let period = |m: usize| good_length(if even { 2 * m - 2 } else { 2 * m - 1 });
-        let (px, py) = (period(grid.mx), period(grid.my));
+        let repeats = influence.repeats(grid);
+        let period = |m: usize, repeats: bool| match (repeats, even) {
+            (true, _) => m,
+            (_, true) => good_length(2 * m - 2),
+            (_, false) => good_length(2 * m - 1),
+        };
+        let (px, py) = (period(grid.mx, repeats.0), period(grid.my, repeats.1));
         let spectrum = if even {
+            let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
             even_spectrum(
                 (px, py),
-                (grid.mx, grid.my),
+                (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
                 |ky, row| influence.fill_row(0, ky, row),
                 |value| value,
                 threads,
@@ -100,14 +110,24 @@ impl<T: Real> Toeplitz<T> {
         } else {
             general_spectrum(influence, grid, px, py, threads)?
         };
+        let diagonal = influence.diagonal().unwrap_or_default().iter().map(|d| T::of(*d)).collect();
         Ok(Toeplitz {
             mx: grid.mx,
             my: grid.my,
             rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
+            diagonal,
             threads: threads.clone(),
         })
+    }
+
+    /// The period of a preconditioner's circulant: that of the grid itself, a quarter of the work of a padded one at the same number
+    /// of iterations.
+    pub fn circulant_period(influence: &Influence, grid: &Grid) -> (usize, usize) {
+        let repeats = influence.repeats(grid);
+        let period = |m: usize, repeats: bool| if repeats { m } else { good_length(m + 1) };
+        (period(grid.mx, repeats.0), period(grid.my, repeats.1))
     }
 
     /// The inverse of a circulant near A, as a preconditioner: period `px * py >= mx * my`, coefficients at offsets up to
@@ -133,6 +153,7 @@ impl<T: Real> Toeplitz<T> {
             rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
+            diagonal: Vec::new(),
             threads: threads.clone(),
         }))
     }
@@ -153,7 +174,8 @@ impl<T: Real> Toeplitz<T> {
             }
         };
         let (rows, columns) = (RowTransform::new(self.rows.length()), ColumnTransform::new(self.columns.length()));
-        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, threads: self.threads.clone() })
+        let diagonal = self.diagonal.iter().map(|d| convert(*d)).collect();
+        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, threads: self.threads.clone() })
     }
 
     /// Memory for products by this operator.
@@ -170,10 +192,11 @@ impl<T: Real> Toeplitz<T> {
 
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
-        match &self.spectrum {
+        let spectrum = match &self.spectrum {
             Spectrum::Even(s) => std::mem::size_of_val(&s[..]),
             Spectrum::General(s) => std::mem::size_of_val(&s[..]),
-        }
+        };
+        spectrum + std::mem::size_of_val(&self.diagonal[..])
     }
 
     /// `u = A p`.
@@ -186,7 +209,15 @@ impl<T: Real> Toeplitz<T> {
         assert!(p.len() == self.mx * self.my && u.len() == p.len() && wanted.end <= self.my);
         let loaded = self.transform_rows(p, workspace);
         self.convolve_columns(loaded, wanted.clone(), workspace);
-        self.transform_rows_back(u, wanted, workspace);
+        if self.diagonal.is_empty() {
+            return self.transform_rows_back(u, wanted, workspace, |_, u, row| u.copy_from_slice(row));
+        }
+        self.transform_rows_back(u, wanted, workspace, |iy, u, row| {
+            let elements = iy * self.mx..(iy + 1) * self.mx;
+            for (((u, value), d), p) in u.iter_mut().zip(row).zip(&self.diagonal[elements.clone()]).zip(&p[elements]) {
+                *u = *value + *d * *p;
+            }
+        });
     }
 
     /// `p = A p`.
@@ -194,7 +225,14 @@ impl<T: Real> Toeplitz<T> {
         assert!(p.len() == self.mx * self.my);
         let loaded = self.transform_rows(p, workspace);
         self.convolve_columns(loaded, 0..self.my, workspace);
-        self.transform_rows_back(p, 0..self.my, workspace);
+        if self.diagonal.is_empty() {
+            return self.transform_rows_back(p, 0..self.my, workspace, |_, u, row| u.copy_from_slice(row));
+        }
+        self.transform_rows_back(p, 0..self.my, workspace, |iy, p, row| {
+            for ((p, value), d) in p.iter_mut().zip(row).zip(&self.diagonal[iy * self.mx..]) {
+                *p = *value + *d * *p;
+            }
+        });
     }
 
     /// Transforms in x the rows that hold pressures; returns which.
@@ -227,8 +265,14 @@ impl<T: Real> Toeplitz<T> {
         });
     }
 
-    /// Transforms the rows `wanted` back.
-    fn transform_rows_back(&self, u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
+    /// Transforms the rows `wanted` back; `write(iy, row of u, values)` takes each of them.
+    fn transform_rows_back(
+        &self,
+        u: &mut [T],
+        wanted: Range<usize>,
+        workspace: &mut Workspace<T>,
+        write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
+    ) {
         let Workspace { bins, pieces } = workspace;
         let nb = self.rows.bins();
         let (first, bins) = (wanted.start, &bins[..]);
@@ -238,7 +282,7 @@ impl<T: Real> Toeplitz<T> {
             let row_bins = &mut piece.columns[..nb];
             row_bins.copy_from_slice(&bins[(first + i) * nb..(first + i + 1) * nb]);
             self.rows.inverse(row_bins, &mut piece.row[..self.rows.length()], &mut piece.scratch);
-            u_row.copy_from_slice(&piece.row[..self.mx]);
+            write(first + i, u_row, &piece.row[..self.mx]);
         });
     }
 

@@ -195,7 +195,10 @@ impl Level {
 
     fn choose_window(&mut self, state: &State) -> Result<()> {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
-        let window = Window::around(state, current);
+        let window = match self.influence.diagonal() {
+            None => Window::around(state, current),
+            Some(_) => Window::full(&self.grid), // an operator that depends on the place
+        };
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
         // The operator of a window depends on its size only.
