@@ -1,4 +1,4 @@
-/* Effect `pressure_limit`: a steel ball of radius 50 mm pressed into a surface of hardness 2000 N/mm2. Where the limit is
+/* Effect `pressure_limit`: a steel ball of radius 50 mm pressed into a surface of hardness 1200 N/mm2. Where the limit is
    reached the surface gives way: the dent is the plastic penetration. */
 #include "example.h"
 
@@ -6,7 +6,7 @@ enum { M = 64 };
 
 int main(void)
 {
-    static const double forces[] = {200.0, 1000.0, 4000.0};
+    static const double forces[] = {500.0, 2000.0, 4000.0};
     static double h[M * M], e[M * M];
     static int32_t contact[M * M];
     contact_normal_scene scene;
@@ -29,7 +29,7 @@ int main(void)
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
     scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
-    limit.limit = 2000.0;
+    limit.limit = 1200.0;
     scene.pressure_limit = &limit;
     fields.deformed_distance = e;
     fields.contact = contact;

@@ -5,7 +5,7 @@ program period_example
   use contact_normal
   implicit none
   integer(c_int32_t), parameter :: M = 64
-  real(c_double), parameter :: SHARES(5) = [0.01_c_double, 0.1_c_double, 0.5_c_double, 1.0_c_double, 1.1_c_double]
+  real(c_double), parameter :: SHARES(5) = [0.01_c_double, 0.1_c_double, 0.5_c_double, 0.9_c_double, 1.1_c_double]
   real(c_double), parameter :: PI = acos(-1.0_c_double), LENGTH = 1, D = 0.001_c_double
   type(contact_normal_scene) :: scene
   type(contact_normal_period), target :: period
@@ -24,7 +24,7 @@ program period_example
   scene%dy = LENGTH/M
   do iy = 1, M
     do ix = 1, M
-      h(ix, iy) = -D*cos(2*PI*(ix - 0.5_c_double)/M)*cos(2*PI*(iy - 0.5_c_double)/M)
+      h(ix, iy) = D*(1 - cos(2*PI*(ix - 0.5_c_double)/M)*cos(2*PI*(iy - 0.5_c_double)/M))
     end do
   end do
   call contact_normal_set_undeformed_distance(scene, h)

@@ -1,11 +1,11 @@
-! Effect `pressure_limit`: a steel ball of radius 50 mm pressed into a surface of hardness 2000 N/mm2. Where the limit is
+! Effect `pressure_limit`: a steel ball of radius 50 mm pressed into a surface of hardness 1200 N/mm2. Where the limit is
 ! reached the surface gives way: the dent is the plastic penetration.
 program pressure_limit_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal
   implicit none
   integer(c_int32_t), parameter :: M = 64
-  real(c_double), parameter :: FORCES(3) = [200, 1000, 4000]
+  real(c_double), parameter :: FORCES(3) = [500, 2000, 4000]
   type(contact_normal_scene) :: scene
   type(contact_normal_pressure_limit), target :: limit
   type(contact_normal_fields) :: fields
@@ -31,7 +31,7 @@ program pressure_limit_example
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
   scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
-  call contact_normal_set_pressure_limit(scene, limit, limit=2000.0_c_double)
+  call contact_normal_set_pressure_limit(scene, limit, limit=1200.0_c_double)
   print '(a)', "   force  max pressure  contact area  at the limit      dent"
   do i = 1, size(FORCES)
     scene%force = FORCES(i)

@@ -1,5 +1,5 @@
 """The effects layer, pressure_limit and period, one after the other: `python3 effects.py [pictures]`, the folder of three pictures
-(layer.png, pressure_limit.png, period.png), those of docs/effects.md."""
+(effects_layer.png, ...), those of docs/effects.md."""
 
 import sys
 
@@ -29,8 +29,8 @@ def layers():
 def pressure_limits():
     h, x = ball(50.0, 0.05)
     print("   force  max pressure  contact area  at the limit      dent")
-    for force in (200.0, 1000.0, 4000.0):
-        found = cn.solve(h, 0.05, 0.05, force=force, pressure_limit=2000.0, **STEEL)
+    for force in (500.0, 2000.0, 4000.0):
+        found = cn.solve(h, 0.05, 0.05, force=force, pressure_limit=1200.0, **STEEL)
         dent = max(0.0, -found.deformed_distance[found.at_limit].min(initial=0.0))
         area = found.at_limit.sum() * 0.05**2
         print(f"{force:8.0f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.4f} {area:13.4f} {dent:9.5f}")
@@ -39,12 +39,12 @@ def pressure_limits():
 
 def periods():
     d, x = 0.001, (np.arange(M) + 0.5) / M  # the grid is one period of 1 mm
-    h = -d * np.outer(np.cos(2 * np.pi * x), np.cos(2 * np.pi * x))
+    h = d * (1 - np.outer(np.cos(2 * np.pi * x), np.cos(2 * np.pi * x)))
     full = np.sqrt(2.0) * np.pi * 82000.0 / (1 - 0.28) * d
     print("mean pressure/p*  part in contact  approach/d")
-    for share in (0.01, 0.1, 0.5, 1.0, 1.1):
+    for share in (0.01, 0.1, 0.5, 0.9, 1.1):
         found = cn.solve(h, 1.0 / M, 1.0 / M, force=share * full, period="xy", **STEEL)
-        print(f"{share:16.2f} {found.report['contact_area']:16.4f} {found.approach / d + 0.0:11.4f}")
+        print(f"{share:16.2f} {found.report['contact_area']:16.4f} {found.approach / d:11.4f}")
         yield f"{share:g} p*", found.pressure
 
 
@@ -59,16 +59,16 @@ def draw(folder, layered, limited, periodic):
         axes.plot(x, p, label=name)
     axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a coated plate, 1000 N")
     axes.legend()
-    figure.savefig(f"{folder}/layer.png", dpi=100, bbox_inches="tight")
+    figure.savefig(f"{folder}/effects_layer.png", dpi=100, bbox_inches="tight")
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 6), sharex=True)
     for name, x, p, e in limited:
         top.plot(x, p, label=name)
         bottom.plot(x, 1000 * e, label=name)
-    top.set(ylabel="pressure [N/mm$^2$]", title="A ball on a surface of hardness 2000 N/mm$^2$")
-    bottom.set(xlabel="x [mm]", ylabel="deformed distance [$\\mu$m]", ylim=(-12, 6))
+    top.set(ylabel="pressure [N/mm$^2$]", title="A ball on a surface of hardness 1200 N/mm$^2$")
+    bottom.set(xlabel="x [mm]", ylabel="deformed distance [$\\mu$m]", ylim=(-4, 6))
     top.legend()
-    figure.savefig(f"{folder}/pressure_limit.png", dpi=100, bbox_inches="tight")
+    figure.savefig(f"{folder}/effects_pressure_limit.png", dpi=100, bbox_inches="tight")
 
     figure, each = plt.subplots(1, len(periodic), figsize=(13, 3.4))
     for axes, (name, p) in zip(each, periodic):
@@ -79,7 +79,7 @@ def draw(folder, layered, limited, periodic):
         figure.colorbar(picture, ax=axes, shrink=0.7)
     figure.suptitle("A wavy surface in x and y: pressures [N/mm$^2$]")
     figure.tight_layout()
-    figure.savefig(f"{folder}/period.png", dpi=100, bbox_inches="tight")
+    figure.savefig(f"{folder}/effects_period.png", dpi=100, bbox_inches="tight")
 
 
 if __name__ == "__main__":

@@ -34,11 +34,17 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             layer: has("layer").then_some(Layer::Uniform(0.05)),
             pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
             period: has("period").then_some(Period { x: true, y: false }),
-            ..Scene::new(grid, if has("excluded elements") { &hole } else { &h }, Bodies::same(1.0, 0.3), Load::Force(0.1))
+            ..Scene::new(
+                grid,
+                if has("excluded elements") { &hole } else { &h },
+                Bodies::same(1.0, 0.3),
+                Load::Force(0.1),
+            )
         }
     };
     let solved = |names: [&str; 2]| {
-        let (solver, stop, report) = solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
+        let (solver, stop, report) =
+            solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
         assert_eq!(stop, Stop::Converged, "{names:?}");
         assert!(report.measures.certificate.residual <= 1e-6, "{names:?}");
         solver.state().p.clone()

@@ -166,8 +166,11 @@ fn derived_types_are_laid_out_as_the_structs() {
     let program = compile("tests/fortran_layout.f90", &[], &folder);
     let expected = layout! {
         contact_normal_influence: struct_size, cx, cy, coefficients;
+        contact_normal_layer: struct_size, compliance, compliances;
+        contact_normal_pressure_limit: struct_size, limit, limits;
+        contact_normal_period: struct_size, x, y;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
-            poisson_ratio, load, reserved, approach, force, influence;
+            poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period;
         contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
             coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
             threads, precision, reserved, progress, user;

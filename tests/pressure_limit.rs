@@ -46,8 +46,8 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
     // The tolerance of 1e-9 is in the rms over some 1000 elements, one of which may have it all: 32 times that.
     let allowed = 32.0 * 1e-9 * u.iter().copied().fold(0.0, f64::max);
     let mut count = 0;
-    for i in 0..grid.len() {
-        let e = scene.undeformed_distance[i] - report.measures.approach + u[i];
+    for (i, u) in u.iter().enumerate() {
+        let e = scene.undeformed_distance[i] - report.measures.approach + u;
         let (p, most) = (state.p[i], limit.at(i));
         let at_limit = state.at_limit.get(i).copied().unwrap_or(false);
         let holds = match (at_limit, state.contact[i]) {

@@ -96,7 +96,7 @@ fn the_effects_print_what_is_expected_and_draw() {
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("effects.expected");
     assert_eq!(printed, expected);
     for name in ["layer", "pressure_limit", "period"] {
-        let picture = std::fs::metadata(folder.join(format!("{name}.png"))).expect("a picture");
+        let picture = std::fs::metadata(folder.join(format!("effects_{name}.png"))).expect("a picture");
         assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
     }
 }

@@ -26,7 +26,7 @@ use super::special::{complementary_error_function, hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 
 /// Chebyshev nodes in each direction. The nearest singularity of what they represent lies on the ellipse of sum of semi-axes 4.5 or
-/// beyond (see [`reach`]): `4.5^-24 = 2e-16` is left.
+/// beyond (see `reach`): `4.5^-24 = 2e-16` is left.
 const NODES: usize = 12;
 /// A Gaussian at this many widths is below 1e-17.
 const GAUSSIAN: f64 = 6.3;

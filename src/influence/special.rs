@@ -63,7 +63,7 @@ mod tests {
                 "{x}: {value}"
             );
         }
-        for (s, zeta) in [(3.0, 1.202_056_903_159_594_2), (5.0, 1.036_927_755_143_369_9)] {
+        for (s, zeta) in [(3.0, 1.202_056_903_159_594_2), (5.0, 1.036_927_755_143_37)] {
             let exact = zeta - (1..10).map(|n| f64::from(n).powf(-s)).sum::<f64>();
             assert!((hurwitz_zeta(s, 10.0) - exact).abs() <= 4.0 * f64::EPSILON, "{s}");
         }
