@@ -298,6 +298,32 @@ typedef struct contact_normal_period {
 } contact_normal_period;
 
 /*
+ Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
+ */
+typedef struct contact_normal_patches {
+  /*
+   Set by `contact_normal_patches_init`.
+   */
+  int64_t struct_size;
+  /*
+   Number of patches, 1 to 64. Each costs a product.
+   */
+  int32_t count;
+  /*
+   Always 0.
+   */
+  int32_t reserved;
+  /*
+   The patch of each element, `[my][mx]`: 0 to count - 1.
+   */
+  const int32_t *patch;
+  /*
+   `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+   */
+  const double *factors;
+} contact_normal_patches;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -366,6 +392,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL: the scene repeats itself.
    */
   const struct contact_normal_period *period;
+  /*
+   Effect, or NULL: several contact patches, whose interaction is scaled.
+   */
+  const struct contact_normal_patches *patches;
 } contact_normal_scene;
 
 /*
@@ -757,6 +787,11 @@ void contact_normal_scene_init(struct contact_normal_scene *scene);
 void contact_normal_influence_init(struct contact_normal_influence *influence);
 
 /*
+ Fills patches with none. Since 0.1.
+ */
+void contact_normal_patches_init(struct contact_normal_patches *patches);
+
+/*
  Fills a period with none. Since 0.1.
  */
 void contact_normal_period_init(struct contact_normal_period *period);
@@ -806,7 +841,7 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
 /*
  Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
  for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
- whether there is a layer, whose compliances are those of the set-up; the pressure limit is the scene's. After a first solve,
+ whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
  further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,

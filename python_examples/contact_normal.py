@@ -59,6 +59,18 @@ class Period(ctypes.Structure):
     _fields_ = [("struct_size", c_int64), ("x", c_int32), ("y", c_int32)]
 
 
+class Patches(ctypes.Structure):
+    """contact_normal_patches."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("count", c_int32),
+        ("reserved", c_int32),
+        ("patch", POINTER(c_int32)),
+        ("factors", POINTER(c_double)),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -79,6 +91,7 @@ class Scene(ctypes.Structure):
         ("layer", POINTER(Layer)),
         ("pressure_limit", POINTER(PressureLimit)),
         ("period", POINTER(Period)),
+        ("patches", POINTER(Patches)),
     ]
 
 
@@ -215,6 +228,7 @@ _PROTOTYPES = {
     "layer_init": (None, [POINTER(Layer)]),
     "pressure_limit_init": (None, [POINTER(PressureLimit)]),
     "period_init": (None, [POINTER(Period)]),
+    "patches_init": (None, [POINTER(Patches)]),
     "options_init": (None, [POINTER(Options)]),
     "fields_init": (None, [POINTER(Fields)]),
     "report_init": (None, [POINTER(Report)]),
@@ -239,7 +253,7 @@ _PROTOTYPES = {
 
 # The structs that begin with their size, by the name of their _init.
 _SIZED = {"scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
-          "options": Options, "fields": Fields, "report": Report}
+          "patches": Patches, "options": Options, "fields": Fields, "report": Report}
 
 
 class ContactNormalError(Exception):
@@ -393,7 +407,7 @@ def _effect(scene, kept, name, number, array, value, shape):
 
 
 def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=None, layer=None, pressure_limit=None,
-           period=None):
+           period=None, patches=None):
     """A scene, and the arrays that must live as long as it is used."""
     if (approach is None) == (force is None):
         raise TypeError("give either approach or force")
@@ -428,6 +442,14 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=N
         effect.x, effect.y = "x" in period, "y" in period
         scene.period = ctypes.pointer(effect)
         kept.append(effect)
+    if patches is not None:
+        patch, factors = _array("patches[0]", patches[0], np.int32, h.shape), _array("patches[1]", patches[1], np.float64)
+        if factors.shape[0] != factors.shape[1]:
+            raise ValueError(f"patches[1], the factors, has shape {factors.shape}; it must be square")
+        effect = _initialised("patches")
+        effect.count, effect.patch, effect.factors = len(factors), _pointer(patch, c_int32), _pointer(factors)
+        scene.patches = ctypes.pointer(effect)
+        kept += [patch, factors, effect]
     return scene, kept
 
 
@@ -478,6 +500,7 @@ def solve(
     layer=None,
     pressure_limit=None,
     period=None,
+    patches=None,
     pressure=None,
     contact=None,
     progress=None,
@@ -486,11 +509,13 @@ def solve(
     """Solves one scene: undeformed distance `h` (my, mx), prescribed approach or prescribed force.
 
     shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); layer: compliance,
-    and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; pressure, contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
+    and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; patches: the patch of each element (my, mx), from 0
+    on, and the factors (count, count); pressure, contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
     a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
     Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
     """
-    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period)
+    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period,
+                         patches)
     watched = _Watched(progress)
     struct = _options(options, watched.callback)
 
@@ -510,10 +535,11 @@ class Solver:
         next = solver.solve(h2, force=1e4, initial_guess=INITIAL_GUESS_PREVIOUS)
     """
 
-    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, layer=None, period=None, **options):
+    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, layer=None, period=None,
+                 patches=None, **options):
         self._handle = c_void_p()
         self._grid = (dx, dy, shear_modulus, poisson_ratio)
-        self._effects = {"layer": layer, "period": period}
+        self._effects = {"layer": layer, "period": period, "patches": patches}
         self._shape, self._set_up = (my, mx), options
         # The set-up reads neither the undeformed distance nor the load, but checks them.
         scene, _kept = _scene(np.zeros((my, mx)), dx, dy, None, 0.0, shear_modulus, poisson_ratio, influence, **self._effects)

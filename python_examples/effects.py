@@ -1,4 +1,4 @@
-"""The effects layer, pressure_limit and period, one after the other: `python3 effects.py [pictures]`, the folder of three pictures
+"""The effects layer, pressure_limit, period and patches, one after the other: `python3 effects.py [pictures]`, the folder of pictures
 (effects_layer.png, ...), those of docs/effects.md."""
 
 import sys
@@ -48,7 +48,19 @@ def periods():
         yield f"{share:g} p*", found.pressure
 
 
-def draw(folder, layered, limited, periodic):
+def patches():
+    d, x = 0.1, (np.arange(M) - 0.5 * (M - 1)) * 0.1
+    left = x < 0
+    h = (np.where(left, x + 1.2, x - 1.2)[None, :] ** 2 + x[:, None] ** 2) / 1000.0  # two balls of radius 500 mm
+    patch = np.broadcast_to(np.where(left, 0, 1), (M, M))
+    print("factor  approach  max pressure  contact area")
+    for factor in (0.0, 0.5, 1.0):
+        found = cn.solve(h, d, d, force=1000.0, patches=(patch, [[1.0, factor], [factor, 1.0]]), **STEEL)
+        print(f"{factor:6.1f} {found.approach:9.6f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.2f}")
+        yield f"factor {factor:g}", x, found.pressure[M // 2]
+
+
+def draw(folder, layered, limited, periodic, patched):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -60,6 +72,13 @@ def draw(folder, layered, limited, periodic):
     axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a coated plate, 1000 N")
     axes.legend()
     figure.savefig(f"{folder}/effects_layer.png", dpi=100, bbox_inches="tight")
+
+    figure, axes = plt.subplots(figsize=(7, 4))
+    for name, x, p in patched:
+        axes.plot(x, p, label=name)
+    axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="Two balls side by side, 1000 N together")
+    axes.legend(loc="upper center")
+    figure.savefig(f"{folder}/effects_patches.png", dpi=100, bbox_inches="tight")
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 6), sharex=True)
     for name, x, p, e in limited:
@@ -83,6 +102,6 @@ def draw(folder, layered, limited, periodic):
 
 
 if __name__ == "__main__":
-    found = [list(effect()) for effect in (layers, pressure_limits, periods)]
+    found = [list(effect()) for effect in (layers, pressure_limits, periods, patches)]
     if len(sys.argv) > 1:
         draw(sys.argv[1], *found)

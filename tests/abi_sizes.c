@@ -26,6 +26,12 @@ int main(void)
     OFFSET(contact_normal_period, struct_size);
     OFFSET(contact_normal_period, x);
     OFFSET(contact_normal_period, y);
+    SIZE(contact_normal_patches);
+    OFFSET(contact_normal_patches, struct_size);
+    OFFSET(contact_normal_patches, count);
+    OFFSET(contact_normal_patches, reserved);
+    OFFSET(contact_normal_patches, patch);
+    OFFSET(contact_normal_patches, factors);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -43,6 +49,7 @@ int main(void)
     OFFSET(contact_normal_scene, layer);
     OFFSET(contact_normal_scene, pressure_limit);
     OFFSET(contact_normal_scene, period);
+    OFFSET(contact_normal_scene, patches);
     SIZE(contact_normal_progress);
     OFFSET(contact_normal_progress, struct_size);
     OFFSET(contact_normal_progress, mx);

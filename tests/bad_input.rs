@@ -17,6 +17,8 @@ const UNSUPPORTED: i32 = CONTACT_NORMAL_UNSUPPORTED;
 const NOT_POSITIVE: i32 = CONTACT_NORMAL_NOT_POSITIVE_DEFINITE;
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
+/// Factors of two patches.
+const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
 
 /// The argument and its value as the message says them, the status, and what makes a valid call bad.
 type Row = (&'static [&'static str], i32, fn(&mut Call));
@@ -97,6 +99,19 @@ const SET_UP: &[Row] = &[
     (&["period->x", "2"], INVALID, |c| c.use_period(2, 0)),
     (&["period->y", "-1"], INVALID, |c| c.use_period(1, -1)),
     (&["period->x", "period->y", "0"], INVALID, |c| c.use_period(0, 0)),
+    (&["patches->patch"], NULL, |c| c.use_patches(HALF).patch = null()),
+    (&["patches->factors"], NULL, |c| c.use_patches(HALF).factors = null()),
+    (&["patches->count", "0"], INVALID, |c| c.use_patches(HALF).count = 0),
+    (&["patches->count", "65"], INVALID, |c| c.use_patches(HALF).count = 65),
+    (&["patches->count", "2147483647"], INVALID, |c| c.use_patches(HALF).count = i32::MAX),
+    (&["patches->reserved", "1"], INVALID, |c| c.use_patches(HALF).reserved = 1),
+    (&["patches->patch", "(5, 4)", "2"], INVALID, |c| { c.use_patches(HALF); c.patch[29] = 2; }),
+    (&["patches->patch", "(0, 0)", "-1"], INVALID, |c| { c.use_patches(HALF); c.patch[0] = -1; }),
+    (&["patches->factors", "(0, 1)", "NaN"], NOT_FINITE, |c| { c.use_patches([1.0, NAN, NAN, 1.0]); }),
+    (&["patches->factors", "(0, 1)", "-0.5"], INVALID, |c| { c.use_patches([1.0, -0.5, -0.5, 1.0]); }),
+    (&["patches->factors", "(1, 0)", "symmetric"], INVALID, |c| { c.use_patches([1.0, 0.5, 0.4, 1.0]); }),
+    (&["patches->factors", "(1, 1)", "0.9"], INVALID, |c| { c.use_patches([1.0, 0.5, 0.5, 0.9]); }),
+    (&["patches", "period"], UNSUPPORTED, |c| { c.use_patches(HALF); c.use_period(1, 0); }),
     (&["influence", "period"], UNSUPPORTED, |c| { c.use_table(); c.use_period(1, 0); }),
     // The mean of the distance is 0.0691...
     (&["approach", "0.5", "mean plane"], INFEASIBLE, |c| { c.scene.known.approach = 0.5; c.use_period(1, 1); }),
@@ -210,6 +225,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "layer" => _ = call.use_layer(),
         "pressure_limit" => _ = call.use_limit(),
         "period" => call.use_period(1, 0),
+        "patches" => _ = call.use_patches(HALF),
         _ => _ = call.use_table(),
     }
     let declared = match name {
@@ -218,6 +234,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "layer" => &mut call.layer.known.struct_size,
         "pressure_limit" => &mut call.limit.known.struct_size,
         "period" => &mut call.period.known.struct_size,
+        "patches" => &mut call.patches.known.struct_size,
         "options" => &mut call.options.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
         _ => &mut call.report.known.struct_size,
@@ -233,13 +250,15 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
         "layer" => &mut call.layer.excess,
         "pressure_limit" => &mut call.limit.excess,
         "period" => &mut call.period.excess,
+        "patches" => &mut call.patches.excess,
         "options" => &mut call.options.excess,
         "fields" => &mut call.fields.excess,
         _ => &mut call.report.excess,
     }
 }
 
-const STRUCTS: [&str; 8] = ["scene", "influence", "layer", "pressure_limit", "period", "options", "fields", "report"];
+const STRUCTS: [&str; 9] =
+    ["scene", "influence", "layer", "pressure_limit", "period", "patches", "options", "fields", "report"];
 
 #[test]
 fn a_struct_of_no_known_size_is_refused() {
@@ -327,6 +346,7 @@ const ACCEPTED: &[Change] = &[
     ("a layer, and a uniform one that is not read", |c| { c.set_compliance(0, 0.0); c.layer.known.compliance = NAN; }),
     ("no limit", |c| { c.use_limit(); }),
     ("a period", |c| c.use_period(0, 1)),
+    ("patches", |c| { c.use_patches(HALF); }),
     ("elastic constants beside a table", |c| { c.use_table(); c.scene.known.shear_modulus = [NAN; 2]; }),
     ("garbage in row -cy and column -cx", |c| {
         (-(CX as i64)..CX as i64).for_each(|kx| c.set_coefficient(kx, -(CY as i64), NAN));
@@ -381,6 +401,7 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         (&["influence"], INVALID, |c| { c.use_table(); }),
         (&["layer", "without"], INVALID, |c| c.use_layer().compliance = 1e-6),
         (&["period"], INVALID, |c| c.use_period(1, 0)),
+        (&["patches", "without"], INVALID, |c| { c.use_patches(HALF); }),
         (&["smoother"], INVALID, |c| c.options.known.smoother = CONTACT_NORMAL_SMOOTHER_JACOBI),
         (&["threads"], INVALID, |c| c.options.known.threads = 2),
     ];
@@ -525,6 +546,7 @@ fn inits_ignore_null_and_levels_are_checked() {
         contact_normal_layer_init(null_mut());
         contact_normal_pressure_limit_init(null_mut());
         contact_normal_period_init(null_mut());
+        contact_normal_patches_init(null_mut());
         contact_normal_options_init(null_mut());
         contact_normal_fields_init(null_mut());
         contact_normal_report_init(null_mut());

@@ -3,13 +3,13 @@
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Table};
-use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
-const EFFECTS: [&str; 5] = ["influence", "layer", "pressure_limit", "period", "excluded elements"];
+const EFFECTS: [&str; 6] = ["influence", "layer", "pressure_limit", "period", "patches", "excluded elements"];
 
 /// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
-const REFUSED: [(&str, &str); 1] = [("influence", "period")];
+const REFUSED: [(&str, &str); 2] = [("influence", "period"), ("period", "patches")];
 
 #[test]
 fn every_pair_is_solved_or_refused_and_each_effect_tells() {
@@ -17,6 +17,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
     let h: Vec<f64> = (0..grid.len())
         .map(|i| 0.02 * ((i % 20) as f64 - 9.0).powi(2) * 0.1 + 0.003 * ((i / 20) as f64 - 8.0).powi(2))
         .collect();
+    let patch: Vec<i32> = (0..grid.len()).map(|i| i32::from(i % 20 > 9)).collect();
     let mut hole = h.clone();
     hole[8 * 20 + 9] = f64::INFINITY;
     let half_space = HalfSpace::new(0.1, 0.1, Bodies::same(1.0, 0.3).compliance());
@@ -33,6 +34,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             influence: has("influence").then(|| table.clone()),
             layer: has("layer").then_some(Layer::Uniform(0.05)),
             pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
+            patches: has("patches").then_some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.2, 0.2, 1.0] }),
             period: has("period").then_some(Period { x: true, y: false }),
             ..Scene::new(
                 grid,

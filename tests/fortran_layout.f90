@@ -7,6 +7,7 @@ program fortran_layout
   type(contact_normal_layer), target :: layer
   type(contact_normal_pressure_limit), target :: limit
   type(contact_normal_period), target :: period
+  type(contact_normal_patches), target :: patches
   type(contact_normal_scene), target :: scene
   type(contact_normal_options), target :: options
   type(contact_normal_progress), target :: progress
@@ -41,6 +42,14 @@ program fortran_layout
   call show("contact_normal_period.x", c_loc(period%x))
   call show("contact_normal_period.y", c_loc(period%y))
 
+  base = place(c_loc(patches))
+  print '(a, i0)', "contact_normal_patches ", c_sizeof(patches)
+  call show("contact_normal_patches.struct_size", c_loc(patches%struct_size))
+  call show("contact_normal_patches.count", c_loc(patches%count))
+  call show("contact_normal_patches.reserved", c_loc(patches%reserved))
+  call show("contact_normal_patches.patch", c_loc(patches%patch))
+  call show("contact_normal_patches.factors", c_loc(patches%factors))
+
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
   call show("contact_normal_scene.struct_size", c_loc(scene%struct_size))
@@ -59,6 +68,7 @@ program fortran_layout
   call show("contact_normal_scene.layer", c_loc(scene%layer))
   call show("contact_normal_scene.pressure_limit", c_loc(scene%pressure_limit))
   call show("contact_normal_scene.period", c_loc(scene%period))
+  call show("contact_normal_scene.patches", c_loc(scene%patches))
 
   base = place(c_loc(options))
   print '(a, i0)', "contact_normal_options ", c_sizeof(options)

@@ -6,10 +6,10 @@
 use std::time::Instant;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Report, Stop};
 
-const ROWS: [&str; 8] = [
+const ROWS: [&str; 9] = [
     "plain",
     "layer",
     "layer-per-element",
@@ -18,6 +18,7 @@ const ROWS: [&str; 8] = [
     "period-x",
     "period-xy",
     "period-xy-layer",
+    "patches",
 ];
 const REPEATS: usize = 7;
 
@@ -26,6 +27,8 @@ struct Arrays {
     grid: Grid,
     h: Vec<f64>,
     compliances: Vec<f64>,
+    /// Two halves.
+    patch: Vec<i32>,
 }
 
 impl Arrays {
@@ -36,7 +39,8 @@ impl Arrays {
         let h = (0..grid.len()).map(|i| 0.0016681 * square(i).0 + 0.0030671 * square(i).1).collect();
         // mm3/N: up to about what the half-space gives way over 1 mm; a strip has none.
         let compliances = (0..grid.len()).map(|i| 1e-5 * (square(i).0 / 20.0).min(1.0)).collect();
-        Arrays { grid, h, compliances }
+        let patch = (0..grid.len()).map(|i| i32::from(2 * (i % m) >= m)).collect();
+        Arrays { grid, h, compliances, patch }
     }
 
     fn scene(&self, row: &str) -> Scene<'_> {
@@ -48,6 +52,9 @@ impl Arrays {
             "pressure_limit" => scene.pressure_limit = Some(PressureLimit::Uniform(1400.0)),
             "period-x" => scene.period = Some(Period { x: true, y: false }),
             "period-xy" => scene.period = Some(Period { x: true, y: true }),
+            "patches" => {
+                scene.patches = Some(Patches { count: 2, patch: &self.patch, factors: &[1.0, 0.5, 0.5, 1.0] });
+            }
             "period-xy-layer" => {
                 (scene.period, scene.layer) = (Some(Period { x: true, y: true }), Some(Layer::Uniform(1e-5)));
             }

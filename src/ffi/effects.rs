@@ -4,7 +4,7 @@ use super::scene::contact_normal_scene;
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
-use crate::scene::{Layer, Period, PressureLimit};
+use crate::scene::{Layer, Patches, Period, PressureLimit};
 
 /// Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
 /// displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
@@ -71,6 +71,39 @@ unsafe impl Versioned for contact_normal_pressure_limit {
     }
 }
 
+/// Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_patches {
+    /// Set by `contact_normal_patches_init`.
+    pub struct_size: i64,
+    /// Number of patches, 1 to 64. Each costs a product.
+    pub count: i32,
+    /// Always 0.
+    pub reserved: i32,
+    /// The patch of each element, `[my][mx]`: 0 to count - 1.
+    pub patch: *const i32,
+    /// `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+    pub factors: *const f64,
+}
+
+// SAFETY: integers and raw pointers only, struct_size first.
+unsafe impl Versioned for contact_normal_patches {
+    const NAME: &'static str = "contact_normal_patches";
+    const FIRST_SIZE: usize = 32;
+    fn defaults() -> Self {
+        let (patch, factors) = (std::ptr::null(), std::ptr::null());
+        Self { struct_size: size_of::<Self>() as i64, count: 0, reserved: 0, patch, factors }
+    }
+}
+
+/// Fills patches with none. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_patches_init(patches: *mut contact_normal_patches) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(patches) }
+}
+
 /// Fills a period with none. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_period_init(period: *mut contact_normal_period) {
@@ -97,6 +130,7 @@ pub(super) struct Effects<'a> {
     pub period: Option<Period>,
     pub layer: Option<Layer<'a>>,
     pub pressure_limit: Option<PressureLimit<'a>>,
+    pub patches: Option<Patches<'a>>,
 }
 
 pub(super) unsafe fn translate<'a>(scene: &contact_normal_scene, grid: &Grid) -> Result<Effects<'a>, Refusal> {
@@ -105,6 +139,7 @@ pub(super) unsafe fn translate<'a>(scene: &contact_normal_scene, grid: &Grid) ->
         let period = named(scene.period, "scene->period")?;
         let layer = named(scene.layer, "scene->layer")?;
         let limit = named(scene.pressure_limit, "scene->pressure_limit")?;
+        let patches = named(scene.patches, "scene->patches")?;
         Ok(Effects {
             period: period.map(translate_period).transpose()?,
             layer: layer.map(|layer| match per_element(layer.compliances, grid) {
@@ -115,6 +150,7 @@ pub(super) unsafe fn translate<'a>(scene: &contact_normal_scene, grid: &Grid) ->
                 Some(limits) => PressureLimit::PerElement(limits),
                 None => PressureLimit::Uniform(limit.limit),
             }),
+            patches: patches.map(|patches| translate_patches(patches, grid)).transpose()?,
         })
     }
 }
@@ -138,4 +174,22 @@ fn translate_period(period: contact_normal_period) -> Result<Period, Refusal> {
         other => Err(Refusal::invalid(format!("{name} is {other}; it must be 0 or 1"))),
     };
     Ok(Period { x: yes("period->x", period.x)?, y: yes("period->y", period.y)? })
+}
+
+/// SAFETY: arrays of one value per element, and of count by count values.
+unsafe fn translate_patches<'a>(patches: contact_normal_patches, grid: &Grid) -> Result<Patches<'a>, Refusal> {
+    if patches.reserved != 0 {
+        return Err(Refusal::invalid(format!("patches->reserved is {}; it must be 0", patches.reserved)));
+    }
+    let count = super::scene::count("patches->count", patches.count)?;
+    if patches.factors.is_null() {
+        return Err(Refusal::null("scene->patches->factors"));
+    }
+    // SAFETY: by the caller.
+    let patch = unsafe { per_element(patches.patch, grid) }.ok_or_else(|| Refusal::null("scene->patches->patch"))?;
+    // What there are too many of is refused before it is looked at.
+    let values = if count <= 1024 { count * count } else { 0 };
+    // SAFETY: by the caller.
+    let factors = unsafe { std::slice::from_raw_parts(patches.factors, values) };
+    Ok(Patches { count, patch, factors })
 }

@@ -1,6 +1,8 @@
 //! `contact_normal_scene` and its effects.
 
-use super::effects::{self, contact_normal_layer, contact_normal_period, contact_normal_pressure_limit, Effects};
+use super::effects::{
+    self, contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit, Effects,
+};
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
@@ -74,6 +76,8 @@ pub struct contact_normal_scene {
     pub pressure_limit: *const contact_normal_pressure_limit,
     /// Effect, or NULL: the scene repeats itself.
     pub period: *const contact_normal_period,
+    /// Effect, or NULL: several contact patches, whose interaction is scaled.
+    pub patches: *const contact_normal_patches,
 }
 
 // SAFETY: integers, floats and raw pointers only, struct_size first.
@@ -98,6 +102,7 @@ unsafe impl Versioned for contact_normal_scene {
             layer: std::ptr::null(),
             pressure_limit: std::ptr::null(),
             period: std::ptr::null(),
+            patches: std::ptr::null(),
         }
     }
 }
@@ -166,8 +171,8 @@ pub(super) unsafe fn translate_for<'a>(
         Some(unsafe { translate_influence(scene.influence, &grid)? })
     };
     // SAFETY: as for the scene.
-    let Effects { period, layer, pressure_limit } = unsafe { effects::translate(&scene, &grid)? };
-    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence, period, layer, pressure_limit })
+    let Effects { period, layer, pressure_limit, patches } = unsafe { effects::translate(&scene, &grid)? };
+    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence, period, layer, pressure_limit, patches })
 }
 
 /// Number of values in a table of coefficients.

@@ -3,16 +3,18 @@
 //! `A_IJ = c(ix - jx, iy - jy)` depends on the offset only: A is block Toeplitz. The coefficients come from the
 //! elastic half-space ([`HalfSpace`], even in both offsets) or from a table of the caller's own ([`Table`], of
 //! which nothing is assumed). What else a scene names has its own file: [`Periodic`],
-//! [`Layered`].
+//! [`Layered`], [`Patches`].
 
 mod half_space;
 mod layered;
+mod patches;
 mod periodic;
 mod special;
 mod table;
 
 pub use half_space::HalfSpace;
 pub use layered::Layered;
+pub use patches::Patches;
 pub use periodic::Periodic;
 pub use table::Table;
 
@@ -29,6 +31,8 @@ pub enum Influence {
     Periodic(Periodic),
     /// Any of them, with a compliant layer.
     Layered(Layered),
+    /// Those of bodies or a table, scaled between patches.
+    Patches(Patches),
 }
 
 impl Influence {
@@ -38,6 +42,7 @@ impl Influence {
             Influence::HalfSpace(half_space) => half_space.at(kx, ky),
             Influence::Table(table) => table.at(kx, ky),
             Influence::Periodic(periodic) => periodic.at(kx, ky),
+            Influence::Patches(patches) => patches.base().at(kx, ky),
             Influence::Layered(layered) => {
                 layered.base().at(kx, ky) + if (kx, ky) == (0, 0) { layered.least() } else { 0.0 }
             }
@@ -52,6 +57,7 @@ impl Influence {
             Influence::Periodic(periodic) => {
                 out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = periodic.at(kx, ky));
             }
+            Influence::Patches(patches) => patches.base().fill_row(kx, ky, out),
             Influence::Layered(layered) => {
                 layered.base().fill_row(kx, ky, out);
                 if ky == 0 && kx <= 0 && -kx < out.len() as i64 {
@@ -76,6 +82,7 @@ impl Influence {
                 let constant = periodic.constant_for_inverse();
                 out.iter_mut().zip(0..).for_each(|(value, kx)| *value = periodic.at(kx, ky) + constant);
             }
+            Influence::Patches(patches) => patches.base().fill_even_row(ky, out),
             Influence::Layered(layered) => {
                 match layered.base() {
                     // With a layer it has an inverse.
@@ -95,6 +102,7 @@ impl Influence {
             Influence::HalfSpace(_) | Influence::Periodic(_) => true,
             Influence::Table(table) => table.is_even(grid),
             Influence::Layered(layered) => layered.base().is_even(grid),
+            Influence::Patches(patches) => patches.base().is_even(grid),
         }
     }
 
@@ -104,6 +112,7 @@ impl Influence {
             Influence::HalfSpace(_) | Influence::Periodic(_) => true,
             Influence::Table(table) => table.is_symmetric(grid),
             Influence::Layered(layered) => layered.base().is_symmetric(grid),
+            Influence::Patches(patches) => patches.base().is_symmetric(grid),
         }
     }
 
@@ -112,6 +121,7 @@ impl Influence {
         match self {
             Influence::Periodic(periodic) => periodic.repeats(grid),
             Influence::Layered(layered) => layered.base().repeats(grid),
+            Influence::Patches(patches) => patches.base().repeats(grid),
             _ => (false, false),
         }
     }
@@ -122,6 +132,20 @@ impl Influence {
             Influence::Layered(layered) => layered.more(),
             _ => None,
         }
+    }
+
+    /// Patches between which the coefficients are scaled.
+    pub fn patches(&self) -> Option<&Patches> {
+        match self {
+            Influence::Patches(patches) => Some(patches),
+            Influence::Layered(layered) => layered.base().patches(),
+            _ => None,
+        }
+    }
+
+    /// Whether A is more than coefficients of offsets: then a part of the grid has an operator of its own, wherever it is.
+    pub fn depends_on_place(&self) -> bool {
+        self.diagonal().is_some() || self.patches().is_some()
     }
 
     /// Whether a uniform pressure on the whole grid displaces nothing, so that A has no inverse.
@@ -137,6 +161,7 @@ impl Influence {
             Influence::Table(table) => Influence::Table(table.coarsen(fine, coarse)),
             Influence::Periodic(periodic) => Influence::Periodic(periodic.coarsen(coarse)),
             Influence::Layered(layered) => Influence::Layered(layered.coarsen(fine, coarse)),
+            Influence::Patches(patches) => Influence::Patches(patches.coarsen(fine, coarse)),
         }
     }
 }

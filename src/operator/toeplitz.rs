@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::columns::{for_each_block, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
+use super::patches::Mask;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -38,6 +39,8 @@ pub struct Toeplitz<T: Real> {
     spectrum: Spectrum<T>,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
+    /// Patches between which A is scaled.
+    mask: Option<Mask<T>>,
     threads: Threads,
 }
 
@@ -46,6 +49,10 @@ pub struct Workspace<T: Real> {
     /// `[my][px/2 + 1]`: the rows, transformed in x.
     bins: Vec<Complex<T>>,
     pieces: Vec<Piece<T>>,
+    /// With patches: p scaled for one of them, and its product.
+    masked: [Vec<T>; 2],
+    /// And p, where u takes its place.
+    given: Vec<T>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -83,7 +90,7 @@ pub(crate) fn zeros<A: Clone + Default>(n: usize, what: &str) -> Result<Vec<A>> 
 impl<T: Real> Workspace<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        std::mem::size_of_val(&self.bins[..])
+        std::mem::size_of_val(&self.bins[..]) + 3 * std::mem::size_of_val(&self.given[..])
     }
 }
 
@@ -118,6 +125,7 @@ impl<T: Real> Toeplitz<T> {
             columns: ColumnTransform::new(py),
             spectrum,
             diagonal,
+            mask: influence.patches().map(Mask::new),
             threads: threads.clone(),
         })
     }
@@ -154,6 +162,7 @@ impl<T: Real> Toeplitz<T> {
             columns: ColumnTransform::new(py),
             spectrum,
             diagonal: Vec::new(),
+            mask: None,
             threads: threads.clone(),
         }))
     }
@@ -175,7 +184,8 @@ impl<T: Real> Toeplitz<T> {
         };
         let (rows, columns) = (RowTransform::new(self.rows.length()), ColumnTransform::new(self.columns.length()));
         let diagonal = self.diagonal.iter().map(|d| convert(*d)).collect();
-        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, threads: self.threads.clone() })
+        let (mask, threads) = (self.mask.as_ref().map(Mask::in_precision), self.threads.clone());
+        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, mask, threads })
     }
 
     /// Memory for products by this operator.
@@ -187,7 +197,14 @@ impl<T: Real> Toeplitz<T> {
             let columns = vec![Complex::default(); (BLOCK * self.columns.length()).max(self.rows.bins())];
             pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
         }
-        Ok(Workspace { bins: zeros(self.my * self.rows.bins(), "the product's workspace")?, pieces })
+        let masked = self.mask.as_ref().map_or(0, |_| self.mx * self.my);
+        let memory = |n| zeros(n, "the product's workspace");
+        Ok(Workspace {
+            bins: zeros(self.my * self.rows.bins(), "the product's workspace")?,
+            pieces,
+            masked: [memory(masked)?, memory(masked)?],
+            given: memory(masked)?,
+        })
     }
 
     /// Bytes held by the operator.
@@ -196,15 +213,18 @@ impl<T: Real> Toeplitz<T> {
             Spectrum::Even(s) => std::mem::size_of_val(&s[..]),
             Spectrum::General(s) => std::mem::size_of_val(&s[..]),
         };
-        spectrum + std::mem::size_of_val(&self.diagonal[..])
+        spectrum + std::mem::size_of_val(&self.diagonal[..]) + self.mask.as_ref().map_or(0, Mask::bytes)
     }
 
     /// `u = A p`.
     pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
-        self.apply_rows(p, u, 0..self.my, workspace);
+        let Some(mask) = &self.mask else { return self.apply_rows(p, u, 0..self.my, workspace) };
+        let mut masked = std::mem::take(&mut workspace.masked);
+        mask.apply(p, u, &mut masked, |p, u| self.apply_rows(p, u, 0..self.my, workspace));
+        workspace.masked = masked;
     }
 
-    /// `u = A p` in the grid's rows `wanted`; the other rows of `u` keep what they hold.
+    /// `u = A p` in the grid's rows `wanted`, as if there were no patches; the other rows of `u` keep what they hold.
     pub fn apply_rows(&self, p: &[T], u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
         assert!(p.len() == self.mx * self.my && u.len() == p.len() && wanted.end <= self.my);
         let loaded = self.transform_rows(p, workspace);
@@ -223,6 +243,13 @@ impl<T: Real> Toeplitz<T> {
     /// `p = A p`.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         assert!(p.len() == self.mx * self.my);
+        if self.mask.is_some() {
+            let mut given = std::mem::take(&mut workspace.given);
+            given.copy_from_slice(p);
+            self.apply(&given, p, workspace);
+            workspace.given = given;
+            return;
+        }
         let loaded = self.transform_rows(p, workspace);
         self.convolve_columns(loaded, 0..self.my, workspace);
         if self.diagonal.is_empty() {
@@ -252,7 +279,7 @@ impl<T: Real> Toeplitz<T> {
 
     /// Transforms in y, multiplies by the spectrum and transforms back, block by block: from rows `loaded` to rows `wanted`.
     fn convolve_columns(&self, loaded: Range<usize>, wanted: Range<usize>, workspace: &mut Workspace<T>) {
-        let Workspace { bins, pieces } = workspace;
+        let Workspace { bins, pieces, .. } = workspace;
         let nb = self.rows.bins();
         let length = self.columns.length();
         for_each_block(&mut bins[..self.my * nb], nb, &self.threads, pieces, |block, piece| {
@@ -273,7 +300,7 @@ impl<T: Real> Toeplitz<T> {
         workspace: &mut Workspace<T>,
         write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
     ) {
-        let Workspace { bins, pieces } = workspace;
+        let Workspace { bins, pieces, .. } = workspace;
         let nb = self.rows.bins();
         let (first, bins) = (wanted.start, &bins[..]);
         let out = &mut u[wanted.start * self.mx..wanted.end * self.mx];

@@ -3,12 +3,14 @@
 mod bodies;
 mod layer;
 mod load;
+mod patches;
 mod period;
 mod pressure_limit;
 
 pub use bodies::Bodies;
 pub use layer::Layer;
 pub use load::Load;
+pub use patches::Patches;
 pub use period::Period;
 pub use pressure_limit::PressureLimit;
 
@@ -35,6 +37,8 @@ pub struct Scene<'a> {
     pub layer: Option<Layer<'a>>,
     /// Effect: pressures do not exceed a limit.
     pub pressure_limit: Option<PressureLimit<'a>>,
+    /// Effect: several contact patches, whose interaction is scaled.
+    pub patches: Option<Patches<'a>>,
 }
 
 impl<'a> Scene<'a> {
@@ -49,6 +53,7 @@ impl<'a> Scene<'a> {
             period: None,
             layer: None,
             pressure_limit: None,
+            patches: None,
         }
     }
 
@@ -60,9 +65,13 @@ impl<'a> Scene<'a> {
             (_, Some(Period { x, y })) => Influence::Periodic(Periodic::new(half_space(), (x, y), &self.grid)),
             _ => Influence::HalfSpace(half_space()),
         };
-        match &self.layer {
-            Some(layer) => layer.on(bodies),
+        let scaled = match &self.patches {
+            Some(patches) => patches.on(bodies),
             None => bodies,
+        };
+        match &self.layer {
+            Some(layer) => layer.on(scaled),
+            None => scaled,
         }
     }
 
@@ -82,6 +91,12 @@ impl<'a> Scene<'a> {
             period.check()?;
             if self.influence.is_some() {
                 return not_together("influence", "period");
+            }
+        }
+        if let Some(patches) = &self.patches {
+            patches.check(&self.grid)?;
+            if self.period.is_some() {
+                return not_together("patches", "period");
             }
         }
         if let Some(layer) = &self.layer {

@@ -101,6 +101,7 @@ impl Solver {
             has_own_influence: self.has_own_influence,
             period: self.period,
             has_layer: self.has_layer,
+            has_patches: self.has_patches,
             without_multigrid: self.without_multigrid,
             symmetric: self.symmetric,
             shape: self.shape,

@@ -55,6 +55,7 @@ pub struct Solver {
     has_own_influence: bool,
     period: Option<Period>,
     has_layer: bool,
+    has_patches: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     symmetric: bool,
@@ -102,6 +103,7 @@ impl Solver {
             has_own_influence: scene.influence.is_some(),
             period: scene.period,
             has_layer: scene.layer.is_some(),
+            has_patches: scene.patches.is_some(),
             without_multigrid: without_multigrid(scene),
             symmetric: influence.is_symmetric(&scene.grid),
             shape: options.cycle_shape(),
@@ -214,13 +216,19 @@ impl Solver {
         if scene.period != self.period {
             return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));
         }
-        if scene.layer.is_some() != self.has_layer {
-            let with = |yes: bool| if yes { "with" } else { "without" };
-            return invalid(format!(
-                "the scene is {} a layer; this solver was set up {} one",
-                with(scene.layer.is_some()),
-                with(self.has_layer)
-            ));
+        let named = [
+            ("a layer", scene.layer.is_some(), self.has_layer),
+            ("patches", scene.patches.is_some(), self.has_patches),
+        ];
+        for (effect, is_named, was_named) in named {
+            if is_named != was_named {
+                let with = |yes: bool| if yes { "with" } else { "without" };
+                return invalid(format!(
+                    "the scene is {} {effect}; this solver was set up {}",
+                    with(is_named),
+                    with(was_named)
+                ));
+            }
         }
         if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
@@ -377,6 +385,7 @@ impl Solver {
 fn without_multigrid(scene: &Scene<'_>) -> Option<&'static str> {
     match scene {
         Scene { period: Some(_), .. } => Some("period"),
+        Scene { patches: Some(_), .. } => Some("patches"),
         Scene { layer: Some(Layer::PerElement(_)), .. } => Some("a layer of one compliance per element"),
         _ => None,
     }

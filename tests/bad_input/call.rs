@@ -51,6 +51,7 @@ pub struct Call {
     pub layer: Box<Grown<contact_normal_layer>>,
     pub limit: Box<Grown<contact_normal_pressure_limit>>,
     pub period: Box<Grown<contact_normal_period>>,
+    pub patches: Box<Grown<contact_normal_patches>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
@@ -58,6 +59,9 @@ pub struct Call {
     pub table: Vec<f64>,
     /// Values per element, of a layer or of limits.
     pub each: Vec<f64>,
+    /// Of two patches.
+    pub patch: Vec<i32>,
+    pub factors: [f64; 4],
     pub pressure: Vec<f64>,
     pub contact: Vec<i32>,
     /// The argument that is NULL instead.
@@ -88,6 +92,7 @@ impl Call {
             layer: Grown::new(initialised(contact_normal_layer_init)),
             limit: Grown::new(initialised(contact_normal_pressure_limit_init)),
             period: Grown::new(initialised(contact_normal_period_init)),
+            patches: Grown::new(initialised(contact_normal_patches_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -96,6 +101,8 @@ impl Call {
                 .collect(),
             table: vec![0.0; 4 * CX * CY],
             each: vec![1.0; N],
+            patch: (0..N).map(|i| (2 * (i % MX) / MX) as i32).collect(),
+            factors: [1.0, 0.5, 0.5, 1.0],
             pressure: vec![SENTINEL; N],
             contact: vec![SENTINEL_CONTACT; N],
             without: "",
@@ -148,6 +155,15 @@ impl Call {
     pub fn use_period(&mut self, x: i32, y: i32) {
         self.scene.known.period = &raw const self.period.known;
         (self.period.known.x, self.period.known.y) = (x, y);
+    }
+
+    /// Two patches side by side, with these factors.
+    pub fn use_patches(&mut self, factors: [f64; 4]) -> &mut contact_normal_patches {
+        self.factors = factors;
+        let patches = &mut self.patches.known;
+        (patches.count, patches.patch, patches.factors) = (2, self.patch.as_ptr(), self.factors.as_ptr());
+        self.scene.known.patches = &raw const self.patches.known;
+        &mut self.patches.known
     }
 
     /// One compliance per element, one of which is changed.

@@ -41,7 +41,7 @@ pub struct Direct {
 impl Direct {
     /// On a small grid with even coefficients and an inverse; none on others.
     pub fn new(influence: &Influence, grid: &Grid) -> Result<Option<Direct>> {
-        let suits = influence.is_even(grid) && influence.diagonal().is_none() && !influence.is_mean_free();
+        let suits = influence.is_even(grid) && !influence.depends_on_place() && !influence.is_mean_free();
         if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);
         }

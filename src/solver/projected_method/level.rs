@@ -195,9 +195,9 @@ impl Level {
 
     fn choose_window(&mut self, state: &State) -> Result<()> {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
-        let window = match self.influence.diagonal() {
-            None => Window::around(state, current),
-            Some(_) => Window::full(&self.grid), // an operator that depends on the place
+        let window = match self.influence.depends_on_place() {
+            false => Window::around(state, current),
+            true => Window::full(&self.grid),
         };
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
