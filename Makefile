@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test soak bench bench-peers analysis install tools clean
+.PHONY: all demo test soak bench bench-peers analysis accuracy install tools clean
 .DEFAULT_GOAL := all
 
 all:
@@ -111,6 +111,13 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 analysis: tools
 	$(CARGO) run --release --locked --example local_fourier_analysis target/local_fourier_analysis
 	"$(find_python)" benches/local_fourier_analysis.py target/local_fourier_analysis docs/local_fourier_analysis.png
+
+# What accuracy costs: build/accuracy.csv, the tables of docs/accuracy.md on the screen, its pictures. ACCURACY="--quick".
+ACCURACY ?=
+accuracy: tools
+	@mkdir -p build
+	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY) > build/accuracy.csv
+	"$(find_python)" benches/accuracy.py build/accuracy.csv docs
 
 install:
 	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all

@@ -61,6 +61,33 @@ module contact_normal
     type(c_ptr) :: coefficients = c_null_ptr
   end type
 
+  ! A thin compliant layer; filled by contact_normal_set_layer. Since 0.1.
+  type, bind(C), public :: contact_normal_layer
+    integer(c_int64_t) :: struct_size = 0
+    real(c_double) :: compliance = 0
+    type(c_ptr) :: compliances = c_null_ptr
+  end type
+
+  ! A limit of the pressures; filled by contact_normal_set_pressure_limit. Since 0.1.
+  type, bind(C), public :: contact_normal_pressure_limit
+    integer(c_int64_t) :: struct_size = 0
+    real(c_double) :: limit = 0
+    type(c_ptr) :: limits = c_null_ptr
+  end type
+
+  ! Directions in which the scene repeats itself; filled by contact_normal_set_period. Since 0.1.
+  type, bind(C), public :: contact_normal_period
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: x = 0, y = 0
+  end type
+
+  ! Patches whose interaction is scaled; filled by contact_normal_set_patches. Since 0.1.
+  type, bind(C), public :: contact_normal_patches
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: count = 0, reserved = 0
+    type(c_ptr) :: patch = c_null_ptr, factors = c_null_ptr
+  end type
+
   ! What is simulated. Since 0.1.
   type, bind(C), public :: contact_normal_scene
     integer(c_int64_t) :: struct_size = 0
@@ -73,6 +100,10 @@ module contact_normal
     integer(c_int32_t) :: reserved = 0
     real(c_double) :: approach = 0, force = 0
     type(c_ptr) :: influence = c_null_ptr                 ! contact_normal_set_influence
+    type(c_ptr) :: layer = c_null_ptr                     ! contact_normal_set_layer
+    type(c_ptr) :: pressure_limit = c_null_ptr            ! contact_normal_set_pressure_limit
+    type(c_ptr) :: period = c_null_ptr                    ! contact_normal_set_period
+    type(c_ptr) :: patches = c_null_ptr                   ! contact_normal_set_patches
   end type
 
   ! How it is solved. Since 0.1.
@@ -229,6 +260,26 @@ module contact_normal
       type(contact_normal_influence), intent(out) :: influence
     end subroutine
     ! Since 0.1.
+    subroutine contact_normal_layer_init(layer) bind(C, name="contact_normal_layer_init")
+      import :: contact_normal_layer
+      type(contact_normal_layer), intent(out) :: layer
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_pressure_limit_init(limit) bind(C, name="contact_normal_pressure_limit_init")
+      import :: contact_normal_pressure_limit
+      type(contact_normal_pressure_limit), intent(out) :: limit
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_period_init(period) bind(C, name="contact_normal_period_init")
+      import :: contact_normal_period
+      type(contact_normal_period), intent(out) :: period
+    end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_patches_init(patches) bind(C, name="contact_normal_patches_init")
+      import :: contact_normal_patches
+      type(contact_normal_patches), intent(out) :: patches
+    end subroutine
+    ! Since 0.1.
     subroutine contact_normal_options_init(options) bind(C, name="contact_normal_options_init")
       import :: contact_normal_options
       type(contact_normal_options), intent(out) :: options
@@ -276,7 +327,8 @@ module contact_normal
   end interface
   public :: contact_normal_library_abi_version, contact_normal_scene_init, contact_normal_influence_init, &
     contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_solve, &
-    contact_normal_hertz, contact_normal_influence_half_space
+    contact_normal_hertz, contact_normal_influence_half_space, contact_normal_layer_init, &
+    contact_normal_pressure_limit_init, contact_normal_period_init, contact_normal_patches_init
 
   ! Exports that hand out or take C strings, handles or procedures: the wrappers below call them.
   interface
@@ -342,7 +394,8 @@ module contact_normal
   public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_log, contact_normal_solver_new, &
-    contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve
+    contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve, &
+    contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
@@ -398,6 +451,54 @@ contains
     influence%cy = cy
     influence%coefficients = c_loc(coefficients)
     scene%influence = c_loc(influence)
+  end subroutine
+
+  ! The scene has a layer of one compliance, or of one per element (mx, my); `layer` keeps what is said about it. Since 0.1.
+  subroutine contact_normal_set_layer(scene, layer, compliance, compliances)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_layer), pointer, intent(in) :: layer
+    real(c_double), intent(in), optional :: compliance
+    real(c_double), pointer, contiguous, intent(in), optional :: compliances(..)
+    call contact_normal_layer_init(layer)
+    if (present(compliance)) layer%compliance = compliance
+    if (present(compliances)) layer%compliances = c_loc(compliances)
+    scene%layer = c_loc(layer)
+  end subroutine
+
+  ! Pressures have one limit, or one per element (mx, my). Since 0.1.
+  subroutine contact_normal_set_pressure_limit(scene, pressure_limit, limit, limits)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_pressure_limit), pointer, intent(in) :: pressure_limit
+    real(c_double), intent(in), optional :: limit
+    real(c_double), pointer, contiguous, intent(in), optional :: limits(..)
+    call contact_normal_pressure_limit_init(pressure_limit)
+    if (present(limit)) pressure_limit%limit = limit
+    if (present(limits)) pressure_limit%limits = c_loc(limits)
+    scene%pressure_limit = c_loc(pressure_limit)
+  end subroutine
+
+  ! The scene repeats itself in x, in y or in both. Since 0.1.
+  subroutine contact_normal_set_period(scene, period, x, y)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_period), pointer, intent(in) :: period
+    logical, intent(in) :: x, y
+    call contact_normal_period_init(period)
+    period%x = merge(1_c_int32_t, 0_c_int32_t, x)
+    period%y = merge(1_c_int32_t, 0_c_int32_t, y)
+    scene%period = c_loc(period)
+  end subroutine
+
+  ! patch(mx, my), from 0 on, is the patch of each element; factors(n, n) scale the influence of one on another. Since 0.1.
+  subroutine contact_normal_set_patches(scene, patches, patch, factors)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_patches), pointer, intent(in) :: patches
+    integer(c_int32_t), pointer, contiguous, intent(in) :: patch(..)
+    real(c_double), pointer, contiguous, intent(in) :: factors(:, :)
+    call contact_normal_patches_init(patches)
+    patches%count = size(factors, 1, kind=c_int32_t)
+    patches%patch = c_loc(patch)
+    patches%factors = c_loc(factors)
+    scene%patches = c_loc(patches)
   end subroutine
 
   ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.

@@ -272,6 +272,88 @@ typedef struct contact_normal_influence {
 } contact_normal_influence;
 
 /*
+ Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain what the layer gives way.
+ */
+typedef struct contact_normal_layer {
+  /*
+   Set by `contact_normal_layer_init`.
+   */
+  int64_t struct_size;
+  /*
+   c of all elements, a length per pressure, >= 0. Not read if there are `compliances`.
+   */
+  double compliance;
+  /*
+   c of each element, `[my][mx]`, or NULL.
+   */
+  const double *compliances;
+} contact_normal_layer;
+
+/*
+ Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
+ `deformed_distance` <= 0: the plastic penetration, with its sign turned.
+ */
+typedef struct contact_normal_pressure_limit {
+  /*
+   Set by `contact_normal_pressure_limit_init`.
+   */
+  int64_t struct_size;
+  /*
+   The limit of all elements, a pressure > 0; +infinity: none. Not read if there are `limits`.
+   */
+  double limit;
+  /*
+   That of each element, `[my][mx]`, or NULL.
+   */
+  const double *limits;
+} contact_normal_pressure_limit;
+
+/*
+ Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
+ displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
+ */
+typedef struct contact_normal_period {
+  /*
+   Set by `contact_normal_period_init`.
+   */
+  int64_t struct_size;
+  /*
+   1: it repeats itself in x; 0: it does not.
+   */
+  int32_t x;
+  /*
+   The same in y.
+   */
+  int32_t y;
+} contact_normal_period;
+
+/*
+ Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
+ */
+typedef struct contact_normal_patches {
+  /*
+   Set by `contact_normal_patches_init`.
+   */
+  int64_t struct_size;
+  /*
+   Number of patches, 1 to 64. Each costs a product.
+   */
+  int32_t count;
+  /*
+   Always 0.
+   */
+  int32_t reserved;
+  /*
+   The patch of each element, `[my][mx]`: 0 to count - 1.
+   */
+  const int32_t *patch;
+  /*
+   `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+   */
+  const double *factors;
+} contact_normal_patches;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -328,6 +410,22 @@ typedef struct contact_normal_scene {
    Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
    */
   const struct contact_normal_influence *influence;
+  /*
+   Effect, or NULL: a thin compliant layer.
+   */
+  const struct contact_normal_layer *layer;
+  /*
+   Effect, or NULL: pressures do not exceed a limit.
+   */
+  const struct contact_normal_pressure_limit *pressure_limit;
+  /*
+   Effect, or NULL: the scene repeats itself.
+   */
+  const struct contact_normal_period *period;
+  /*
+   Effect, or NULL: several contact patches, whose interaction is scaled.
+   */
+  const struct contact_normal_patches *patches;
 } contact_normal_scene;
 
 /*
@@ -477,7 +575,7 @@ typedef struct contact_normal_fields {
    */
   double *displacement;
   /*
-   0: exterior, 1: contact. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+   0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
    */
   int32_t *contact;
 } contact_normal_fields;
@@ -776,6 +874,26 @@ void contact_normal_scene_init(struct contact_normal_scene *scene);
 void contact_normal_influence_init(struct contact_normal_influence *influence);
 
 /*
+ Fills patches with none. Since 0.1.
+ */
+void contact_normal_patches_init(struct contact_normal_patches *patches);
+
+/*
+ Fills a period with none. Since 0.1.
+ */
+void contact_normal_period_init(struct contact_normal_period *period);
+
+/*
+ Fills a layer with a compliance of 0. Since 0.1.
+ */
+void contact_normal_layer_init(struct contact_normal_layer *layer);
+
+/*
+ Fills a pressure limit with +infinity. Since 0.1.
+ */
+void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
+
+/*
  Fills options with the defaults. Since 0.1.
  */
 void contact_normal_options_init(struct contact_normal_options *options);
@@ -809,7 +927,8 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
 
 /*
  Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+ for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
+ whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
  further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,

@@ -43,6 +43,36 @@ class Influence(ctypes.Structure):
     _fields_ = [("struct_size", c_int64), ("cx", c_int32), ("cy", c_int32), ("coefficients", POINTER(c_double))]
 
 
+class Layer(ctypes.Structure):
+    """contact_normal_layer."""
+
+    _fields_ = [("struct_size", c_int64), ("compliance", c_double), ("compliances", POINTER(c_double))]
+
+
+class PressureLimit(ctypes.Structure):
+    """contact_normal_pressure_limit."""
+
+    _fields_ = [("struct_size", c_int64), ("limit", c_double), ("limits", POINTER(c_double))]
+
+
+class Period(ctypes.Structure):
+    """contact_normal_period."""
+
+    _fields_ = [("struct_size", c_int64), ("x", c_int32), ("y", c_int32)]
+
+
+class Patches(ctypes.Structure):
+    """contact_normal_patches."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("count", c_int32),
+        ("reserved", c_int32),
+        ("patch", POINTER(c_int32)),
+        ("factors", POINTER(c_double)),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -60,6 +90,10 @@ class Scene(ctypes.Structure):
         ("approach", c_double),
         ("force", c_double),
         ("influence", POINTER(Influence)),
+        ("layer", POINTER(Layer)),
+        ("pressure_limit", POINTER(PressureLimit)),
+        ("period", POINTER(Period)),
+        ("patches", POINTER(Patches)),
     ]
 
 
@@ -207,6 +241,10 @@ _PROTOTYPES = {
     "abi_version": (c_int32, []),
     "scene_init": (None, [POINTER(Scene)]),
     "influence_init": (None, [POINTER(Influence)]),
+    "layer_init": (None, [POINTER(Layer)]),
+    "pressure_limit_init": (None, [POINTER(PressureLimit)]),
+    "period_init": (None, [POINTER(Period)]),
+    "patches_init": (None, [POINTER(Patches)]),
     "options_init": (None, [POINTER(Options)]),
     "fields_init": (None, [POINTER(Fields)]),
     "report_init": (None, [POINTER(Report)]),
@@ -230,7 +268,8 @@ _PROTOTYPES = {
 }
 
 # The structs that begin with their size, by the name of their _init.
-_SIZED = {"scene": Scene, "influence": Influence, "options": Options, "fields": Fields, "report": Report}
+_SIZED = {"scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
+          "patches": Patches, "options": Options, "fields": Fields, "report": Report}
 
 
 class ContactNormalError(Exception):
@@ -346,12 +385,15 @@ class _Watched:
 
 
 class Result:
-    """What a solve found: arrays (my, mx), the report's numbers, the ledger (one dict per grid, coarsest first)."""
+    """What a solve found: arrays (my, mx), the report's numbers, the ledger (one dict per grid, coarsest first).
+
+    `contact` holds the elements at the pressure limit too; `at_limit` those alone.
+    """
 
     def __init__(self, status, message, arrays, report, rows):
         self.status, self.message = status, message
         self.pressure, self.deformed_distance, self.displacement = arrays[:3]
-        self.contact = arrays[3] != 0
+        self.contact, self.at_limit = arrays[3] != 0, arrays[3] == 2
         hidden = ("struct_size", "ledger", "ledger_capacity")
         self.report = {name: getattr(report, name) for name, _ in Report._fields_ if name not in hidden}
         count = min(report.ledger_rows, len(rows))
@@ -368,7 +410,20 @@ class Result:
         return self.report["force"]
 
 
-def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
+def _effect(scene, kept, name, number, array, value, shape):
+    """Names an effect of one number, or of one per element: an array."""
+    effect = _initialised(name)
+    if np.ndim(value) == 0:
+        setattr(effect, number, value)
+    else:
+        kept.append(_array(name, value, np.float64, shape))
+        setattr(effect, array, _pointer(kept[-1]))
+    setattr(scene, name, ctypes.pointer(effect))
+    kept.append(effect)
+
+
+def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=None, layer=None, pressure_limit=None,
+           period=None, patches=None):
     """A scene, and the arrays that must live as long as it is used."""
     if (approach is None) == (force is None):
         raise TypeError("give either approach or force")
@@ -392,6 +447,25 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence):
         effect.coefficients = _pointer(table)
         scene.influence = ctypes.pointer(effect)
         kept += [table, effect]
+    if layer is not None:
+        _effect(scene, kept, "layer", "compliance", "compliances", layer, h.shape)
+    if pressure_limit is not None:
+        _effect(scene, kept, "pressure_limit", "limit", "limits", pressure_limit, h.shape)
+    if period is not None:
+        if period not in ("x", "y", "xy"):
+            raise ValueError(f"period is {period!r}; it must be 'x', 'y' or 'xy'")
+        effect = _initialised("period")
+        effect.x, effect.y = "x" in period, "y" in period
+        scene.period = ctypes.pointer(effect)
+        kept.append(effect)
+    if patches is not None:
+        patch, factors = _array("patches[0]", patches[0], np.int32, h.shape), _array("patches[1]", patches[1], np.float64)
+        if factors.shape[0] != factors.shape[1]:
+            raise ValueError(f"patches[1], the factors, has shape {factors.shape}; it must be square")
+        effect = _initialised("patches")
+        effect.count, effect.patch, effect.factors = len(factors), _pointer(patch, c_int32), _pointer(factors)
+        scene.patches = ctypes.pointer(effect)
+        kept += [patch, factors, effect]
     return scene, kept
 
 
@@ -439,6 +513,10 @@ def solve(
     shear_modulus,
     poisson_ratio,
     influence=None,
+    layer=None,
+    pressure_limit=None,
+    period=None,
+    patches=None,
     pressure=None,
     contact=None,
     progress=None,
@@ -446,12 +524,14 @@ def solve(
 ):
     """Solves one scene: undeformed distance `h` (my, mx), prescribed approach or prescribed force.
 
-    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); pressure, contact:
-    initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
+    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); layer: compliance,
+    and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; patches: the patch of each element (my, mx), from 0
+    on, and the factors (count, count); pressure, contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
     a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
     Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
     """
-    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence)
+    scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period,
+                         patches)
     watched = _Watched(progress)
     struct = _options(options, watched.callback)
 
@@ -471,22 +551,25 @@ class Solver:
         next = solver.solve(h2, force=1e4, initial_guess=INITIAL_GUESS_PREVIOUS)
     """
 
-    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, **options):
+    def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, layer=None, period=None,
+                 patches=None, **options):
         self._handle = c_void_p()
         self._grid = (dx, dy, shear_modulus, poisson_ratio)
+        self._effects = {"layer": layer, "period": period, "patches": patches}
         self._shape, self._set_up = (my, mx), options
         # The set-up reads neither the undeformed distance nor the load, but checks them.
-        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, 0.0, None, shear_modulus, poisson_ratio, influence)
+        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, None, 0.0, shear_modulus, poisson_ratio, influence, **self._effects)
         struct = _options(options)
         _check(_library.contact_normal_solver_new(ctypes.byref(scene), ctypes.byref(struct), ctypes.byref(self._handle)))
 
-    def solve(self, h, *, approach=None, force=None, pressure=None, contact=None, progress=None, **options):
-        """Solves for `h` and the load, with the options of the set-up and further ones."""
+    def solve(self, h, *, approach=None, force=None, pressure_limit=None, pressure=None, contact=None, progress=None,
+              **options):
+        """Solves for `h` and the load, with the options and effects of the set-up and further ones."""
         if not self._handle:
             raise ValueError("this solver is closed")
         dx, dy, shear_modulus, poisson_ratio = self._grid
         scene, kept = _scene(_array("h", h, np.float64, self._shape), dx, dy, approach, force, shear_modulus,
-                             poisson_ratio, None)
+                             poisson_ratio, pressure_limit=pressure_limit, **self._effects)
         watched = _Watched(progress)
         struct = _options({**self._set_up, **options}, watched.callback)
 
@@ -499,7 +582,7 @@ class Solver:
         watched.check()
         return result
 
-    def solve_batch(self, h, *, approach=None, force=None, pressure=None, contact=None, **options):
+    def solve_batch(self, h, *, approach=None, force=None, pressure_limit=None, pressure=None, contact=None, **options):
         """Solves one problem for each of `h` (count, my, mx), as many at a time as `threads` says, each on one thread.
 
         approach, force: one value for all, or one for each; pressure, contact: (count, my, mx). Returns a list of Results.
@@ -513,7 +596,8 @@ class Solver:
         scenes, outputs, kept = [], [], []
         for i in range(count):
             load = [values if values is None else values[i] for values in each]
-            scene, arrays = _scene(_array("h", h[i], np.float64, self._shape), *self._grid[:2], *load, *self._grid[2:], None)
+            scene, arrays = _scene(_array("h", h[i], np.float64, self._shape), *self._grid[:2], *load, *self._grid[2:],
+                                   pressure_limit=pressure_limit, **self._effects)
             scenes.append(scene)
             kept.append(arrays)
             guess = [values if values is None else values[i] for values in (pressure, contact)]

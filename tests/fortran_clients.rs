@@ -60,6 +60,12 @@ fn hertz_prints_what_is_expected() {
     check_example("hertz", &[], &["-O2"], 1e-8);
 }
 
+#[test]
+fn ledger_prints_what_is_expected() {
+    // The default tolerance.
+    check_example("ledger", &[], &["-O2"], 1e-6);
+}
+
 fn wheel_rail_case() -> String {
     root().join("data/wheel_rail/y0_10kN.txt").to_string_lossy().into_owned()
 }
@@ -71,6 +77,18 @@ const PER_UPDATE: f64 = 10.0;
 #[test]
 fn wheel_rail_prints_what_is_expected() {
     check_example("wheel_rail", &[&wheel_rail_case()], &["-O2"], PER_UPDATE * 1e-8);
+}
+
+/// Their solutions are compared with closed forms and direct sums in tests of their own.
+#[test]
+fn the_effects_print_what_is_expected() {
+    for name in ["layer", "pressure_limit", "period", "patches"] {
+        let folder = scratch(&format!("fortran_{name}"));
+        let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
+        let expected =
+            std::fs::read_to_string(root().join(format!("fortran_examples/{name}.expected"))).expect("expected");
+        assert_eq!(run_linked(&program, &[], &folder), expected, "{name}");
+    }
 }
 
 #[test]
@@ -165,8 +183,13 @@ fn derived_types_are_laid_out_as_the_structs() {
     let program = compile("tests/fortran_layout.f90", &[], &folder);
     let expected = layout! {
         contact_normal_influence: struct_size, cx, cy, coefficients;
+        contact_normal_layer: struct_size, compliance, compliances;
+        contact_normal_pressure_limit: struct_size, limit, limits;
+        contact_normal_period: struct_size, x, y;
+        contact_normal_patches: struct_size, count, reserved, patch, factors;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
-            poisson_ratio, load, reserved, approach, force, influence;
+            poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
+            patches;
         contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
             coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
             threads, precision, reserved, progress, user;

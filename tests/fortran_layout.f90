@@ -4,6 +4,10 @@ program fortran_layout
   use contact_normal
   implicit none
   type(contact_normal_influence), target :: influence
+  type(contact_normal_layer), target :: layer
+  type(contact_normal_pressure_limit), target :: limit
+  type(contact_normal_period), target :: period
+  type(contact_normal_patches), target :: patches
   type(contact_normal_scene), target :: scene
   type(contact_normal_options), target :: options
   type(contact_normal_progress), target :: progress
@@ -20,6 +24,32 @@ program fortran_layout
   call show("contact_normal_influence.cy", c_loc(influence%cy))
   call show("contact_normal_influence.coefficients", c_loc(influence%coefficients))
 
+  base = place(c_loc(layer))
+  print '(a, i0)', "contact_normal_layer ", c_sizeof(layer)
+  call show("contact_normal_layer.struct_size", c_loc(layer%struct_size))
+  call show("contact_normal_layer.compliance", c_loc(layer%compliance))
+  call show("contact_normal_layer.compliances", c_loc(layer%compliances))
+
+  base = place(c_loc(limit))
+  print '(a, i0)', "contact_normal_pressure_limit ", c_sizeof(limit)
+  call show("contact_normal_pressure_limit.struct_size", c_loc(limit%struct_size))
+  call show("contact_normal_pressure_limit.limit", c_loc(limit%limit))
+  call show("contact_normal_pressure_limit.limits", c_loc(limit%limits))
+
+  base = place(c_loc(period))
+  print '(a, i0)', "contact_normal_period ", c_sizeof(period)
+  call show("contact_normal_period.struct_size", c_loc(period%struct_size))
+  call show("contact_normal_period.x", c_loc(period%x))
+  call show("contact_normal_period.y", c_loc(period%y))
+
+  base = place(c_loc(patches))
+  print '(a, i0)', "contact_normal_patches ", c_sizeof(patches)
+  call show("contact_normal_patches.struct_size", c_loc(patches%struct_size))
+  call show("contact_normal_patches.count", c_loc(patches%count))
+  call show("contact_normal_patches.reserved", c_loc(patches%reserved))
+  call show("contact_normal_patches.patch", c_loc(patches%patch))
+  call show("contact_normal_patches.factors", c_loc(patches%factors))
+
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
   call show("contact_normal_scene.struct_size", c_loc(scene%struct_size))
@@ -35,6 +65,10 @@ program fortran_layout
   call show("contact_normal_scene.approach", c_loc(scene%approach))
   call show("contact_normal_scene.force", c_loc(scene%force))
   call show("contact_normal_scene.influence", c_loc(scene%influence))
+  call show("contact_normal_scene.layer", c_loc(scene%layer))
+  call show("contact_normal_scene.pressure_limit", c_loc(scene%pressure_limit))
+  call show("contact_normal_scene.period", c_loc(scene%period))
+  call show("contact_normal_scene.patches", c_loc(scene%patches))
 
   base = place(c_loc(options))
   print '(a, i0)', "contact_normal_options ", c_sizeof(options)

@@ -52,6 +52,18 @@ fn python_in(folder: &Path) -> Command {
 }
 
 #[test]
+fn the_ledger_example_prints_what_is_expected_and_draws() {
+    let folder = scratch("python_ledger");
+    let example = root().join("python_examples/ledger.py");
+    let printed = run(python_in(&folder).arg(&example).arg("picture.png"));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("ledger.expected");
+    assert_eq!(printed, expected);
+    let picture = std::fs::read(folder.join("picture.png")).expect("the picture");
+    let reader = png::Decoder::new(std::io::Cursor::new(picture)).read_info().expect("a PNG");
+    assert!(reader.info().width > 400 && reader.info().height > 300);
+}
+
+#[test]
 fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_wheel_rail");
     let example = root().join("python_examples/wheel_rail.py");
@@ -88,6 +100,52 @@ fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     assert!(colours.len() > 100, "{} colours", colours.len());
 }
 
+#[test]
+fn the_effects_print_what_is_expected_and_draw() {
+    let folder = scratch("python_effects");
+    let example = root().join("python_examples/effects.py");
+    let printed = run(python_in(&folder).arg(&example).arg("."));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("effects.expected");
+    assert_eq!(printed, expected);
+    for name in ["layer", "pressure_limit", "period", "patches"] {
+        let picture = std::fs::metadata(folder.join(format!("effects_{name}.png"))).expect("a picture");
+        assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
+    }
+}
+
+/// Effects of the handle, of its later solves and of batches are those of single calls.
+#[test]
+fn a_handle_in_python_keeps_its_effects() {
+    let script = "
+import numpy as np, contact_normal as cn
+steel = dict(shear_modulus=82000.0, poisson_ratio=0.28)
+x = np.arange(16) - 7.5
+h = 0.01 * (x[None, :] ** 2 + x[:, None] ** 2)
+layer = 1e-6 * (1 + (np.arange(256) % 3)).reshape(16, 16)
+effects = dict(layer=layer, period='x')
+alone = cn.solve(h, 0.2, 0.2, force=1000.0, pressure_limit=3000.0, **effects, **steel)
+with cn.Solver(16, 16, 0.2, 0.2, **effects, **steel) as solver:
+    again = solver.solve(h, force=1000.0, pressure_limit=3000.0)
+    batch = solver.solve_batch([h], force=1000.0, pressure_limit=3000.0)
+    free = solver.solve(h, force=1000.0)
+print(np.array_equal(alone.pressure, again.pressure), np.array_equal(alone.pressure, batch[0].pressure))
+print(alone.at_limit.any(), alone.pressure.max() == 3000.0, free.at_limit.any(), free.pressure.max() > 3000.0)
+for bad in (dict(period='z'), dict(layer=layer[1:])):
+    try:
+        cn.solve(h, 0.2, 0.2, force=1000.0, **bad, **steel)
+    except ValueError as error:
+        print(error)
+";
+    let printed = run(python_in(&scratch("python_handle_effects")).args(["-c", script]));
+    let expected = "\
+True True
+True True False True
+period is 'z'; it must be 'x', 'y' or 'xy'
+layer has shape (15, 16); it must be (16, 16)
+";
+    assert_eq!(printed, expected);
+}
+
 macro_rules! layout {
     ($into:ident, $python:literal, $kind:ty, $($member:ident),+) => {
         $into.insert(format!("{} sizeof", $python), size_of::<$kind>());
@@ -115,8 +173,16 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         reserved,
         approach,
         force,
-        influence
+        influence,
+        layer,
+        pressure_limit,
+        period,
+        patches
     );
+    layout!(ours, "Patches", contact_normal_patches, struct_size, count, reserved, patch, factors);
+    layout!(ours, "Layer", contact_normal_layer, struct_size, compliance, compliances);
+    layout!(ours, "PressureLimit", contact_normal_pressure_limit, struct_size, limit, limits);
+    layout!(ours, "Period", contact_normal_period, struct_size, x, y);
     layout!(
         ours,
         "Options",

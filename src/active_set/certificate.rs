@@ -37,15 +37,10 @@ pub struct Survey {
 impl Survey {
     /// Surveys a state.
     pub fn of(state: &State) -> Survey {
-        let mut survey = Survey {
-            residual: 0.0,
-            distance: 0.0,
-            penetration: 0.0,
-            contact_count: 0,
-            pressures: 0.0,
-            range: (f64::INFINITY, f64::NEG_INFINITY),
-            work: (0.0, 0.0),
-        };
+        if !state.at_limit.is_empty() {
+            return Survey::of_limited(state);
+        }
+        let mut survey = Survey::nothing();
         let mx = state.grid.mx;
         for start in (0..state.grid.len()).step_by(mx) {
             let row = start..start + mx;
@@ -70,6 +65,18 @@ impl Survey {
         }
         (survey.residual, survey.distance) = (survey.residual.sqrt(), survey.distance.sqrt());
         survey
+    }
+
+    pub(super) fn nothing() -> Survey {
+        Survey {
+            residual: 0.0,
+            distance: 0.0,
+            penetration: 0.0,
+            contact_count: 0,
+            pressures: 0.0,
+            range: (f64::INFINITY, f64::NEG_INFINITY),
+            work: (0.0, 0.0),
+        }
     }
 
     fn add_row(&mut self, approach: f64, h: &[f64], u: &[f64], p: &[f64], contact: &[bool]) {

@@ -3,6 +3,7 @@
 mod certificate;
 mod exchange;
 mod guard;
+mod limited;
 mod outline;
 mod state;
 

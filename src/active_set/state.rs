@@ -22,6 +22,8 @@ pub struct State {
     pub u: Vec<f64>,
     /// C.
     pub contact: Vec<bool>,
+    /// Elements at the pressure limit, beside C; empty: none.
+    pub at_limit: Vec<bool>,
     /// The approach: given, or the current estimate when the force is prescribed.
     pub approach: f64,
     /// What is prescribed.
@@ -42,6 +44,7 @@ impl State {
             p: zeros(n, "pressures")?,
             u: zeros(n, "displacements")?,
             contact: zeros(n, "contact")?,
+            at_limit: Vec::new(),
             approach,
             load,
         })

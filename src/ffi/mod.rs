@@ -4,6 +4,7 @@
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
 mod batch;
+mod effects;
 mod floating_point;
 mod guard;
 mod log;
@@ -18,6 +19,7 @@ mod structs;
 
 pub use self::log::*;
 pub use batch::*;
+pub use effects::*;
 pub use options::*;
 pub use report::*;
 pub use scene::*;

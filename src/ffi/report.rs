@@ -15,7 +15,7 @@ pub struct contact_normal_fields {
     pub deformed_distance: *mut f64,
     /// u = A p.
     pub displacement: *mut f64,
-    /// 0: exterior, 1: contact. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+    /// 0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
     pub contact: *mut i32,
 }
 

@@ -1,5 +1,8 @@
 //! `contact_normal_scene` and its effects.
 
+use super::effects::{
+    self, contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit, Effects,
+};
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
@@ -67,6 +70,14 @@ pub struct contact_normal_scene {
     pub force: f64,
     /// Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
+    /// Effect, or NULL: a thin compliant layer.
+    pub layer: *const contact_normal_layer,
+    /// Effect, or NULL: pressures do not exceed a limit.
+    pub pressure_limit: *const contact_normal_pressure_limit,
+    /// Effect, or NULL: the scene repeats itself.
+    pub period: *const contact_normal_period,
+    /// Effect, or NULL: several contact patches, whose interaction is scaled.
+    pub patches: *const contact_normal_patches,
 }
 
 // SAFETY: integers, floats and raw pointers only, struct_size first.
@@ -88,6 +99,10 @@ unsafe impl Versioned for contact_normal_scene {
             approach: 0.0,
             force: 0.0,
             influence: std::ptr::null(),
+            layer: std::ptr::null(),
+            pressure_limit: std::ptr::null(),
+            period: std::ptr::null(),
+            patches: std::ptr::null(),
         }
     }
 }
@@ -155,7 +170,9 @@ pub(super) unsafe fn translate_for<'a>(
         // SAFETY: not null: a struct that declares its size.
         Some(unsafe { translate_influence(scene.influence, &grid)? })
     };
-    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence })
+    // SAFETY: as for the scene.
+    let Effects { period, layer, pressure_limit, patches } = unsafe { effects::translate(&scene, &grid)? };
+    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence, period, layer, pressure_limit, patches })
 }
 
 /// Number of values in a table of coefficients.

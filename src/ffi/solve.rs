@@ -150,6 +150,8 @@ impl Outputs {
             }
             if !fields.contact.is_null() {
                 (0..n).for_each(|i| fields.contact.add(i).write(i32::from(state.contact[i])));
+                let at_limit = state.at_limit.iter().enumerate().filter(|(_, &at_limit)| at_limit);
+                at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));
             }
         }
         if self.report.is_null() {

@@ -40,7 +40,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
 }
 
 /// Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
-/// for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. After a first solve,
+/// for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
+/// whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
 /// further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(

@@ -27,7 +27,7 @@ const MOST_TERMS: usize = 8;
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
 /// Nodes and weights of the 9-point Gauss-Legendre rule on [-1, 1], non-negative half (Abramowitz & Stegun 25.4).
-const GAUSS: [(f64, f64); 5] = [
+pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.0, 0.330_239_355_001_259_8),
     (0.324_253_423_403_808_9, 0.312_347_077_040_002_84),
     (0.613_371_432_700_590_4, 0.260_610_696_402_935_46),
@@ -94,6 +94,16 @@ impl HalfSpace {
     /// The coefficients times `factor`.
     pub fn times(&self, factor: f64) -> HalfSpace {
         HalfSpace { compliance: factor * self.compliance, ..self.clone() }
+    }
+
+    /// `c = 1/(pi E*)`.
+    pub fn compliance(&self) -> f64 {
+        self.compliance
+    }
+
+    /// The element's dx and dy.
+    pub fn element(&self) -> (f64, f64) {
+        (self.dx, self.dy)
     }
 
     /// The coefficient at offset `(kx, ky)`.

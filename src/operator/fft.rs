@@ -71,7 +71,7 @@ pub fn good_length(n: usize) -> usize {
     best
 }
 
-/// Transforms of real rows of one even length `n` to `n/2 + 1` complex bins and back (unnormalised).
+/// Transforms of real rows of one length `n` to `n/2 + 1` complex bins and back (unnormalised).
 #[derive(Clone)]
 pub struct RowTransform<T: Real> {
     forward: Arc<dyn RealToComplex<T>>,
@@ -113,8 +113,10 @@ impl<T: Real> RowTransform<T> {
     pub fn inverse(&self, bins: &mut [Complex<T>], row: &mut [T], scratch: &mut [Complex<T>]) {
         // What round-off leaves there is refused by the library.
         bins[0].im = T::zero();
-        let last = bins.len() - 1;
-        bins[last].im = T::zero();
+        if self.length() % 2 == 0 {
+            let last = bins.len() - 1;
+            bins[last].im = T::zero();
+        }
         let scratch = &mut scratch[..self.inverse.get_scratch_len()];
         let done = self.inverse.process_with_scratch(bins, row, scratch);
         assert!(done.is_ok(), "a row transform of the wrong length");

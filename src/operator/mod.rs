@@ -4,6 +4,7 @@
 pub mod columns;
 pub mod dense;
 pub mod fft;
+mod patches;
 mod toeplitz;
 
 pub(crate) use crate::memory::{reserve, zeros};

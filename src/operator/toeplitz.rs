@@ -7,13 +7,16 @@
 //! The period must keep the offsets `-(m-1)..m-1` apart: `2m - 1`, or `2m - 2` when the coefficients are even
 //! (offsets `m-1` and `-(m-1)` are then alike). The product is fused and pruned: real transforms of those rows only that
 //! hold pressures; per block of eight columns gather, transform, multiply, transform back, scatter; real transforms of
-//! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept.
+//! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept. In a direction in which
+//! the coefficients repeat themselves after the grid A is circulant: the period is the grid's, and nothing is padded. A diagonal of its
+//! own that A may have is added as the rows come back.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::columns::{for_each_block, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
+use super::patches::Mask;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -35,6 +38,10 @@ pub struct Toeplitz<T: Real> {
     rows: RowTransform<T>,
     columns: ColumnTransform<T>,
     spectrum: Spectrum<T>,
+    /// What A has on its diagonal beyond the coefficients; empty: nothing.
+    diagonal: Vec<T>,
+    /// Patches between which A is scaled.
+    mask: Option<Mask<T>>,
     threads: Threads,
 }
 
@@ -43,6 +50,10 @@ pub struct Workspace<T: Real> {
     /// `[my][px/2 + 1]`: the rows, transformed in x.
     bins: Vec<Complex<T>>,
     pieces: Vec<Piece<T>>,
+    /// With patches: p scaled for one of them, and its product.
+    masked: [Vec<T>; 2],
+    /// And p, where u takes its place.
+    given: Vec<T>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -73,7 +84,7 @@ struct Piece<T: Real> {
 impl<T: Real> Workspace<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        std::mem::size_of_val(&self.bins[..])
+        std::mem::size_of_val(&self.bins[..]) + 3 * std::mem::size_of_val(&self.given[..])
     }
 }
 
@@ -81,12 +92,18 @@ impl<T: Real> Toeplitz<T> {
     /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
     pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
         let even = influence.is_even(grid);
-        let period = |m: usize| good_length(if even { 2 * m - 2 } else { 2 * m - 1 });
-        let (px, py) = (period(grid.mx), period(grid.my));
+        let repeats = influence.repeats(grid);
+        let period = |m: usize, repeats: bool| match (repeats, even) {
+            (true, _) => m,
+            (_, true) => good_length(2 * m - 2),
+            (_, false) => good_length(2 * m - 1),
+        };
+        let (px, py) = (period(grid.mx, repeats.0), period(grid.my, repeats.1));
         let spectrum = if even {
+            let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
             even_spectrum(
                 (px, py),
-                (grid.mx, grid.my),
+                (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
                 |ky, row| influence.fill_row(0, ky, row),
                 |value| value,
                 threads,
@@ -94,14 +111,25 @@ impl<T: Real> Toeplitz<T> {
         } else {
             general_spectrum(influence, grid, px, py, threads)?
         };
+        let diagonal = influence.diagonal().unwrap_or_default().iter().map(|d| T::of(*d)).collect();
         Ok(Toeplitz {
             mx: grid.mx,
             my: grid.my,
             rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
+            diagonal,
+            mask: influence.patches().map(Mask::new),
             threads: threads.clone(),
         })
+    }
+
+    /// The period of a preconditioner's circulant: that of the grid itself, a quarter of the work of a padded one at the same number
+    /// of iterations.
+    pub fn circulant_period(influence: &Influence, grid: &Grid) -> (usize, usize) {
+        let repeats = influence.repeats(grid);
+        let period = |m: usize, repeats: bool| if repeats { m } else { good_length(m + 1) };
+        (period(grid.mx, repeats.0), period(grid.my, repeats.1))
     }
 
     /// The inverse of a circulant near A, as a preconditioner: period `px * py >= mx * my`, coefficients at offsets up to
@@ -127,6 +155,8 @@ impl<T: Real> Toeplitz<T> {
             rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
+            diagonal: Vec::new(),
+            mask: None,
             threads: threads.clone(),
         }))
     }
@@ -147,7 +177,9 @@ impl<T: Real> Toeplitz<T> {
             }
         };
         let (rows, columns) = (RowTransform::new(self.rows.length()), ColumnTransform::new(self.columns.length()));
-        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, threads: self.threads.clone() })
+        let diagonal = self.diagonal.iter().map(|d| convert(*d)).collect();
+        let (mask, threads) = (self.mask.as_ref().map(Mask::in_precision), self.threads.clone());
+        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, mask, threads })
     }
 
     /// Memory for products by this operator.
@@ -159,36 +191,69 @@ impl<T: Real> Toeplitz<T> {
             let columns = vec![Complex::default(); (BLOCK * self.columns.length()).max(self.rows.bins())];
             pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
         }
-        Ok(Workspace { bins: zeros(self.my * self.rows.bins(), "the product's workspace")?, pieces })
+        let masked = self.mask.as_ref().map_or(0, |_| self.mx * self.my);
+        let memory = |n| zeros(n, "the product's workspace");
+        Ok(Workspace {
+            bins: zeros(self.my * self.rows.bins(), "the product's workspace")?,
+            pieces,
+            masked: [memory(masked)?, memory(masked)?],
+            given: memory(masked)?,
+        })
     }
 
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
-        match &self.spectrum {
+        let spectrum = match &self.spectrum {
             Spectrum::Even(s) => std::mem::size_of_val(&s[..]),
             Spectrum::General(s) => std::mem::size_of_val(&s[..]),
-        }
+        };
+        spectrum + std::mem::size_of_val(&self.diagonal[..]) + self.mask.as_ref().map_or(0, Mask::bytes)
     }
 
     /// `u = A p`.
     pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
-        self.apply_rows(p, u, 0..self.my, workspace);
+        let Some(mask) = &self.mask else { return self.apply_rows(p, u, 0..self.my, workspace) };
+        let mut masked = std::mem::take(&mut workspace.masked);
+        mask.apply(p, u, &mut masked, |p, u| self.apply_rows(p, u, 0..self.my, workspace));
+        workspace.masked = masked;
     }
 
-    /// `u = A p` in the grid's rows `wanted`; the other rows of `u` keep what they hold.
+    /// `u = A p` in the grid's rows `wanted`, as if there were no patches; the other rows of `u` keep what they hold.
     pub fn apply_rows(&self, p: &[T], u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
         assert!(p.len() == self.mx * self.my && u.len() == p.len() && wanted.end <= self.my);
         let loaded = self.transform_rows(p, workspace);
         self.convolve_columns(loaded, wanted.clone(), workspace);
-        self.transform_rows_back(u, wanted, workspace);
+        if self.diagonal.is_empty() {
+            return self.transform_rows_back(u, wanted, workspace, |_, u, row| u.copy_from_slice(row));
+        }
+        self.transform_rows_back(u, wanted, workspace, |iy, u, row| {
+            let elements = iy * self.mx..(iy + 1) * self.mx;
+            for (((u, value), d), p) in u.iter_mut().zip(row).zip(&self.diagonal[elements.clone()]).zip(&p[elements]) {
+                *u = *value + *d * *p;
+            }
+        });
     }
 
     /// `p = A p`.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         assert!(p.len() == self.mx * self.my);
+        if self.mask.is_some() {
+            let mut given = std::mem::take(&mut workspace.given);
+            given.copy_from_slice(p);
+            self.apply(&given, p, workspace);
+            workspace.given = given;
+            return;
+        }
         let loaded = self.transform_rows(p, workspace);
         self.convolve_columns(loaded, 0..self.my, workspace);
-        self.transform_rows_back(p, 0..self.my, workspace);
+        if self.diagonal.is_empty() {
+            return self.transform_rows_back(p, 0..self.my, workspace, |_, u, row| u.copy_from_slice(row));
+        }
+        self.transform_rows_back(p, 0..self.my, workspace, |iy, p, row| {
+            for ((p, value), d) in p.iter_mut().zip(row).zip(&self.diagonal[iy * self.mx..]) {
+                *p = *value + *d * *p;
+            }
+        });
     }
 
     /// Transforms in x the rows that hold pressures; returns which.
@@ -208,7 +273,7 @@ impl<T: Real> Toeplitz<T> {
 
     /// Transforms in y, multiplies by the spectrum and transforms back, block by block: from rows `loaded` to rows `wanted`.
     fn convolve_columns(&self, loaded: Range<usize>, wanted: Range<usize>, workspace: &mut Workspace<T>) {
-        let Workspace { bins, pieces } = workspace;
+        let Workspace { bins, pieces, .. } = workspace;
         let nb = self.rows.bins();
         let length = self.columns.length();
         for_each_block(&mut bins[..self.my * nb], nb, &self.threads, pieces, |block, piece| {
@@ -221,9 +286,15 @@ impl<T: Real> Toeplitz<T> {
         });
     }
 
-    /// Transforms the rows `wanted` back.
-    fn transform_rows_back(&self, u: &mut [T], wanted: Range<usize>, workspace: &mut Workspace<T>) {
-        let Workspace { bins, pieces } = workspace;
+    /// Transforms the rows `wanted` back; `write(iy, row of u, values)` takes each of them.
+    fn transform_rows_back(
+        &self,
+        u: &mut [T],
+        wanted: Range<usize>,
+        workspace: &mut Workspace<T>,
+        write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
+    ) {
+        let Workspace { bins, pieces, .. } = workspace;
         let nb = self.rows.bins();
         let (first, bins) = (wanted.start, &bins[..]);
         let out = &mut u[wanted.start * self.mx..wanted.end * self.mx];
@@ -232,7 +303,7 @@ impl<T: Real> Toeplitz<T> {
             let row_bins = &mut piece.columns[..nb];
             row_bins.copy_from_slice(&bins[(first + i) * nb..(first + i + 1) * nb]);
             self.rows.inverse(row_bins, &mut piece.row[..self.rows.length()], &mut piece.scratch);
-            u_row.copy_from_slice(&piece.row[..self.mx]);
+            write(first + i, u_row, &piece.row[..self.mx]);
         });
     }
 

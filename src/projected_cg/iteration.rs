@@ -26,12 +26,13 @@
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
+use super::preconditioner::Preconditioner;
 use super::runs::Runs;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::fft::{good_length, Real};
+use crate::operator::fft::Real;
 use crate::operator::{reserve, zeros, Toeplitz, Workspace};
 use crate::scene::Load;
 use crate::threads::Threads;
@@ -58,9 +59,8 @@ const HELD_BACK: f64 = 1e-6;
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
     operator: Toeplitz<T>,
-    preconditioner: Option<Toeplitz<T>>,
+    preconditioner: Option<Preconditioner<T>>,
     workspace: Workspace<T>,
-    preconditioner_workspace: Option<Workspace<T>>,
     t: Vec<T>,
     q: Vec<T>,
     z: Vec<T>,
@@ -124,11 +124,10 @@ pub enum End {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`, the operator of which is given. The preconditioner's circulant has the period of the grid itself, a quarter of the work of a
-    /// padded one at the same number of iterations. Where it is not positive, the iteration does without.
+    /// Sets up the iteration on `grid`, the operator of which is given. Where the preconditioner's circulant is not positive, the
+    /// iteration does without.
     pub fn new(operator: Toeplitz<T>, influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
-        let periods = (good_length(grid.mx + 1), good_length(grid.my + 1));
-        let preconditioner = Toeplitz::inverse_circulant(influence, grid, periods, threads)?;
+        let preconditioner = Preconditioner::new(influence, grid, threads)?;
         if preconditioner.is_none() {
             log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
         }
@@ -140,7 +139,6 @@ impl<T: Real> Iteration<T> {
         reserve(&mut debts, n, "truncated elements")?;
         Ok(Iteration {
             workspace: operator.workspace()?,
-            preconditioner_workspace: preconditioner.as_ref().map(Toeplitz::workspace).transpose()?,
             operator,
             preconditioner,
             t: directions()?,
@@ -155,9 +153,8 @@ impl<T: Real> Iteration<T> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let preconditioner = self.preconditioner.as_ref().map_or(0, Toeplitz::bytes);
-        let workspaces = self.workspace.bytes() + self.preconditioner_workspace.as_ref().map_or(0, Workspace::bytes);
-        self.operator.bytes() + preconditioner + workspaces + self.t.len() * 3 * size_of::<T>()
+        let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
+        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.len() * 3 * size_of::<T>()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -178,7 +175,7 @@ impl<T: Real> Iteration<T> {
             self.update_displacements(state, &Update::default(), false);
             self.find_contact(state);
             self.residual(state);
-            self.precondition();
+            self.precondition(state);
             self.direct(state, 0.0, None);
             self.update_pressures(state, FIRST_STEP, None, false);
             self.debts.clear();
@@ -230,7 +227,7 @@ impl<T: Real> Iteration<T> {
             iterations += 1;
 
             // z = M r
-            self.precondition();
+            self.precondition(state);
 
             // t = z + beta t, held back, and the debts
             self.direct(state, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
@@ -347,9 +344,10 @@ impl<T: Real> Iteration<T> {
     }
 
     /// z = M r, r being what z holds.
-    fn precondition(&mut self) {
-        if let (Some(m), Some(workspace)) = (&self.preconditioner, &mut self.preconditioner_workspace) {
-            m.apply_in_place(&mut self.z, workspace);
+    fn precondition(&mut self, state: &State) {
+        if let Some(m) = &mut self.preconditioner {
+            let by_force = matches!(state.load, Load::Force(_));
+            m.apply(&mut self.z, by_force.then_some(&state.contact[..]));
         }
     }
 

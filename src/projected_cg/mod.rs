@@ -2,6 +2,7 @@
 //! iteration over the grids.
 
 mod iteration;
+mod preconditioner;
 mod runs;
 mod window;
 

@@ -7,6 +7,7 @@ mod batch;
 mod descent_method;
 mod estimates;
 mod full_multigrid;
+mod limited;
 mod monitor;
 mod multigrid_method;
 mod norm_method;
@@ -28,7 +29,7 @@ use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::multigrid::{CycleShape, Multigrid};
 use crate::operator::zeros;
-use crate::scene::{Bodies, Load, Scene};
+use crate::scene::{Bodies, Layer, Load, Period, Scene};
 use crate::threads::Threads;
 use monitor::{Monitor, Rule};
 use norm_method::Displace;
@@ -54,6 +55,11 @@ pub struct Solver {
     grid: Grid,
     bodies: Bodies,
     has_own_influence: bool,
+    period: Option<Period>,
+    has_layer: bool,
+    has_patches: bool,
+    /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
+    without_multigrid: Option<&'static str>,
     symmetric: bool,
     /// The largest coefficient, whatever its sign.
     largest_influence: f64,
@@ -68,6 +74,7 @@ pub struct Solver {
     /// The finest grid's, then one per coarser grid of `multigrid`.
     states: Vec<State>,
     workspace: full_multigrid::Workspace,
+    limited: limited::Workspace,
     ledger: Vec<LedgerRow>,
     /// For batches: solvers of one thread, made when first needed.
     workers: Vec<Option<Solver>>,
@@ -98,6 +105,10 @@ impl Solver {
             grid: scene.grid,
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
+            period: scene.period,
+            has_layer: scene.layer.is_some(),
+            has_patches: scene.patches.is_some(),
+            without_multigrid: without_multigrid(scene),
             symmetric: influence.is_symmetric(&scene.grid),
             largest_influence: influence.largest(&scene.grid),
             shape: options.cycle_shape(),
@@ -108,6 +119,7 @@ impl Solver {
             multigrid: None,
             states: vec![State::new(scene.grid, h, scene.load, 0.0)?],
             workspace: full_multigrid::Workspace::default(),
+            limited: limited::Workspace::default(),
             ledger: Vec::new(),
             workers: Vec::new(),
             solved_before: false,
@@ -162,16 +174,21 @@ impl Solver {
             max_cycles: options.max_cycles as u64,
         };
         let start = self.start(scene, options, guess, monitor)?;
-        let stop = if self.without_contact(scene.load, rule.fixed) {
+        let mut stop = if self.without_contact(scene.load, rule.fixed) {
             Stop::Converged
         } else {
             self.run(options, &rule, start, monitor)?
         };
+        if let Some(limit) = scene.pressure_limit {
+            stop = self.limit_pressures(limit, stop, options, &rule, monitor)?;
+        }
         let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
         self.solved_before = true;
         self.u_is_product = stop == Stop::Converged;
         monitor.close_grid(&self.states[0]);
-        if options.estimates && self.symmetric && !rule.fixed && !monitor.is_cancelled() {
+        // With a limit of the pressures the samples would be other problems.
+        let comparable = self.symmetric && !rule.fixed && scene.pressure_limit.is_none();
+        if options.estimates && comparable && !monitor.is_cancelled() {
             let state = &self.states[0];
             let (samples, count) = self.projected.samples(state, monitor)?;
             monitor.estimate(state, &samples[..count]);
@@ -212,7 +229,32 @@ impl Solver {
         if scene.influence.is_some() && !self.has_own_influence {
             return invalid("influence is given, but this solver was set up for the half-space".into());
         }
-        Ok(())
+        if scene.period != self.period {
+            return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));
+        }
+        let named = [
+            ("a layer", scene.layer.is_some(), self.has_layer),
+            ("patches", scene.patches.is_some(), self.has_patches),
+        ];
+        for (effect, is_named, was_named) in named {
+            if is_named != was_named {
+                let with = |yes: bool| if yes { "with" } else { "without" };
+                return invalid(format!(
+                    "the scene is {} {effect}; this solver was set up {}",
+                    with(is_named),
+                    with(was_named)
+                ));
+            }
+        }
+        if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
+            let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
+            return Err(Error::Unsupported(message.into()));
+        }
+        match (options.method, self.without_multigrid) {
+            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
+            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
+            _ => Ok(()),
+        }
     }
 
     fn check_options(&self, options: &Options) -> Result<()> {
@@ -295,6 +337,8 @@ impl Solver {
             Method::Auto => {
                 let stop = if self.symmetric {
                     self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)?
+                } else if self.without_multigrid.is_some() {
+                    return self.norm(rule, monitor);
                 } else {
                     self.full_multigrid(options, rule, start, monitor)?
                 };
@@ -367,6 +411,25 @@ impl Solver {
     fn bytes(&self) -> usize {
         let states: usize = self.states.iter().map(State::bytes).sum();
         let workers: usize = self.workers.iter().flatten().map(Solver::bytes).sum();
-        self.projected.bytes() + self.multigrid.as_ref().map_or(0, Multigrid::bytes) + states + workers
+        self.projected.bytes()
+            + self.multigrid.as_ref().map_or(0, Multigrid::bytes)
+            + states
+            + workers
+            + self.limited.bytes()
     }
+}
+
+/// The effects that MULTIGRID and FULL_MULTIGRID do not solve.
+fn without_multigrid(scene: &Scene<'_>) -> Option<&'static str> {
+    match scene {
+        Scene { period: Some(_), .. } => Some("period"),
+        Scene { patches: Some(_), .. } => Some("patches"),
+        Scene { layer: Some(Layer::PerElement(_)), .. } => Some("a layer of one compliance per element"),
+        _ => None,
+    }
+}
+
+fn unsupported(method: &str, effect: &str) -> Result<()> {
+    let rule = "AUTO chooses a method that does";
+    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
 }

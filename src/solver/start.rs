@@ -33,6 +33,10 @@ impl Solver {
         let mut u_is_known = std::mem::take(&mut self.u_is_product);
         let fixed = options.active_set == ActiveSet::Fixed;
         let state = &mut self.states[0];
+        // What was at the pressure limit was in contact.
+        for (inside, at_limit) in state.contact.iter_mut().zip(state.at_limit.drain(..)) {
+            *inside |= at_limit;
+        }
         let from = match (options.initial_guess, guess) {
             (InitialGuess::Previous, Some(guess)) if fixed => {
                 check_guess(guess, &state.grid)?;

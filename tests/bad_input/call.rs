@@ -48,11 +48,20 @@ pub enum Through {
 pub struct Call {
     pub scene: Box<Grown<contact_normal_scene>>,
     pub influence: Box<Grown<contact_normal_influence>>,
+    pub layer: Box<Grown<contact_normal_layer>>,
+    pub limit: Box<Grown<contact_normal_pressure_limit>>,
+    pub period: Box<Grown<contact_normal_period>>,
+    pub patches: Box<Grown<contact_normal_patches>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
     pub h: Vec<f64>,
     pub table: Vec<f64>,
+    /// Values per element, of a layer or of limits.
+    pub each: Vec<f64>,
+    /// Of two patches.
+    pub patch: Vec<i32>,
+    pub factors: [f64; 4],
     pub pressure: Vec<f64>,
     pub contact: Vec<i32>,
     /// The argument that is NULL instead.
@@ -80,6 +89,10 @@ impl Call {
         let mut call = Call {
             scene: Grown::new(initialised(contact_normal_scene_init)),
             influence: Grown::new(initialised(contact_normal_influence_init)),
+            layer: Grown::new(initialised(contact_normal_layer_init)),
+            limit: Grown::new(initialised(contact_normal_pressure_limit_init)),
+            period: Grown::new(initialised(contact_normal_period_init)),
+            patches: Grown::new(initialised(contact_normal_patches_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -87,6 +100,9 @@ impl Call {
                 .map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2))
                 .collect(),
             table: vec![0.0; 4 * CX * CY],
+            each: vec![1.0; N],
+            patch: (0..N).map(|i| (2 * (i % MX) / MX) as i32).collect(),
+            factors: [1.0, 0.5, 0.5, 1.0],
             pressure: vec![SENTINEL; N],
             contact: vec![SENTINEL_CONTACT; N],
             without: "",
@@ -121,6 +137,45 @@ impl Call {
     pub fn use_table(&mut self) -> &mut contact_normal_influence {
         self.scene.known.influence = &raw const self.influence.known;
         &mut self.influence.known
+    }
+
+    /// Names a layer in the scene, and the layer to change.
+    pub fn use_layer(&mut self) -> &mut contact_normal_layer {
+        self.scene.known.layer = &raw const self.layer.known;
+        &mut self.layer.known
+    }
+
+    /// The same with a limit of the pressures,
+    pub fn use_limit(&mut self) -> &mut contact_normal_pressure_limit {
+        self.scene.known.pressure_limit = &raw const self.limit.known;
+        &mut self.limit.known
+    }
+
+    /// and with a period.
+    pub fn use_period(&mut self, x: i32, y: i32) {
+        self.scene.known.period = &raw const self.period.known;
+        (self.period.known.x, self.period.known.y) = (x, y);
+    }
+
+    /// Two patches side by side, with these factors.
+    pub fn use_patches(&mut self, factors: [f64; 4]) -> &mut contact_normal_patches {
+        self.factors = factors;
+        let patches = &mut self.patches.known;
+        (patches.count, patches.patch, patches.factors) = (2, self.patch.as_ptr(), self.factors.as_ptr());
+        self.scene.known.patches = &raw const self.patches.known;
+        &mut self.patches.known
+    }
+
+    /// One compliance per element, one of which is changed.
+    pub fn set_compliance(&mut self, i: usize, value: f64) {
+        self.each[i] = value;
+        self.use_layer().compliances = self.each.as_ptr();
+    }
+
+    /// One limit per element, one of which is changed.
+    pub fn set_limit(&mut self, i: usize, value: f64) {
+        self.each[i] = value;
+        self.use_limit().limits = self.each.as_ptr();
     }
 
     /// Sets the coefficient at an offset.

@@ -37,7 +37,6 @@
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::operator::fft::good_length;
 use crate::operator::{zeros, Toeplitz, Workspace};
 use crate::threads::Threads;
 
@@ -56,8 +55,8 @@ pub struct Fft {
 impl Fft {
     /// Sets up the smoother on `grid`.
     pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Fft> {
-        let periods = (good_length(grid.mx + 1), good_length(grid.my + 1));
-        let inverse_circulant = match Toeplitz::inverse_circulant(influence, grid, periods, threads)? {
+        let period = Toeplitz::<f64>::circulant_period(influence, grid);
+        let inverse_circulant = match Toeplitz::inverse_circulant(influence, grid, period, threads)? {
             Some(inverse) => {
                 let workspace = inverse.workspace()?;
                 Some((inverse, workspace))

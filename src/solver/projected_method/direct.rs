@@ -39,9 +39,10 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// On a small grid with even coefficients; none on others.
+    /// On a small grid with even coefficients and an inverse; none on others.
     pub fn new(influence: &Influence, grid: &Grid) -> Result<Option<Direct>> {
-        if grid.len() > LARGEST_GRID || !influence.is_even(grid) {
+        let suits = influence.is_even(grid) && !influence.depends_on_place() && !influence.is_mean_free();
+        if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);
         }
         let mut table = zeros(grid.len(), "influence coefficients")?;

@@ -228,7 +228,10 @@ impl Level {
 
     fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
-        let window = Window::around(state, current);
+        let window = match self.influence.depends_on_place() {
+            false => Window::around(state, current),
+            true => Window::full(&self.grid),
+        };
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
         let units = match self.precision {

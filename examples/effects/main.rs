@@ -1,0 +1,111 @@
+//! What each effect costs, alone, on the paper's ellipse: the table of docs/effects.md.
+//!
+//! `cargo run --release --example effects`: the table, medians of repeats in turns. `-- NAME M`: one solve of one row on M x M elements,
+//! to count its instructions: `valgrind --tool=callgrind target/release/examples/effects plain 128`.
+
+use std::time::Instant;
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::solver::{solve, Options, Report, Stop};
+
+const ROWS: [&str; 9] = [
+    "plain",
+    "layer",
+    "layer-per-element",
+    "pressure_limit-not-reached",
+    "pressure_limit",
+    "period-x",
+    "period-xy",
+    "period-xy-layer",
+    "patches",
+];
+const REPEATS: usize = 7;
+
+/// The arrays of a scene.
+struct Arrays {
+    grid: Grid,
+    h: Vec<f64>,
+    compliances: Vec<f64>,
+    /// Two halves.
+    patch: Vec<i32>,
+}
+
+impl Arrays {
+    fn new(m: usize) -> Arrays {
+        let grid = Grid::new(m, m, 20.0 / m as f64, 12.0 / m as f64).expect("a valid grid");
+        let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
+        let square = |i: usize| (centre(i % m, grid.dx).powi(2), centre(i / m, grid.dy).powi(2));
+        let h = (0..grid.len()).map(|i| 0.0016681 * square(i).0 + 0.0030671 * square(i).1).collect();
+        // mm3/N: up to about what the half-space gives way over 1 mm; a strip has none.
+        let compliances = (0..grid.len()).map(|i| 1e-5 * (square(i).0 / 20.0).min(1.0)).collect();
+        let patch = (0..grid.len()).map(|i| i32::from(2 * (i % m) >= m)).collect();
+        Arrays { grid, h, compliances, patch }
+    }
+
+    fn scene(&self, row: &str) -> Scene<'_> {
+        let mut scene = Scene::new(self.grid, &self.h, Bodies::same(82000.0, 0.28), Load::Force(82000.0));
+        match row {
+            "layer" => scene.layer = Some(Layer::Uniform(1e-5)),
+            "layer-per-element" => scene.layer = Some(Layer::PerElement(&self.compliances)),
+            "pressure_limit-not-reached" => scene.pressure_limit = Some(PressureLimit::Uniform(2000.0)),
+            "pressure_limit" => scene.pressure_limit = Some(PressureLimit::Uniform(1400.0)),
+            "period-x" => scene.period = Some(Period { x: true, y: false }),
+            "period-xy" => scene.period = Some(Period { x: true, y: true }),
+            "patches" => {
+                scene.patches = Some(Patches { count: 2, patch: &self.patch, factors: &[1.0, 0.5, 0.5, 1.0] });
+            }
+            "period-xy-layer" => {
+                (scene.period, scene.layer) = (Some(Period { x: true, y: true }), Some(Layer::Uniform(1e-5)));
+            }
+            _ => {}
+        }
+        scene
+    }
+}
+
+/// A cold call; its seconds.
+fn call(scene: &Scene<'_>) -> (f64, Report) {
+    let began = Instant::now();
+    let (solver, stop, report) = solve(scene, &Options::default()).expect("a solvable scene");
+    assert_eq!(stop, Stop::Converged);
+    drop(solver);
+    (began.elapsed().as_secs_f64(), report)
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [row, m] = &arguments[..] {
+        let arrays = Arrays::new(m.parse().expect("a number of elements"));
+        let (_, report) = call(&arrays.scene(row));
+        println!("{row} {m}: {} products, force {:.1}", report.matrix_products, report.measures.force);
+        return;
+    }
+    let arrays = Arrays::new(512);
+    let scenes = ROWS.map(|row| arrays.scene(row));
+    let mut times = ROWS.map(|_| (Vec::new(), Vec::new()));
+    let mut reports = Vec::new();
+    for repeat in 0..REPEATS {
+        for (scene, times) in scenes.iter().zip(&mut times) {
+            let (seconds, report) = call(scene);
+            times.0.push(report.setup_seconds);
+            times.1.push(seconds - report.setup_seconds);
+            if repeat == 0 {
+                reports.push(report);
+            }
+        }
+    }
+    println!("| scene, 512 x 512 | set-up ms | solve ms | products | work units | bytes per element |");
+    println!("|---|---:|---:|---:|---:|---:|");
+    for ((row, (setup, solve)), report) in ROWS.into_iter().zip(times).zip(reports) {
+        let (setup, solve) = (1e3 * median(setup), 1e3 * median(solve));
+        let bytes = report.bytes as f64 / arrays.grid.len() as f64;
+        let (products, work) = (report.matrix_products, report.work_units);
+        println!("| {row} | {setup:.1} | {solve:.1} | {products} | {work:.1} | {bytes:.1} |");
+    }
+}

@@ -1,0 +1,67 @@
+//! Effect: pressures do not exceed a limit, the hardness of the softer surface: `0 <= p <= p_max`.
+//!
+//! An elastic body with a perfectly plastic surface (Polonsky & Keer 1999, section 2; the limit is about 2.8 yield stresses): where
+//! the limit is reached the surface gives way by as much as is needed, and the deformed distance e is its depth, negative.
+//!
+//! ```text
+//! p = 0,          e >= 0    in the exterior area
+//! 0 <= p,         e = 0     in contact
+//! p = p_max,      e <= 0    at the limit
+//! ```
+
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+
+/// p_max, a pressure; +infinity: no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressureLimit<'a> {
+    /// The same everywhere.
+    Uniform(f64),
+    /// One per element, `[my][mx]`.
+    PerElement(&'a [f64]),
+}
+
+impl PressureLimit<'_> {
+    /// Of element i.
+    pub fn at(&self, i: usize) -> f64 {
+        match self {
+            PressureLimit::Uniform(limit) => *limit,
+            PressureLimit::PerElement(limits) => limits[i],
+        }
+    }
+
+    /// Refuses what is no limit.
+    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+        let require = |name: &dyn Fn() -> String, limit: f64| match limit {
+            limit if limit.is_nan() => Err(Error::NotFinite(format!("{} is {limit}; it must be a number", name()))),
+            limit if limit <= 0.0 => {
+                invalid(format!("{} is {limit}; a pressure limit must be positive; +infinity: none", name()))
+            }
+            _ => Ok(()),
+        };
+        match self {
+            PressureLimit::Uniform(limit) => require(&|| "pressure_limit->limit".into(), *limit),
+            PressureLimit::PerElement(limits) if limits.len() != grid.len() => invalid(format!(
+                "pressure_limit->limits has {} values; the grid has {} elements",
+                limits.len(),
+                grid.len()
+            )),
+            PressureLimit::PerElement(limits) => limits.iter().enumerate().try_for_each(|(i, limit)| {
+                require(&|| format!("pressure_limit->limits of element ({}, {})", i % grid.mx, i / grid.mx), *limit)
+            }),
+        }
+    }
+
+    /// Refuses a force that is more than all elements with a surface carry at the limit.
+    pub(super) fn check_force(&self, force: f64, h: &[f64], grid: &Grid) -> Result<()> {
+        let limits = (0..h.len()).filter(|&i| h[i].is_finite()).map(|i| self.at(i));
+        let greatest = limits.sum::<f64>() * grid.element_area();
+        // A sum of n terms is good to some units of round-off.
+        if force > greatest * (1.0 + 1e-12) {
+            return Err(Error::Infeasible(format!(
+                "force is {force}; with this pressure_limit the greatest force that can be carried is {greatest}"
+            )));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,193 @@
+//! Effect `pressure_limit`: an active set of elements at the limit, around the solve of a scene without one.
+//!
+//! With L the elements at the limit, `p_L` the limits on them and 0 elsewhere, what is left is a scene like any other:
+//!
+//! ```text
+//! h' = h + A p_L outside L, no surface on L;    force' = force - sum of p_L dx dy, or the same approach
+//! elements with p > p_max enter L, elements of L with e > 0 leave it, until none does
+//! ```
+//!
+//! L is empty at first: where the limit is never reached nothing else is done, and the solution has the bits of one without it. Each
+//! further solve starts from the pressures of the one before.
+
+use super::monitor::{Monitor, Rule};
+use super::report::Stop;
+use super::start::Start;
+use super::{Options, Solver};
+use crate::active_set::{ExchangeGuard, State};
+use crate::error::Result;
+use crate::scene::{Load, PressureLimit};
+
+/// Changes of L at most.
+const ROUNDS: u32 = 200;
+/// A force that is left over of this part is round-off of the sum of limits.
+const NO_FORCE: f64 = 1e-12;
+
+/// Memory, kept from one solve to the next; none before a scene has a limit that is reached.
+#[derive(Default)]
+pub(super) struct Workspace {
+    /// L.
+    at_limit: Vec<bool>,
+    /// The scene's undeformed distance.
+    h: Vec<f64>,
+    /// p_L and A p_L.
+    limits: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl Workspace {
+    pub fn bytes(&self) -> usize {
+        self.h.len() * (3 * size_of::<f64>() + size_of::<bool>())
+    }
+}
+
+impl Solver {
+    /// Goes on from the solution without a limit, `stop` being how that ended.
+    pub(super) fn limit_pressures(
+        &mut self,
+        limit: PressureLimit<'_>,
+        stop: Stop,
+        options: &Options,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let (mut stop, load) = (stop, self.states[0].load);
+        if (0..self.grid.len()).all(|i| self.states[0].p[i] <= limit.at(i)) {
+            return Ok(stop);
+        }
+        let mut work = std::mem::take(&mut self.limited);
+        work.at_limit.clear();
+        work.at_limit.resize(self.grid.len(), false);
+        work.h.clone_from(&self.states[0].h);
+        work.limits.resize(self.grid.len(), 0.0);
+        work.displacement.resize(self.grid.len(), 0.0);
+        let (mut guard, mut rounds) = (ExchangeGuard::default(), 0);
+        loop {
+            let changes = work.exchange(&mut self.states[0], limit, rule.tolerance, &mut guard);
+            if stop == Stop::Converged && changes > 0 && rounds < ROUNDS {
+                rounds += 1;
+                monitor.active_set_changes += changes;
+                monitor.active_set_steps += 1;
+            } else {
+                // Not settled: what is above the limit is cut off.
+                stop = if stop == Stop::Converged && changes > 0 { Stop::Stagnated } else { stop };
+                break;
+            }
+            let solved = self.solve_outside(&mut work, limit, load, options, rule, monitor);
+            match solved {
+                Ok(ended) => stop = ended,
+                Err(error) => {
+                    self.limited = work;
+                    return Err(error);
+                }
+            }
+        }
+        log::info!("the pressure limit: {rounds} changes of the elements at it");
+        self.join(&work, load, monitor);
+        self.limited = work;
+        Ok(stop)
+    }
+
+    /// Solves for what is outside L.
+    fn solve_outside(
+        &mut self,
+        work: &mut Workspace,
+        limit: PressureLimit<'_>,
+        load: Load,
+        options: &Options,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let Workspace { at_limit, h, limits, displacement } = work;
+        for (i, p) in limits.iter_mut().enumerate() {
+            *p = if at_limit[i] { limit.at(i) } else { 0.0 };
+        }
+        self.projected.displace(limits, displacement);
+        let state = &mut self.states[0];
+        for i in 0..h.len() {
+            state.h[i] = if at_limit[i] { f64::INFINITY } else { h[i] + displacement[i] };
+            if at_limit[i] {
+                state.p[i] = 0.0;
+            }
+            state.contact[i] = state.p[i] > 0.0;
+        }
+        if let Load::Force(force) = load {
+            let left = force - limits.iter().sum::<f64>() * self.grid.element_area();
+            state.load = Load::Force(if left > NO_FORCE * force { left } else { 0.0 });
+        }
+        let load = state.load;
+        if self.without_contact(load, rule.fixed) {
+            return Ok(Stop::Converged);
+        }
+        let state = &mut self.states[0];
+        if state.contact_count() == 0 {
+            // The starting area for what is left, all of which it is to carry.
+            state.start(self.projected.influence().at(0, 0));
+        }
+        state.balance_force();
+        self.projected.displace(&state.p, &mut state.u);
+        state.fit_approach();
+        monitor.count_products(2, 1.0);
+        self.run(options, rule, Start::Given, monitor)
+    }
+
+    /// The whole state again: p of both, u = A p anew, and L beside C.
+    fn join(&mut self, work: &Workspace, load: Load, monitor: &mut Monitor<'_>) {
+        let state = &mut self.states[0];
+        (state.load, state.at_limit) = (load, work.at_limit.clone());
+        state.h.copy_from_slice(&work.h);
+        for i in 0..work.h.len() {
+            if work.at_limit[i] {
+                (state.p[i], state.contact[i]) = (work.limits[i], false);
+            }
+        }
+        self.projected.displace(&state.p, &mut state.u);
+        monitor.count_products(1, 1.0);
+        if matches!(load, Load::Force(_)) && !state.contact.contains(&true) {
+            // Nothing is in elastic contact: the least approach that holds all elements at the limit.
+            let held = (0..work.h.len()).filter(|&i| work.at_limit[i]).map(|i| state.h[i] + state.u[i]);
+            state.approach = held.fold(f64::NEG_INFINITY, f64::max);
+        }
+    }
+}
+
+impl Workspace {
+    /// Who enters L and who leaves it; all of them, or one if that may cycle. Returns how many.
+    fn exchange(
+        &mut self,
+        state: &mut State,
+        limit: PressureLimit<'_>,
+        tolerance: f64,
+        guard: &mut ExchangeGuard,
+    ) -> u64 {
+        // Inside L a deformed distance above 0 is judged as penetrations outside C are.
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..self.h.len() {
+            if self.at_limit[i] || state.contact[i] {
+                sum += (self.h[i] - state.approach).powi(2);
+                count += 1.0;
+            }
+        }
+        let allowed = tolerance * (sum / f64::max(count, 1.0)).sqrt();
+        let violates = |at_limit: bool, i: usize| match at_limit {
+            true => self.h[i] - state.approach + state.u[i] + self.displacement[i] > allowed,
+            false => state.p[i] > limit.at(i),
+        };
+        let violators = (0..self.h.len()).filter(|&i| violates(self.at_limit[i], i)).count();
+        if violators == 0 {
+            return 0;
+        }
+        let first = if guard.allows_all(violators) {
+            0
+        } else {
+            (0..self.h.len()).rfind(|&i| violates(self.at_limit[i], i)).unwrap_or(0)
+        };
+        let changing: Vec<usize> = (first..self.h.len()).filter(|&i| violates(self.at_limit[i], i)).collect();
+        for &i in &changing {
+            self.at_limit[i] = !self.at_limit[i];
+            state.p[i] = if self.at_limit[i] { 0.0 } else { limit.at(i) };
+            self.limits[i] = if self.at_limit[i] { limit.at(i) } else { 0.0 };
+        }
+        changing.len() as u64
+    }
+}

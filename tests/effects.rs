@@ -1,0 +1,73 @@
+//! Pairs of effects: solved, and then the conditions hold, or refused by names; none silently ignored.
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Table};
+use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::solver::{solve, Options, Stop};
+
+const EFFECTS: [&str; 6] = ["influence", "layer", "pressure_limit", "period", "patches", "excluded elements"];
+
+/// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
+const REFUSED: [(&str, &str); 2] = [("influence", "period"), ("period", "patches")];
+
+#[test]
+fn every_pair_is_solved_or_refused_and_each_effect_tells() {
+    let grid = Grid::new(20, 18, 0.1, 0.1).unwrap();
+    let h: Vec<f64> = (0..grid.len())
+        .map(|i| 0.02 * ((i % 20) as f64 - 9.0).powi(2) * 0.1 + 0.003 * ((i / 20) as f64 - 8.0).powi(2))
+        .collect();
+    let patch: Vec<i32> = (0..grid.len()).map(|i| i32::from(i % 20 > 9)).collect();
+    let mut hole = h.clone();
+    hole[8 * 20 + 9] = f64::INFINITY;
+    let half_space = HalfSpace::new(0.1, 0.1, Bodies::same(1.0, 0.3).compliance());
+    let table: Vec<f64> = (0..4 * grid.len())
+        .map(|i| {
+            let (kx, ky) = ((i % 40) as i64 - 20, (i / 40) as i64 - 18);
+            half_space.at(kx, ky) * (-0.3 * ((kx * kx + ky * ky) as f64).sqrt()).exp()
+        })
+        .collect();
+    let table = Table::new(20, 18, &table, &grid).unwrap();
+    let with = |names: [&str; 2]| {
+        let has = |name: &str| names.contains(&name);
+        Scene {
+            influence: has("influence").then(|| table.clone()),
+            layer: has("layer").then_some(Layer::Uniform(0.05)),
+            pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
+            patches: has("patches").then_some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.2, 0.2, 1.0] }),
+            period: has("period").then_some(Period { x: true, y: false }),
+            ..Scene::new(
+                grid,
+                if has("excluded elements") { &hole } else { &h },
+                Bodies::same(1.0, 0.3),
+                Load::Force(0.1),
+            )
+        }
+    };
+    let solved = |names: [&str; 2]| {
+        let (solver, stop, report) =
+            solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
+        assert_eq!(stop, Stop::Converged, "{names:?}");
+        assert!(report.measures.certificate.residual <= 1e-6, "{names:?}");
+        solver.state().p.clone()
+    };
+    for (k, one) in EFFECTS.into_iter().enumerate() {
+        let alone = solved([one, one]);
+        for other in &EFFECTS[k + 1..] {
+            if REFUSED.contains(&(one, other)) {
+                let Err(Error::Unsupported(message)) = solve(&with([one, other]), &Options::default()) else {
+                    panic!("{one} and {other}: not refused as UNSUPPORTED")
+                };
+                assert!(message.contains(one) && message.contains(other), "{message}");
+                continue;
+            }
+            // Pressures of some 0.2 change by far more than the tolerance of 1e-6 when an effect is left out.
+            let both = solved([one, other]);
+            let second = solved([other, other]);
+            for (name, single) in [(one, &alone), (*other, &second)] {
+                let change = both.iter().zip(single).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(change > 1e-3, "{one} and {other}: as if there were {name} alone, {change}");
+            }
+        }
+    }
+}
