@@ -98,6 +98,13 @@ fn batch() {
 }
 
 #[test]
+fn to_accuracy() {
+    let measures = check_example("to_accuracy", &[]);
+    assert_certified(&measures, TOLERANCE);
+    assert_force(measures.force, 82000.0);
+}
+
+#[test]
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
     assert_certified(&measures, TOLERANCE);
@@ -195,6 +202,9 @@ fn c_and_rust_agree_on_every_struct() {
             residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger
+        }
+        contact_normal_accuracy {
+            struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds
         }
         contact_normal_hertz_solution {
             semi_axis_x, semi_axis_y, max_pressure, approach, force, area

@@ -205,6 +205,24 @@ fn ctypes_structs_have_the_layout_of_the_library() {
     );
     layout!(
         ours,
+        "Accuracy",
+        contact_normal_accuracy,
+        struct_size,
+        target,
+        max_seconds,
+        max_bytes,
+        max_elements,
+        surface,
+        user,
+        mx,
+        my,
+        dx,
+        dy,
+        reached,
+        seconds
+    );
+    layout!(
+        ours,
         "HertzSolution",
         contact_normal_hertz_solution,
         semi_axis_x,

@@ -3,6 +3,7 @@
 #![allow(non_camel_case_types)]
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
+mod accuracy;
 mod batch;
 mod floating_point;
 mod guard;
@@ -17,6 +18,7 @@ mod status;
 mod structs;
 
 pub use self::log::*;
+pub use accuracy::*;
 pub use batch::*;
 pub use options::*;
 pub use report::*;

@@ -2,9 +2,11 @@
 
 mod bodies;
 mod load;
+mod refine;
 
 pub use bodies::Bodies;
 pub use load::Load;
+pub use refine::refine;
 
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
