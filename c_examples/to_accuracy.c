@@ -29,7 +29,7 @@ static void print_result(const char *from, const contact_normal_accuracy *accura
 {
     const double error = fabs(approach / exact - 1.0);
 
-    printf("%-22s %4d x %-4d %11.4f %16s %12s\n", from, (int)accuracy->mx, (int)accuracy->my, approach,
+    printf("%-22s %4d x %-4d %11.6f %16s %12s\n", from, (int)accuracy->mx, (int)accuracy->my, approach,
            accuracy->reached <= accuracy->target ? "yes" : "no", error <= accuracy->target ? "yes" : "no");
 }
 
@@ -115,7 +115,7 @@ int main(int argc, char **argv)
     /* What the last solve knew on each grid: one row each, coarsest first. */
     printf("\n%-11s %11s %17s\n", "grid", "approach", "estimated error");
     for (i = 0; i < (int)report.ledger_rows && i < 16; i++) {
-        printf("%4d x %-4d %11.4f", (int)rows[i].mx, (int)rows[i].my, rows[i].approach);
+        printf("%4d x %-4d %11.6f", (int)rows[i].mx, (int)rows[i].my, rows[i].approach);
         if (rows[i].error_force >= 0.0)
             printf(" %17.1e\n", rows[i].error_force);
         else

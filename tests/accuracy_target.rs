@@ -161,6 +161,7 @@ fn a_solve_that_does_not_converge_ends_it() {
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
     assert_eq!(outcome.stop, Stop::IterationLimit);
     assert!(outcome.reason.contains("max_cycles was reached on 16 x 16"), "{}", outcome.reason);
+    assert!(outcome.reached.is_none() && outcome.report.measures.force > 0.0);
 }
 
 #[test]
@@ -188,4 +189,35 @@ fn elements_without_surface_stay_so() {
     for (iy, ix) in (7 * parts - 1..=8 * parts).flat_map(|iy| (8 * parts - 1..=9 * parts).map(move |ix| (iy, ix))) {
         assert_eq!(contact[solver.grid().index(ix, iy)], !in_hole(ix, iy), "({ix}, {iy})");
     }
+}
+
+#[test]
+fn a_solve_that_takes_too_long_is_dropped() {
+    // The prediction allows 32 x 32 elements, if the machine is not asleep; then the surface takes all of the time and more.
+    let h = case::undeformed_distance(START);
+    let (scene, seconds) = (case::scene(START, &h), 1.0);
+    let mut surface = |grid: &Grid, h: &mut [f64]| {
+        h.copy_from_slice(&case::undeformed_distance(grid.mx));
+        if grid.mx > START {
+            std::thread::sleep(std::time::Duration::from_secs_f64(1.1 * seconds));
+        }
+        false
+    };
+    let accuracy = Accuracy { max_seconds: seconds, ..Accuracy::new(1e-6) };
+    let outcome =
+        solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a solvable scene");
+    assert_eq!(outcome.stop, Stop::IterationLimit);
+    assert!(outcome.reason.contains("max_seconds"), "{}", outcome.reason);
+    assert_start_is_kept(&outcome);
+}
+
+#[test]
+fn without_an_estimate_it_is_given_up() {
+    // NORM visits no coarser grid.
+    let options = Options { method: Method::Norm, ..Options::default() };
+    let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-2), &options);
+    assert_eq!((outcome.stop, outcome.reached), (Stop::Stagnated, None), "{}", outcome.reason);
+    // 16 x 16 does not count, 32, 64 and 128 do.
+    assert_eq!(grid_of(&outcome).mx, 128);
+    assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);
 }

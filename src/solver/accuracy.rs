@@ -78,8 +78,8 @@ pub fn solve_to_accuracy(
     let (stop, why) = loop {
         let (entered, before) = (began.elapsed().as_secs_f64(), best.is_some());
         let late = |_: &Progress| before && accuracy.is_late(began.elapsed().as_secs_f64());
-        let (solver, report) = match on_grid(scene, &options, parts, &mut surface, &mut progress, &late) {
-            Ok(Ok(solved)) => (solved.solver, solved.report),
+        let solved = match on_grid(scene, &options, parts, &mut surface, &mut progress, &late) {
+            Ok(Ok(solved)) => solved,
             Ok(Err((stop, why, unfinished))) => {
                 best = best.or(unfinished);
                 break (stop, why);
@@ -87,9 +87,8 @@ pub fn solve_to_accuracy(
             Err(Error::OutOfMemory(message)) if before => break (Stop::IterationLimit, message),
             Err(error) => return Err(error),
         };
-        let relative = relative_error(scene.load, &report);
-        let grid = solver.grid;
-        best = Some(Solved { solver, report, relative });
+        let (grid, report, relative) = (solved.solver.grid, solved.report, solved.relative);
+        best = Some(solved);
 
         let judged = grid.mx.max(grid.my) >= ENOUGH_ACROSS;
         without_contact = if report.measures.contact_count == 0 { without_contact + 1 } else { 0 };
@@ -192,7 +191,8 @@ fn on_grid(
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
     let (stop, report) = solver.solve(&scene, options, None, Some(&mut watch))?;
-    let relative = relative_error(scene.load, &report);
+    // What is not solved has no estimate.
+    let relative = if stop == Stop::Converged { relative_error(scene.load, &report) } else { None };
     let solved = Solved { solver, report, relative };
     Ok(match stop {
         Stop::Converged => Ok(solved),
