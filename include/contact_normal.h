@@ -192,6 +192,36 @@
 #define CONTACT_NORMAL_PRECISION_MIXED 2
 
 /*
+ `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
+ */
+#define CONTACT_NORMAL_UNTRUSTED_FORCE 1
+
+/*
+ `untrusted`: that of the largest pressure (singular at an edge, or on a surface that the grid does not resolve).
+ */
+#define CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE 2
+
+/*
+ `untrusted`: that of the pressures.
+ */
+#define CONTACT_NORMAL_UNTRUSTED_PRESSURE 4
+
+/*
+ `limited_by`: not known.
+ */
+#define CONTACT_NORMAL_LIMITED_BY_UNKNOWN 0
+
+/*
+ `limited_by`: the grid; a smaller tolerance would change nothing.
+ */
+#define CONTACT_NORMAL_LIMITED_BY_GRID 1
+
+/*
+ `limited_by`: the tolerance; the residual may hide a larger error than the grid's.
+ */
+#define CONTACT_NORMAL_LIMITED_BY_TOLERANCE 2
+
+/*
  Log level: nothing.
  */
 #define CONTACT_NORMAL_LOG_OFF 0
@@ -453,8 +483,8 @@ typedef struct contact_normal_fields {
 } contact_normal_fields;
 
 /*
- One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are negative where no
- coarser grid was solved.
+ One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
+ known, and if the bit is set in `untrusted`, not to be known from these grids.
  */
 typedef struct contact_normal_ledger_row {
   /*
@@ -494,11 +524,15 @@ typedef struct contact_normal_ledger_row {
    */
   double max_pressure;
   /*
-   Contact area.
+   Contact area: that of the elements in contact.
    */
   double contact_area;
   /*
-   Estimated discretisation error of the force (of the approach, when the force is prescribed).
+   Contact area, corrected for the elements along its outline.
+   */
+  double corrected_area;
+  /*
+   Estimated error of the force (of the approach, when the force is prescribed).
    */
   double error_force;
   /*
@@ -509,6 +543,26 @@ typedef struct contact_normal_ledger_row {
    Of the contact area.
    */
   double error_contact_area;
+  /*
+   Of the corrected area.
+   */
+  double error_corrected_area;
+  /*
+   Of the pressures: rms of the error over that of p.
+   */
+  double error_pressure;
+  /*
+   Elements in contact.
+   */
+  int64_t contact_count;
+  /*
+   CONTACT_NORMAL_UNTRUSTED_... bits.
+   */
+  int32_t untrusted;
+  /*
+   Always 0.
+   */
+  int32_t reserved;
 } contact_normal_ledger_row;
 
 /*
@@ -580,7 +634,8 @@ typedef struct contact_normal_report {
    */
   int64_t contact_count;
   /*
-   Estimated discretisation error of the force (of the approach, when the force is prescribed); < 0: not known.
+   Estimated error of the force (of the approach, when the force is prescribed), absolute; < 0: not known. Errors are estimated
+   after a start from nothing, and after any start if there is a ledger.
    */
   double error_force;
   /*
@@ -604,7 +659,7 @@ typedef struct contact_normal_report {
    */
   int64_t bytes;
   /*
-   Rows that the solve wrote to `ledger`, or would have written had there been room: one per grid, coarsest first.
+   Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
    */
   int64_t ledger_rows;
   /*
@@ -615,6 +670,34 @@ typedef struct contact_normal_report {
    In: the caller's array, or NULL.
    */
   struct contact_normal_ledger_row *ledger;
+  /*
+   Contact area, corrected for the elements along its outline; < 0: not known.
+   */
+  double corrected_area;
+  /*
+   Estimated error of the corrected area.
+   */
+  double error_corrected_area;
+  /*
+   Of the pressures: rms of the error over that of p.
+   */
+  double error_pressure;
+  /*
+   CONTACT_NORMAL_UNTRUSTED_... bits.
+   */
+  int32_t untrusted;
+  /*
+   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+   */
+  int32_t limited_by;
+  /*
+   About the seconds of a solve with elements of half the size; < 0: not known.
+   */
+  double halved_seconds;
+  /*
+   And the error of the force (or the approach) that it would leave.
+   */
+  double halved_error_force;
 } contact_normal_report;
 
 /*
@@ -837,7 +920,7 @@ void contact_normal_accuracy_init(struct contact_normal_accuracy *accuracy);
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed). With `accuracy->surface` the scene's
+ `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
  undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
  OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
  surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases

@@ -213,9 +213,16 @@ fn a_solve_that_takes_too_long_is_dropped() {
 
 #[test]
 fn without_an_estimate_it_is_given_up() {
-    // NORM visits no coarser grid.
-    let options = Options { method: Method::Norm, ..Options::default() };
-    let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-2), &options);
+    // A pin of one element, the last of a block of four in both directions: samples on coarser grids, at the middle of blocks,
+    // do not see it, and touch nothing.
+    let mut surface = |grid: &Grid, h: &mut [f64]| {
+        h.fill(1.0);
+        h[grid.index(grid.mx / 2 + 3, grid.my / 2 + 3)] = 0.0;
+        false
+    };
+    let scene = Scene { load: Load::Approach(0.5), ..case::scene(START, &[]) };
+    let outcome = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-2), Some(&mut surface), None)
+        .expect("a scene");
     assert_eq!((outcome.stop, outcome.reached), (Stop::Stagnated, None), "{}", outcome.reason);
     // 16 x 16 does not count, 32, 64 and 128 do.
     assert_eq!(grid_of(&outcome).mx, 128);

@@ -3,9 +3,11 @@
 mod certificate;
 mod exchange;
 mod guard;
+mod outline;
 mod state;
 
 pub use certificate::{certify, norm_of_distance, residual_norm, Certificate, Survey};
 pub use exchange::{admit, starting_contact, truncate};
 pub use guard::ExchangeGuard;
+pub use outline::Outline;
 pub use state::State;

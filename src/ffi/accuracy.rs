@@ -83,7 +83,7 @@ pub unsafe extern "C" fn contact_normal_accuracy_init(accuracy: *mut contact_nor
 }
 
 /// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
-/// `accuracy->target` times the force (or the approach, when the force is prescribed). With `accuracy->surface` the scene's
+/// `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
 /// undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
 /// OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
 /// surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases

@@ -204,6 +204,8 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
             CONTACT_NORMAL_PRECISION_MIXED => Precision::Mixed,
             other => return unknown("precision", other, "AUTO 0, DOUBLE 1 or MIXED 2"),
         },
+        // As the report asks for: see `Outputs::options`.
+        estimates: false,
     };
     options.check()?;
     Ok(Translated { options, progress: given.progress, user: given.user })

@@ -1,7 +1,7 @@
 //! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
 
 use super::structs::{self, Versioned};
-use crate::solver::{LedgerRow, Progress, Report};
+use crate::solver::{LedgerRow, Limit, Progress, Report};
 
 /// Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
 #[repr(C)]
@@ -34,8 +34,22 @@ unsafe impl Versioned for contact_normal_fields {
     }
 }
 
-/// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are negative where no
-/// coarser grid was solved.
+/// `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
+pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
+/// `untrusted`: that of the largest pressure (singular at an edge, or on a surface that the grid does not resolve).
+pub const CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE: i32 = 2;
+/// `untrusted`: that of the pressures.
+pub const CONTACT_NORMAL_UNTRUSTED_PRESSURE: i32 = 4;
+
+/// `limited_by`: not known.
+pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
+/// `limited_by`: the grid; a smaller tolerance would change nothing.
+pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
+/// `limited_by`: the tolerance; the residual may hide a larger error than the grid's.
+pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
+
+/// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
+/// known, and if the bit is set in `untrusted`, not to be known from these grids.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_ledger_row {
@@ -57,14 +71,26 @@ pub struct contact_normal_ledger_row {
     pub force: f64,
     /// Largest pressure.
     pub max_pressure: f64,
-    /// Contact area.
+    /// Contact area: that of the elements in contact.
     pub contact_area: f64,
-    /// Estimated discretisation error of the force (of the approach, when the force is prescribed).
+    /// Contact area, corrected for the elements along its outline.
+    pub corrected_area: f64,
+    /// Estimated error of the force (of the approach, when the force is prescribed).
     pub error_force: f64,
     /// Of the largest pressure.
     pub error_max_pressure: f64,
     /// Of the contact area.
     pub error_contact_area: f64,
+    /// Of the corrected area.
+    pub error_corrected_area: f64,
+    /// Of the pressures: rms of the error over that of p.
+    pub error_pressure: f64,
+    /// Elements in contact.
+    pub contact_count: i64,
+    /// CONTACT_NORMAL_UNTRUSTED_... bits.
+    pub untrusted: i32,
+    /// Always 0.
+    pub reserved: i32,
 }
 
 impl From<&LedgerRow> for contact_normal_ledger_row {
@@ -80,9 +106,15 @@ impl From<&LedgerRow> for contact_normal_ledger_row {
             force: row.measures.force,
             max_pressure: row.measures.max_pressure,
             contact_area: row.measures.contact_area,
+            corrected_area: row.measures.corrected_area,
             error_force: row.error.force,
             error_max_pressure: row.error.max_pressure,
             error_contact_area: row.error.contact_area,
+            error_corrected_area: row.error.corrected_area,
+            error_pressure: row.error.pressure,
+            contact_count: row.measures.contact_count as i64,
+            untrusted: row.error.untrusted as i32,
+            reserved: 0,
         }
     }
 }
@@ -123,7 +155,8 @@ pub struct contact_normal_report {
     pub contact_area: f64,
     /// Elements in contact.
     pub contact_count: i64,
-    /// Estimated discretisation error of the force (of the approach, when the force is prescribed); < 0: not known.
+    /// Estimated error of the force (of the approach, when the force is prescribed), absolute; < 0: not known. Errors are estimated
+    /// after a start from nothing, and after any start if there is a ledger.
     pub error_force: f64,
     /// Of the largest pressure.
     pub error_max_pressure: f64,
@@ -135,12 +168,26 @@ pub struct contact_normal_report {
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: i64,
-    /// Rows that the solve wrote to `ledger`, or would have written had there been room: one per grid, coarsest first.
+    /// Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
     pub ledger_rows: i64,
     /// In: room in `ledger`.
     pub ledger_capacity: i64,
     /// In: the caller's array, or NULL.
     pub ledger: *mut contact_normal_ledger_row,
+    /// Contact area, corrected for the elements along its outline; < 0: not known.
+    pub corrected_area: f64,
+    /// Estimated error of the corrected area.
+    pub error_corrected_area: f64,
+    /// Of the pressures: rms of the error over that of p.
+    pub error_pressure: f64,
+    /// CONTACT_NORMAL_UNTRUSTED_... bits.
+    pub untrusted: i32,
+    /// What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+    pub limited_by: i32,
+    /// About the seconds of a solve with elements of half the size; < 0: not known.
+    pub halved_seconds: f64,
+    /// And the error of the force (or the approach) that it would leave.
+    pub halved_error_force: f64,
 }
 
 // SAFETY: integers, floats and a raw pointer only, struct_size first.
@@ -174,6 +221,13 @@ unsafe impl Versioned for contact_normal_report {
             ledger_rows: 0,
             ledger_capacity: 0,
             ledger: std::ptr::null_mut(),
+            corrected_area: -1.0,
+            error_corrected_area: -1.0,
+            error_pressure: -1.0,
+            untrusted: 0,
+            limited_by: CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
+            halved_seconds: -1.0,
+            halved_error_force: -1.0,
         }
     }
 }
@@ -213,6 +267,17 @@ impl contact_normal_report {
             ledger_rows: ledger_rows as i64,
             ledger_capacity,
             ledger,
+            corrected_area: measures.corrected_area,
+            error_corrected_area: report.error.corrected_area,
+            error_pressure: report.error.pressure,
+            untrusted: report.error.untrusted as i32,
+            limited_by: match report.limit {
+                Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
+                Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
+                Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
+            },
+            halved_seconds: report.halving.seconds,
+            halved_error_force: report.halving.force,
         }
     }
 }

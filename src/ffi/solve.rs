@@ -88,6 +88,12 @@ impl Outputs {
         Ok(())
     }
 
+    /// The options with what the report asks for: errors are estimated after a start from nothing, or when there is room for a ledger.
+    fn options(&self, options: &Options) -> Options {
+        let from_nothing = options.initial_guess == InitialGuess::None;
+        Options { estimates: !self.report.is_null() && (from_nothing || self.ledger_capacity > 0), ..*options }
+    }
+
     /// The caller's initial guess: pressures and contact area.
     fn guess<'a>(&self, options: &Options, n: usize, buffer: &'a mut GuessBuffer) -> Option<Guess<'a>> {
         let given = options.initial_guess == InitialGuess::Given;
@@ -155,7 +161,9 @@ impl Outputs {
         if self.report.is_null() {
             return Ok(());
         }
-        for (row, i) in rows.iter().zip(0..self.ledger_capacity as usize) {
+        // Where there is not room for all, those of the finest grids.
+        let skipped = rows.len().saturating_sub(self.ledger_capacity as usize);
+        for (i, row) in rows[skipped..].iter().enumerate() {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             unsafe { self.ledger.add(i).write(row.into()) };
         }
@@ -224,6 +232,7 @@ pub(super) fn run(
 ) -> Result<Outcome, Refusal> {
     let n = scene.grid.len();
     outputs.check_inputs(options, n)?;
+    let options = &outputs.options(options);
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, guess), progress)?;
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;

@@ -50,7 +50,7 @@ const ROUND_OFF: f64 = 1e-13;
 const LEAST_TOLERANCE: f64 = 1e-12;
 /// The residual, relative to the target: what it adds to the error does not count.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
-/// Grids with fewer elements across need not have an estimate.
+/// With fewer elements across, a grid's estimate is not believed, and need not be there.
 const ENOUGH_ACROSS: usize = 32;
 /// Grids with more that have none, before it is given up.
 const MOST_WITHOUT_ESTIMATE: usize = 3;
@@ -72,7 +72,7 @@ pub fn solve_to_accuracy(
     accuracy.check()?;
     check(scene, options, surface.is_some())?;
     let tolerance = options.tolerance.min(TOLERANCE_PER_TARGET * accuracy.target).max(LEAST_TOLERANCE);
-    let options = Options { tolerance, ..*options };
+    let options = Options { tolerance, estimates: true, ..*options };
     let mut best: Option<Solved> = None;
     let (mut parts, mut without_estimate, mut without_contact) = (1, 0, 0);
     let (stop, why) = loop {
@@ -93,7 +93,8 @@ pub fn solve_to_accuracy(
         let judged = grid.mx.max(grid.my) >= ENOUGH_ACROSS;
         without_contact = if report.measures.contact_count == 0 { without_contact + 1 } else { 0 };
         without_estimate += usize::from(judged && relative.is_none());
-        if relative.is_some_and(|relative| relative <= accuracy.target) && accuracy.target >= ROUND_OFF {
+        let met = judged && relative.is_some_and(|relative| relative <= accuracy.target);
+        if met && accuracy.target >= ROUND_OFF {
             break (Stop::Converged, "the target is met".into());
         }
         if without_contact == MOST_WITHOUT_ESTIMATE {
@@ -106,7 +107,8 @@ pub fn solve_to_accuracy(
             break (Stop::Stagnated, "no estimate of the error can be trusted".into());
         }
         let now = began.elapsed().as_secs_f64();
-        let past = Past { grid, relative, bytes: report.bytes, seconds: now - entered, elapsed: now };
+        let falls_by = relative.map(|_| report.error.force / report.halving.force).filter(|ratio| *ratio > 0.0);
+        let past = Past { grid, relative, falls_by, bytes: report.bytes, seconds: now - entered, elapsed: now };
         match accuracy.next(&past) {
             Next::Refine(doublings) => parts <<= doublings,
             Next::Limit(why) => break (Stop::IterationLimit, why),
@@ -205,10 +207,6 @@ fn on_grid(
 
 /// Estimated error of the force, or of the approach when the force is prescribed, over its value.
 fn relative_error(load: Load, report: &Report) -> Option<f64> {
-    let value = match load {
-        Load::Approach(_) => report.measures.force,
-        Load::Force(_) => report.measures.approach,
-    };
-    let relative = report.error.force / value.abs();
+    let relative = report.error.force / report.measures.found(load).abs();
     (relative >= 0.0 && relative.is_finite()).then_some(relative)
 }

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod batch;
+mod estimates;
 mod full_multigrid;
 mod monitor;
 mod multigrid_method;
@@ -20,7 +21,7 @@ pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
 pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
-pub use report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
+pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
 use crate::active_set::State;
 use crate::error::{invalid, Error, Result};
@@ -123,7 +124,7 @@ impl Solver {
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
         self.check_range(scene)?;
-        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger));
+        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.start_and_run(scene, options, guess, &mut monitor);
         let (mut report, ledger) = monitor.finish();
         self.ledger = ledger;
@@ -165,6 +166,11 @@ impl Solver {
         self.solved_before = true;
         self.u_is_product = stop == Stop::Converged;
         monitor.close_grid(&self.states[0]);
+        if options.estimates && self.symmetric && !rule.fixed && !monitor.is_cancelled() {
+            let state = &self.states[0];
+            let (samples, count) = self.projected.samples(state, monitor)?;
+            monitor.estimate(state, &samples[..count]);
+        }
         Ok(stop)
     }
 

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use super::report::{DiscretisationError, LedgerRow, Measures, Report, Stop};
-use crate::active_set::{norm_of_distance, residual_norm, State};
+use super::estimates::{self, Sample};
+use super::report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
+use crate::active_set::{norm_of_distance, residual_norm, Outline, State};
 use crate::grid::Grid;
-use crate::scene::Load;
 
 /// What a progress callback is told after each cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,11 +49,14 @@ pub struct Monitor<'a> {
     /// rms over C of the last change of p.
     pub update: f64,
     ledger: Vec<LedgerRow>,
+    estimates: bool,
+    limit: Limit,
+    halving: Halving,
 }
 
 impl<'a> Monitor<'a> {
-    /// The clock starts. `ledger` lends its memory.
-    pub fn new(callback: Option<ProgressCallback<'a>>, mut ledger: Vec<LedgerRow>) -> Monitor<'a> {
+    /// The clock starts. `ledger` lends its memory; `estimates`: whether errors are to be estimated.
+    pub fn new(callback: Option<ProgressCallback<'a>>, mut ledger: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
         ledger.clear();
         Monitor {
             began: Instant::now(),
@@ -66,6 +69,9 @@ impl<'a> Monitor<'a> {
             active_set_steps: 0,
             update: 0.0,
             ledger,
+            estimates,
+            limit: Limit::default(),
+            halving: Halving::default(),
         }
     }
 
@@ -120,10 +126,12 @@ impl<'a> Monitor<'a> {
         self.cancelled
     }
 
-    /// Writes the ledger row of the current grid; returns the estimated errors on it.
-    pub fn close_grid(&mut self, state: &State) -> DiscretisationError {
-        let measures = Measures::of(state);
-        let error = self.error_of(&measures, state);
+    /// Writes the ledger row of the current grid.
+    pub fn close_grid(&mut self, state: &State) {
+        let mut measures = Measures::of(state);
+        if self.estimates {
+            measures.corrected_area = Outline::of(state).corrected_area(state, measures.contact_count);
+        }
         self.ledger.push(LedgerRow {
             mx: state.grid.mx,
             my: state.grid.my,
@@ -131,23 +139,14 @@ impl<'a> Monitor<'a> {
             seconds: self.began.elapsed().as_secs_f64(),
             work_units: self.work_units,
             measures,
-            error,
+            error: DiscretisationError::default(),
         });
-        error
     }
 
-    /// The error that the step from the next coarser grid suggests for what is known now.
-    pub fn error_of(&self, measures: &Measures, state: &State) -> DiscretisationError {
-        let Some(coarser) = self.ledger.last() else { return DiscretisationError::default() };
-        let before = coarser.measures;
-        DiscretisationError {
-            force: match state.load {
-                Load::Approach(_) => (measures.force - before.force).abs(),
-                Load::Force(_) => (measures.approach - before.approach).abs(),
-            },
-            max_pressure: (measures.max_pressure - before.max_pressure).abs(),
-            contact_area: (measures.contact_area - before.contact_area).abs(),
-        }
+    /// The ledger with its errors, once they are known.
+    pub fn estimate(&mut self, state: &State, samples: &[Sample]) {
+        let solve_seconds = self.began.elapsed().as_secs_f64();
+        (self.limit, self.halving) = estimates::estimate(&mut self.ledger, state, samples, solve_seconds);
     }
 
     /// The report of the whole solve, whose last ledger row is the finest grid's, and the ledger.
@@ -162,6 +161,8 @@ impl<'a> Monitor<'a> {
             work_units: self.work_units,
             measures: last.map(|row| row.measures).unwrap_or_default(),
             error: last.map(|row| row.error).unwrap_or_default(),
+            limit: self.limit,
+            halving: self.halving,
             solve_seconds: self.began.elapsed().as_secs_f64(),
             ..Report::default()
         };

@@ -96,6 +96,8 @@ pub struct Options {
     pub threads: usize,
     /// Arithmetic of the inner work.
     pub precision: Precision,
+    /// Whether the errors of report and ledger are estimated.
+    pub estimates: bool,
 }
 
 impl Default for Options {
@@ -115,6 +117,7 @@ impl Default for Options {
             max_cycles: 1000,
             threads: 1,
             precision: Precision::Auto,
+            estimates: false,
         }
     }
 }

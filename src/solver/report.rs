@@ -1,6 +1,7 @@
 //! What a solve found, what it cost, and what it knew when.
 
 use crate::active_set::{Certificate, State, Survey};
+use crate::scene::Load;
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,10 +31,12 @@ pub struct Measures {
     pub contact_count: usize,
     /// Their area.
     pub contact_area: f64,
+    /// The same, corrected for the elements along the outline; negative when errors are not estimated.
+    pub corrected_area: f64,
 }
 
 impl Measures {
-    /// Measures a state whose u is A p.
+    /// Measures a state whose u is A p; without the corrected area.
     pub fn of(state: &State) -> Measures {
         let survey = Survey::of(state);
         Measures {
@@ -43,25 +46,84 @@ impl Measures {
             max_pressure: survey.range.1.max(0.0),
             contact_count: survey.contact_count,
             contact_area: survey.contact_count as f64 * state.grid.element_area(),
+            corrected_area: -1.0,
+        }
+    }
+
+    /// What the load does not prescribe: the force or the approach.
+    pub fn found(&self, load: Load) -> f64 {
+        match load {
+            Load::Approach(_) => self.force,
+            Load::Force(_) => self.approach,
         }
     }
 }
 
-/// Estimated discretisation errors: how far the value moved from the next coarser grid. Pressures and areas converge about
-/// linearly in the element size, so that is about the error that is left. Negative: not known (no coarser grid was solved).
+/// Estimated errors (module `estimates`). Negative: not known, because it was not asked for, or there are no coarser grids, or, with
+/// its bit in `untrusted`, because the values on the coarser grids do not converge as an estimate needs them to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscretisationError {
     /// Of the force (of the approach, when the force is prescribed).
     pub force: f64,
     /// Of the largest pressure.
     pub max_pressure: f64,
-    /// Of the contact area.
+    /// Of the contact area by counting elements.
     pub contact_area: f64,
+    /// Of the corrected contact area.
+    pub corrected_area: f64,
+    /// Of the pressures: rms of the error over that of p.
+    pub pressure: f64,
+    /// Bits: see [`DiscretisationError::FORCE`] and the following.
+    pub untrusted: u32,
+}
+
+impl DiscretisationError {
+    /// In `untrusted`: the error of the force or the approach.
+    pub const FORCE: u32 = 1;
+    /// Of the largest pressure.
+    pub const MAX_PRESSURE: u32 = 2;
+    /// Of the pressures.
+    pub const PRESSURE: u32 = 4;
 }
 
 impl Default for DiscretisationError {
     fn default() -> DiscretisationError {
-        DiscretisationError { force: -1.0, max_pressure: -1.0, contact_area: -1.0 }
+        let unknown = -1.0;
+        DiscretisationError {
+            force: unknown,
+            max_pressure: unknown,
+            contact_area: unknown,
+            corrected_area: unknown,
+            pressure: unknown,
+            untrusted: 0,
+        }
+    }
+}
+
+/// What limits the accuracy of a solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Limit {
+    /// Not known.
+    #[default]
+    Unknown,
+    /// The grid: a smaller tolerance would change nothing.
+    Grid,
+    /// The tolerance: the residual may hide an error larger than that of the grid.
+    Tolerance,
+}
+
+/// What elements of half the size would cost and bring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Halving {
+    /// Seconds of a solve, at the growth of the time with the number of elements that was measured: n^1.13 (docs/performance.md).
+    pub seconds: f64,
+    /// Error of the force (or the approach) that would be left.
+    pub force: f64,
+}
+
+impl Default for Halving {
+    fn default() -> Halving {
+        Halving { seconds: -1.0, force: -1.0 }
     }
 }
 
@@ -103,6 +165,10 @@ pub struct Report {
     pub measures: Measures,
     /// And how far it is off.
     pub error: DiscretisationError,
+    /// What limits the accuracy.
+    pub limit: Limit,
+    /// What the next finer grid would bring; negative: not known.
+    pub halving: Halving,
     /// Seconds of set-up: 0 when the solver was set up before.
     pub setup_seconds: f64,
     /// Seconds of the solve.

@@ -29,6 +29,8 @@ pub(super) struct Past {
     pub grid: Grid,
     /// Estimated relative error, if known.
     pub relative: Option<f64>,
+    /// By what the error falls with a doubling, if known: 4 where it is of second order in the element size.
+    pub falls_by: Option<f64>,
     /// Bytes held by its solver.
     pub bytes: u64,
     /// Seconds that it took: undeformed distance, set-up and solve.
@@ -52,8 +54,8 @@ const MOST_ELEMENTS: u64 = 4096 * 4096;
 const ALL_ELEMENTS: u64 = i32::MAX as u64;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
-/// Errors of the force fall by this with a doubling: they are of second order in the element size.
-const ERROR_PER_DOUBLING: f64 = 4.0;
+/// By what errors of the force fall with a doubling on smooth bodies, and the least that is believed: order 1/2.
+const FALLS_BY: (f64, f64) = (4.0, std::f64::consts::SQRT_2);
 /// The target may be missed by a quarter of a doubling: a grid too few costs a quarter more, one too many four times as much.
 const SLACK: f64 = 0.25;
 /// Seconds grow with this power of the number of elements (docs/performance.md).
@@ -86,7 +88,7 @@ impl Accuracy {
 
     /// The next grid: the one that is predicted to meet the target, or as many doublings towards it as the limits allow.
     pub(super) fn next(&self, past: &Past) -> Next {
-        let mut doublings = self.doublings(past.relative);
+        let mut doublings = self.doublings(past);
         loop {
             match self.limit(past, doublings) {
                 None => return Next::Refine(doublings),
@@ -97,8 +99,9 @@ impl Accuracy {
     }
 
     /// Doublings that the estimate asks for; one if there is none.
-    fn doublings(&self, relative: Option<f64>) -> u32 {
-        let wanted = relative.map_or(1.0, |relative| (relative / self.target).log(ERROR_PER_DOUBLING) - SLACK);
+    fn doublings(&self, past: &Past) -> u32 {
+        let falls_by = past.falls_by.unwrap_or(FALLS_BY.0).clamp(FALLS_BY.1, FALLS_BY.0);
+        let wanted = past.relative.map_or(1.0, |relative| (relative / self.target).log(falls_by) - SLACK);
         // `as` saturates, and takes a NaN for 0.
         (wanted.ceil() as u32).clamp(1, MOST_DOUBLINGS)
     }
@@ -130,7 +133,14 @@ mod tests {
     use super::*;
 
     fn past(relative: Option<f64>) -> Past {
-        Past { grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"), relative, bytes: 100, seconds: 1.0, elapsed: 1.5 }
+        Past {
+            grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"),
+            relative,
+            falls_by: None,
+            bytes: 100,
+            seconds: 1.0,
+            elapsed: 1.5,
+        }
     }
 
     #[test]
@@ -143,6 +153,12 @@ mod tests {
             assert_eq!(accuracy.next(&past(Some(relative))), Next::Refine(doublings), "{relative}");
         }
         assert_eq!(accuracy.next(&past(None)), Next::Refine(1));
+        // An order of 1, and one that is not believed: 2^2.25 = 4.76, 2^1.125 = 2.18.
+        for (falls_by, relative, doublings) in [(2.0, 4.7e-4, 2), (2.0, 4.8e-4, 3), (1.0, 2.1e-4, 2), (1.0, 2.2e-4, 3)]
+        {
+            let past = Past { falls_by: Some(falls_by), ..past(Some(relative)) };
+            assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{past:?}");
+        }
     }
 
     #[test]

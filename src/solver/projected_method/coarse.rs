@@ -23,17 +23,19 @@ const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
 
 /// One coarser grid.
-struct Coarse {
-    level: Level,
-    state: State,
+pub(super) struct Coarse {
+    pub(super) level: Level,
+    pub(super) state: State,
+    /// Means of the finest grid's pressures, while the grid is a sample.
+    pub(super) means: Vec<f64>,
 }
 
 /// All coarser grids.
 pub struct CoarseGrids {
     /// Elements of the finest grid.
-    finest: usize,
+    pub(super) finest: usize,
     /// The coarsest last.
-    grids: Vec<Coarse>,
+    pub(super) grids: Vec<Coarse>,
 }
 
 impl CoarseGrids {
@@ -49,6 +51,7 @@ impl CoarseGrids {
             grids.push(Coarse {
                 level: Level::new(fine, influence.clone(), precision, threads),
                 state: State::new(fine, h, load, 0.0)?,
+                means: Vec::new(),
             });
         }
         Ok(CoarseGrids { finest: grid.len(), grids })
@@ -56,7 +59,10 @@ impl CoarseGrids {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum()
+        self.grids
+            .iter()
+            .map(|grid| grid.level.bytes() + grid.state.bytes() + grid.means.len() * size_of::<f64>())
+            .sum()
     }
 
     /// See [`Level::forget_window`].
@@ -120,7 +126,7 @@ impl CoarseGrids {
     fn iterate(&mut self, l: usize, displacement: Displacement, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
         let stop = Stopping { tolerance: rule.tolerance, by_update: false, fixed: false, iterations };
-        let Coarse { level, state } = &mut self.grids[l];
+        let Coarse { level, state, .. } = &mut self.grids[l];
         let end = level.run(state, displacement, &stop, self.finest, monitor)?;
         level.take_displacements(state);
         Ok(end)

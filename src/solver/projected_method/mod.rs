@@ -11,10 +11,11 @@ mod coarse;
 mod direct;
 mod history;
 mod level;
+mod samples;
 
 use std::sync::Arc;
 
-use super::full_multigrid::discretisation_error;
+use super::estimates::{self, Sample};
 use super::monitor::{Monitor, Rule};
 use super::options::Precision;
 use super::report::Stop;
@@ -141,7 +142,7 @@ impl Projected {
                 displacement = Displacement::Known;
             }
             if error_ratio > 0.0 {
-                rule.tolerance = rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
+                rule.tolerance = rule.tolerance.max(error_ratio * self.predicted_error(state, monitor)?);
             }
         }
         if monitor.is_cancelled() {
@@ -196,14 +197,29 @@ impl Projected {
 
     /// From nothing: what the coarser grids find. Returns what u is then.
     fn start(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Displacement> {
-        let coarse = match &mut self.coarse {
-            Some(coarse) => coarse,
+        let self_influence = self.finest.self_influence();
+        self.coarse_grids()?.start(state, self_influence, rule, monitor)
+    }
+
+    /// What the scene of `state` is on coarser grids: up to two samples.
+    pub fn samples(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<([Sample; 2], usize)> {
+        self.coarse_grids()?.samples(state, monitor)
+    }
+
+    /// Relative discretisation error of the force (or the approach), before the finest grid is solved; 0 where it is not known.
+    fn predicted_error(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<f64> {
+        let ([near, far], count) = self.samples(state, monitor)?;
+        Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
+    }
+
+    fn coarse_grids(&mut self) -> Result<&mut CoarseGrids> {
+        match &mut self.coarse {
+            Some(coarse) => Ok(coarse),
             none => {
                 let influence = self.finest.influence();
-                none.insert(CoarseGrids::new(&self.grid, influence, self.precision, &self.threads)?)
+                Ok(none.insert(CoarseGrids::new(&self.grid, influence, self.precision, &self.threads)?))
             }
-        };
-        coarse.start(state, self.finest.self_influence(), rule, monitor)
+        }
     }
 
     /// What the rounding of a u in single precision will leave in p, see [`CoarseGrids::noise`].
