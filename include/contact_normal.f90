@@ -210,6 +210,23 @@ module contact_normal
     integer(c_int64_t) :: edge_count = 0
   end type
 
+  ! The accuracy that is asked for, what it may cost, and the grid that it took. Since 0.1.
+  type, bind(C), public :: contact_normal_accuracy
+    integer(c_int64_t) :: struct_size = 0
+    real(c_double) :: target = 0
+    real(c_double) :: max_seconds = 0
+    integer(c_int64_t) :: max_bytes = 0
+    integer(c_int64_t) :: max_elements = 0
+    type(c_funptr) :: surface = c_null_funptr             ! contact_normal_set_surface
+    type(c_ptr) :: user = c_null_ptr                      ! anything; passed to the surface callback
+    integer(c_int32_t) :: mx = 0
+    integer(c_int32_t) :: my = 0
+    real(c_double) :: dx = 0
+    real(c_double) :: dy = 0
+    real(c_double) :: reached = -1
+    real(c_double) :: seconds = 0
+  end type
+
   ! The exact Hertz solution. Since 0.1.
   type, bind(C), public :: contact_normal_hertz_solution
     real(c_double) :: semi_axis_x = 0
@@ -234,6 +251,15 @@ module contact_normal
       type(c_ptr), value :: user
       integer(c_int32_t) :: cancel
     end function
+    ! Writes every h of the grid that is named; non-zero cancels. `user` is accuracy%user. Since 0.1.
+    function contact_normal_surface_callback(mx, my, dx, dy, h, user) bind(C) result(cancel)
+      import :: c_int32_t, c_double, c_ptr
+      integer(c_int32_t), value :: mx, my
+      real(c_double), value :: dx, dy
+      real(c_double), intent(inout) :: h(mx, my)
+      type(c_ptr), value :: user
+      integer(c_int32_t) :: cancel
+    end function
     ! Called with each log message. Since 0.1.
     subroutine contact_normal_log_callback(level, message)
       import :: c_int32_t
@@ -241,7 +267,7 @@ module contact_normal
       character(*), intent(in) :: message
     end subroutine
   end interface
-  public :: contact_normal_progress_callback, contact_normal_log_callback
+  public :: contact_normal_progress_callback, contact_normal_surface_callback, contact_normal_log_callback
 
   interface
     ! contact_normal_abi_version of C, whose name is that of the constant here: the library's own. Since 0.1.
@@ -294,6 +320,11 @@ module contact_normal
       import :: contact_normal_report
       type(contact_normal_report), intent(out) :: report
     end subroutine
+    ! Since 0.1.
+    subroutine contact_normal_accuracy_init(accuracy) bind(C, name="contact_normal_accuracy_init")
+      import :: contact_normal_accuracy
+      type(contact_normal_accuracy), intent(out) :: accuracy
+    end subroutine
     ! Solves one scene. Without options: the defaults. Since 0.1.
     function contact_normal_solve(scene, options, fields, report) bind(C, name="contact_normal_solve") result(status)
       import :: contact_normal_scene, contact_normal_options, contact_normal_fields, contact_normal_report, c_int32_t
@@ -326,7 +357,8 @@ module contact_normal
     end function
   end interface
   public :: contact_normal_library_abi_version, contact_normal_scene_init, contact_normal_influence_init, &
-    contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_solve, &
+    contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_accuracy_init, &
+    contact_normal_solve, &
     contact_normal_hertz, contact_normal_influence_half_space, contact_normal_layer_init, &
     contact_normal_pressure_limit_init, contact_normal_period_init, contact_normal_patches_init
 
@@ -374,6 +406,22 @@ module contact_normal
       integer(c_int32_t), intent(inout), optional :: statuses(*)
       integer(c_int32_t) :: status
     end function
+    function c_solve_to_accuracy(scene, options, accuracy, solver, report) &
+        bind(C, name="contact_normal_solve_to_accuracy") result(status)
+      import
+      type(contact_normal_scene), intent(in) :: scene
+      type(contact_normal_options), intent(in), optional :: options
+      type(contact_normal_accuracy), intent(inout) :: accuracy
+      type(c_ptr), intent(inout), optional :: solver
+      type(contact_normal_report), intent(inout), optional :: report
+      integer(c_int32_t) :: status
+    end function
+    function c_solver_fields(solver, fields) bind(C, name="contact_normal_solver_fields") result(status)
+      import :: contact_normal_fields, c_ptr, c_int32_t
+      type(c_ptr), value, intent(in) :: solver
+      type(contact_normal_fields), intent(inout) :: fields
+      integer(c_int32_t) :: status
+    end function
     subroutine c_solver_free(solver) bind(C, name="contact_normal_solver_free")
       import :: c_ptr
       type(c_ptr), value, intent(in) :: solver
@@ -393,7 +441,8 @@ module contact_normal
   end interface
   public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
-    contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_log, contact_normal_solver_new, &
+    contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
+    contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches
 
@@ -528,6 +577,14 @@ contains
     if (present(callback)) options%progress = c_funloc(callback)
   end subroutine
 
+  ! Sets where the undeformed distance of each grid comes from; without a callback: the scene's is refined. Since 0.1.
+  subroutine contact_normal_set_surface(accuracy, callback)
+    type(contact_normal_accuracy), intent(inout) :: accuracy
+    procedure(contact_normal_surface_callback), optional :: callback
+    accuracy%surface = c_null_funptr
+    if (present(callback)) accuracy%surface = c_funloc(callback)
+  end subroutine
+
   ! Sends log messages up to `level` to `callback`; without one: none. For the whole process; call it while no other
   ! thread is inside the library. Since 0.1.
   function contact_normal_set_log(callback, level) result(status)
@@ -581,6 +638,30 @@ contains
     integer(c_int32_t), intent(inout), optional :: statuses(size(scenes))
     integer(c_int32_t) :: status
     status = c_solver_solve_batch(solver%handle, size(scenes, kind=c_int32_t), scenes, options, fields, reports, statuses)
+  end function
+
+  ! Solves on finer and finer grids until accuracy%target is met; accuracy%mx, my, dx, dy are the grid that was used. `solver`
+  ! must not hold one already; it gets the result, for contact_normal_solver_fields. Since 0.1.
+  function contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report) result(status)
+    type(contact_normal_scene), intent(in) :: scene
+    type(contact_normal_options), intent(in), optional :: options
+    type(contact_normal_accuracy), intent(inout) :: accuracy
+    type(contact_normal_solver), intent(inout), optional :: solver
+    type(contact_normal_report), intent(inout), optional :: report
+    integer(c_int32_t) :: status
+    if (present(solver)) then
+      status = c_solve_to_accuracy(scene, options, accuracy, solver%handle, report)
+    else
+      status = c_solve_to_accuracy(scene, options, accuracy, report=report)
+    end if
+  end function
+
+  ! Copies the last result of a solver. Since 0.1.
+  function contact_normal_solver_fields(solver, fields) result(status)
+    type(contact_normal_solver), intent(in) :: solver
+    type(contact_normal_fields), intent(inout) :: fields
+    integer(c_int32_t) :: status
+    status = c_solver_fields(solver%handle, fields)
   end function
 
   ! Frees it; doing so twice is harmless. Since 0.1.

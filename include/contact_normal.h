@@ -17,12 +17,12 @@
 #define CONTACT_NORMAL_OK 0
 
 /*
- `max_cycles` was reached; outputs hold the best iterate.
+ `max_cycles` or a limit of an accuracy was reached; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_ITERATION_LIMIT 1
 
 /*
- The progress callback cancelled; outputs hold the best iterate.
+ A callback cancelled; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_CANCELLED 2
 
@@ -803,6 +803,76 @@ typedef struct contact_normal_report {
 } contact_normal_report;
 
 /*
+ Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
+ `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread.
+ */
+typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
+                                                   int32_t my,
+                                                   double dx,
+                                                   double dy,
+                                                   double *undeformed_distance,
+                                                   void *user);
+
+/*
+ The accuracy that is asked for, what it may cost, and the grid that it took.
+ */
+typedef struct contact_normal_accuracy {
+  /*
+   Set by `contact_normal_accuracy_init`.
+   */
+  int64_t struct_size;
+  /*
+   Estimated relative error of the force (of the approach, when the force is prescribed) at most; default 1e-3.
+   */
+  double target;
+  /*
+   Seconds for all grids together; 0 (default): no limit.
+   */
+  double max_seconds;
+  /*
+   Bytes that the solvers of two successive grids may hold; 0 (default): no limit.
+   */
+  int64_t max_bytes;
+  /*
+   Elements of a grid; 0 (default): 4096 x 4096.
+   */
+  int64_t max_elements;
+  /*
+   Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics through
+   the four nearest centres in each direction.
+   */
+  contact_normal_surface_callback surface;
+  /*
+   Passed to `surface`.
+   */
+  void *user;
+  /*
+   Out: elements in x of the grid that was used; 0: cancelled before a grid was solved.
+   */
+  int32_t mx;
+  /*
+   Out: elements in y.
+   */
+  int32_t my;
+  /*
+   Out: element size in x.
+   */
+  double dx;
+  /*
+   Out: element size in y.
+   */
+  double dy;
+  /*
+   Out: estimated relative error on it; < 0: not known.
+   */
+  double reached;
+  /*
+   Out: seconds for all grids together.
+   */
+  double seconds;
+} contact_normal_accuracy;
+
+/*
  The exact Hertz solution.
  */
 typedef struct contact_normal_hertz_solution {
@@ -965,6 +1035,34 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
                                                         struct contact_normal_fields *fields,
                                                         struct contact_normal_report *reports,
                                                         contact_normal_status *statuses);
+
+/*
+ Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
+ */
+void contact_normal_accuracy_init(struct contact_normal_accuracy *accuracy);
+
+/*
+ Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
+ `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
+ undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
+ OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
+ surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases
+ `contact_normal_last_error` says the best reached, and report and handle hold it: the finest grid that was solved. `*solver`
+ (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+ `contact_normal_solver_free`; NULL if cancelled before a grid was solved. Since 0.1.
+ */
+contact_normal_status contact_normal_solve_to_accuracy(const struct contact_normal_scene *scene,
+                                                       const struct contact_normal_options *options,
+                                                       struct contact_normal_accuracy *accuracy,
+                                                       struct contact_normal_solver **solver,
+                                                       struct contact_normal_report *report);
+
+/*
+ Copies the result of the last solve with a handle: of `contact_normal_solver_solve`, or the one that
+ `contact_normal_solve_to_accuracy` made it with, whose grid has `accuracy->mx` x `accuracy->my` elements. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
+                                                   struct contact_normal_fields *fields);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`

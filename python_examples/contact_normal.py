@@ -220,6 +220,29 @@ class Report(ctypes.Structure):
     ]
 
 
+SurfaceCallback = CFUNCTYPE(c_int32, c_int32, c_int32, c_double, c_double, POINTER(c_double), c_void_p)
+
+
+class Accuracy(ctypes.Structure):
+    """contact_normal_accuracy."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("target", c_double),
+        ("max_seconds", c_double),
+        ("max_bytes", c_int64),
+        ("max_elements", c_int64),
+        ("surface", SurfaceCallback),
+        ("user", c_void_p),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("reached", c_double),
+        ("seconds", c_double),
+    ]
+
+
 class HertzSolution(ctypes.Structure):
     """contact_normal_hertz_solution: the exact solution."""
 
@@ -255,7 +278,13 @@ _PROTOTYPES = {
         c_int32,
         [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
     ),
+    "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
     "solver_free": (None, [c_void_p]),
+    "accuracy_init": (None, [POINTER(Accuracy)]),
+    "solve_to_accuracy": (
+        c_int32,
+        [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],
+    ),
     "hertz": (
         c_int32,
         [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
@@ -268,8 +297,10 @@ _PROTOTYPES = {
 }
 
 # The structs that begin with their size, by the name of their _init.
-_SIZED = {"scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
-          "patches": Patches, "options": Options, "fields": Fields, "report": Report}
+_SIZED = {
+    "scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
+    "patches": Patches, "options": Options, "fields": Fields, "report": Report, "accuracy": Accuracy,
+}
 
 
 class ContactNormalError(Exception):
@@ -540,6 +571,88 @@ def solve(
 
     result = _run(call, kept[0].shape, pressure, contact, struct)
     watched.check()
+    return result
+
+
+class _Surface:
+    """A Python callable h(x, y) as the surface callback; an exception in it cancels and is raised after the call."""
+
+    def __init__(self, surface, corner):
+        self.surface, self.corner, self.error = surface, corner, None
+        self.callback = SurfaceCallback(self._call)
+
+    def _call(self, mx, my, dx, dy, h, _user):
+        try:
+            x = self.corner[0] + (np.arange(mx) + 0.5) * dx
+            y = self.corner[1] + (np.arange(my) + 0.5) * dy
+            np.ctypeslib.as_array(h, (my, mx))[:] = self.surface(x[None, :], y[:, None])
+            return 0
+        except BaseException as error:  # noqa: B902 - it must not cross the C frames
+            self.error = error
+            return 1
+
+
+def solve_to_accuracy(
+    h,
+    dx,
+    dy,
+    *,
+    target=1e-3,
+    max_seconds=0.0,
+    max_bytes=0,
+    max_elements=0,
+    shape=None,
+    corner=None,
+    approach=None,
+    force=None,
+    shear_modulus,
+    poisson_ratio,
+    progress=None,
+    **options,
+):
+    """Solves on finer and finer grids until the estimated relative error of the force (of the approach, if the force is given)
+    is at most `target`, or a limit is in the way (0: no limit).
+
+    h: an array (my, mx), which is refined by cubics; or a callable h(x, y) of the coordinates of element centres, (1, mx) and
+    (my, 1), with the `shape` (my, mx) of the first grid; `corner` (x, y) is that of the rectangle, by default centred on (0, 0).
+    Returns a Result with the arrays of the grid that was used and further `dx`, `dy`, `reached` (the estimated relative error,
+    None: not known) and `seconds`; its `status` is OK where the target is met, else `message` says the best reached.
+    """
+    surface = None
+    if callable(h):
+        if shape is None:
+            raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
+        my, mx = shape
+        surface = _Surface(h, (-0.5 * mx * dx, -0.5 * my * dy) if corner is None else corner)
+        h = np.zeros((my, mx))  # not read
+    scene, _kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, None)
+    watched = _Watched(progress)
+    struct = _options(options, watched.callback)
+    accuracy, report, handle = _initialised("accuracy"), _initialised("report"), c_void_p()
+    accuracy.target, accuracy.max_seconds = target, max_seconds
+    accuracy.max_bytes, accuracy.max_elements = max_bytes, max_elements
+    if surface:
+        accuracy.surface = surface.callback
+    rows = (LedgerRow * _LEDGER_ROOM)()
+    report.ledger, report.ledger_capacity = rows, _LEDGER_ROOM
+    try:
+        status = _check(
+            _library.contact_normal_solve_to_accuracy(
+                ctypes.byref(scene), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle), ctypes.byref(report)
+            )
+        )
+        message = _library.contact_normal_last_error().decode() if status > 0 else ""
+        watched.check()
+        if surface and surface.error is not None:
+            raise surface.error
+        outputs = _Outputs((accuracy.my, accuracy.mx), None, None, struct)
+        if handle:
+            _check(_library.contact_normal_solver_fields(handle, ctypes.byref(outputs.fields)))
+    finally:
+        _library.contact_normal_solver_free(handle)
+    result = Result(status, message, outputs.arrays, report, rows)
+    result.dx, result.dy, result.seconds = accuracy.dx, accuracy.dy, accuracy.seconds
+    result.reached = accuracy.reached if accuracy.reached >= 0 else None
     return result
 
 

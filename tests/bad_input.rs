@@ -191,6 +191,10 @@ fn every_bad_scene_and_option_is_refused() {
         for through in [Through::Solve, Through::SolverNew, Through::SolverSolve, Through::SolverSolveBatch] {
             refused(row, through, handle);
         }
+        // Own coefficients are refused there, whatever they are.
+        if !row.0.iter().any(|word| ["influence", "coefficients"].contains(word)) {
+            refused(row, Through::ToAccuracy, null_mut());
+        }
     }
     // SAFETY: made above.
     unsafe { contact_normal_solver_free(handle) };
@@ -226,7 +230,8 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "pressure_limit" => _ = call.use_limit(),
         "period" => call.use_period(1, 0),
         "patches" => _ = call.use_patches(HALF),
-        _ => _ = call.use_table(),
+        "influence" => _ = call.use_table(),
+        _ => {}
     }
     let declared = match name {
         "scene" => &mut call.scene.known.struct_size,
@@ -237,6 +242,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "patches" => &mut call.patches.known.struct_size,
         "options" => &mut call.options.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
+        "accuracy" => &mut call.accuracy.known.struct_size,
         _ => &mut call.report.known.struct_size,
     };
     *declared = size(*declared);
@@ -253,12 +259,22 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
         "patches" => &mut call.patches.excess,
         "options" => &mut call.options.excess,
         "fields" => &mut call.fields.excess,
+        "accuracy" => &mut call.accuracy.excess,
         _ => &mut call.report.excess,
     }
 }
 
-const STRUCTS: [&str; 9] =
-    ["scene", "influence", "layer", "pressure_limit", "period", "patches", "options", "fields", "report"];
+const STRUCTS: [&str; 10] =
+    ["scene", "influence", "layer", "pressure_limit", "period", "patches", "options", "fields", "report", "accuracy"];
+
+/// A call that reads the struct.
+fn reader(name: &str) -> Through {
+    if name == "accuracy" {
+        Through::ToAccuracy
+    } else {
+        Through::Solve
+    }
+}
 
 #[test]
 fn a_struct_of_no_known_size_is_refused() {
@@ -271,7 +287,7 @@ fn a_struct_of_no_known_size_is_refused() {
             let mut call = Call::new();
             let declared = declare(&mut call, name, size);
             let before = call.outputs();
-            let (status, message) = call.run(Through::Solve, null_mut());
+            let (status, message) = call.run(reader(name), null_mut());
             assert_eq!(status, SIZE, "{name} of {declared} bytes: {message}");
             for word in [name, "struct_size", &declared.to_string(), "_init"] {
                 assert!(message.contains(word), "\"{message}\" does not say {word}");
@@ -286,14 +302,14 @@ fn a_larger_struct_is_accepted_if_what_we_do_not_know_is_zero() {
     for name in STRUCTS {
         let mut call = Call::new();
         declare(&mut call, name, |own| own + 64);
-        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+        assert_eq!(call.run(reader(name), null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
         assert_eq!(*excess(&mut call, name), [0; 64], "{name}: unknown members were written");
         for byte in [0, 63] {
             let mut call = Call::new();
             declare(&mut call, name, |own| own + 64);
             excess(&mut call, name)[byte] = 1;
             let before = call.outputs();
-            let (status, message) = call.run(Through::Solve, null_mut());
+            let (status, message) = call.run(reader(name), null_mut());
             assert_eq!(status, SIZE, "{name}, byte {byte}: {message}");
             assert!(message.contains(name), "{message}");
             assert!(call.outputs() == before, "{name}, byte {byte}: outputs were written");
@@ -418,6 +434,87 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         let status = contact_normal_solver_new(&call.scene.known, null(), null_mut());
         assert_eq!((status, last_error().contains("solver")), (NULL, true));
     }
+}
+
+unsafe extern "C" fn incomplete(mx: i32, my: i32, _: f64, _: f64, h: *mut f64, _: *mut libc::c_void) -> i32 {
+    // All but the last.
+    // SAFETY: room for all.
+    (0..(mx * my - 1) as usize).for_each(|i| unsafe { h.add(i).write(0.01 * i as f64) });
+    0
+}
+
+unsafe extern "C" fn give_up(_: i32, _: i32, _: f64, _: f64, _: *mut f64, _: *mut libc::c_void) -> i32 {
+    1
+}
+
+#[test]
+fn what_only_an_accuracy_refuses() {
+    #[rustfmt::skip]
+    let rows: &[Row] = &[
+        (&["accuracy"], NULL, |c| c.without = "accuracy"),
+        (&["target", "0"], INVALID, |c| c.accuracy.known.target = 0.0),
+        (&["target", "-0.001"], INVALID, |c| c.accuracy.known.target = -1e-3),
+        (&["target", "NaN"], NOT_FINITE, |c| c.accuracy.known.target = NAN),
+        (&["target", "inf"], NOT_FINITE, |c| c.accuracy.known.target = INF),
+        (&["max_seconds", "-1"], INVALID, |c| c.accuracy.known.max_seconds = -1.0),
+        (&["max_seconds", "NaN"], NOT_FINITE, |c| c.accuracy.known.max_seconds = NAN),
+        (&["max_seconds", "inf"], NOT_FINITE, |c| c.accuracy.known.max_seconds = INF),
+        (&["max_bytes", "-5"], INVALID, |c| c.accuracy.known.max_bytes = -5),
+        (&["max_elements", "-1"], INVALID, |c| c.accuracy.known.max_elements = -1),
+        (&["max_elements", "2147483648"], INVALID, |c| c.accuracy.known.max_elements = 1 << 31),
+        (&["surface", "undeformed_distance", "(5, 4)", "NaN"], NOT_FINITE, |c| c.accuracy.known.surface = Some(incomplete)),
+        (&["influence"], CONTACT_NORMAL_UNSUPPORTED, |c| { c.use_table(); }),
+        (&["active_set", "FIXED"], CONTACT_NORMAL_UNSUPPORTED, |c| c.fix_contact()),
+        (&["initial_guess"], INVALID, |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN),
+        (&["initial_guess"], INVALID, |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS),
+        (&["ledger", "ledger_capacity"], NULL, |c| c.report.known.ledger = null_mut()),
+        (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
+    ];
+    rows.iter().for_each(|row| refused(row, Through::ToAccuracy, null_mut()));
+}
+
+#[test]
+fn an_accuracy_that_is_not_reached_says_the_best() {
+    // Below round-off: the first grid's.
+    let mut call = Call::new();
+    call.accuracy.known.target = 1e-15;
+    let (status, message) = call.run(Through::ToAccuracy, null_mut());
+    let accuracy = &call.accuracy.known;
+    assert_eq!((status, accuracy.mx, accuracy.my, accuracy.dx), (CONTACT_NORMAL_STAGNATED, 6, 5, 0.5), "{message}");
+    assert!(["target", "round-off", "best reached", "6 x 5"].iter().all(|word| message.contains(word)), "{message}");
+    assert!(call.report.known.force > 0.0 && accuracy.seconds > 0.0);
+
+    // Cancelled before there was a grid: nothing, and it says so.
+    let mut call = Call::new();
+    call.accuracy.known.surface = Some(give_up);
+    call.scene.known.undeformed_distance = null();
+    let (status, message) = call.run(Through::ToAccuracy, null_mut());
+    let accuracy = &call.accuracy.known;
+    assert_eq!((status, accuracy.mx, accuracy.reached), (CONTACT_NORMAL_CANCELLED, 0, -1.0), "{message}");
+    assert!(message.contains("surface") && call.report.known.ledger_rows == 0, "{message}");
+}
+
+#[test]
+fn fields_of_a_handle_are_those_of_its_last_solve() {
+    let mut call = Call::new();
+    let handle = call.new_handle();
+    // SAFETY: a handle or NULL; fields with room for the grid.
+    let copy = |handle, fields: *mut contact_normal_fields| unsafe { contact_normal_solver_fields(handle, fields) };
+    let before = call.outputs();
+    let fields = &raw mut call.fields.known;
+    assert_eq!((copy(null_mut(), fields), last_error().contains("solver")), (NULL, true));
+    assert_eq!((copy(handle, null_mut()), last_error().contains("fields")), (NULL, true));
+    assert_eq!((copy(handle, fields), last_error().contains("no result")), (INVALID, true));
+    assert!(call.outputs() == before);
+    assert_eq!(call.run(Through::SolverSolve, handle).0, CONTACT_NORMAL_OK);
+    let solved = call.outputs();
+    call.pressure.fill(NAN);
+    call.contact.fill(-1);
+    let fields = &raw mut call.fields.known;
+    assert_eq!(copy(handle, fields), CONTACT_NORMAL_OK);
+    assert!(call.outputs() == solved);
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
 }
 
 unsafe extern "C" fn go_on(_: *const contact_normal_progress, _: *mut libc::c_void) -> i32 {
@@ -550,6 +647,7 @@ fn inits_ignore_null_and_levels_are_checked() {
         contact_normal_options_init(null_mut());
         contact_normal_fields_init(null_mut());
         contact_normal_report_init(null_mut());
+        contact_normal_accuracy_init(null_mut());
         let status = contact_normal_set_log(None, 9, null_mut());
         assert_eq!((status, last_error().contains("level is 9")), (INVALID, true));
         let text = std::ffi::CStr::from_ptr(contact_normal_status_text(12345)).to_str().expect("UTF-8");

@@ -106,6 +106,13 @@ fn batch() {
 }
 
 #[test]
+fn to_accuracy() {
+    let measures = check_example("to_accuracy", &[]);
+    assert_certified(&measures, TOLERANCE);
+    assert_force(measures.force, 82000.0);
+}
+
+#[test]
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
     assert_certified(&measures, TOLERANCE);
@@ -229,6 +236,9 @@ fn c_and_rust_agree_on_every_struct() {
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
             halved_seconds, halved_error_force, edge_count
+        }
+        contact_normal_accuracy {
+            struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds
         }
         contact_normal_hertz_solution {
             semi_axis_x, semi_axis_y, max_pressure, approach, force, area

@@ -48,7 +48,7 @@ fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64)
         p.push(next());
         contact.push(next() != 0.0);
     }
-    // Steel on steel, as in all three examples: 1/E* = 2 (1 - nu) / (2 G).
+    // Steel on steel, as in all examples: 1/E* = 2 (1 - nu) / (2 G).
     let influence = Influence::HalfSpace(HalfSpace::new(dx, dy, (1.0 - 0.28) / 82000.0));
     let measures = recompute(&grid, &influence, &h, approach, &p, &contact);
     assert_certified(&measures, tolerance);
@@ -64,6 +64,11 @@ fn hertz_prints_what_is_expected() {
 fn ledger_prints_what_is_expected() {
     // The default tolerance.
     check_example("ledger", &[], &["-O2"], 1e-6);
+}
+
+#[test]
+fn to_accuracy_prints_what_is_expected() {
+    check_example("to_accuracy", &[], &["-O2"], 1e-8);
 }
 
 fn wheel_rail_case() -> String {
@@ -205,6 +210,8 @@ fn derived_types_are_laid_out_as_the_structs() {
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
             untrusted, limited_by, halved_seconds, halved_error_force, edge_count;
+        contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
+            user, mx, my, dx, dy, reached, seconds;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
     };

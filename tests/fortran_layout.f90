@@ -14,6 +14,7 @@ program fortran_layout
   type(contact_normal_fields), target :: fields
   type(contact_normal_ledger_row), target :: row
   type(contact_normal_report), target :: report
+  type(contact_normal_accuracy), target :: accuracy
   type(contact_normal_hertz_solution), target :: solution
   integer(c_intptr_t) :: base
 
@@ -168,6 +169,22 @@ program fortran_layout
   call show("contact_normal_report.halved_seconds", c_loc(report%halved_seconds))
   call show("contact_normal_report.halved_error_force", c_loc(report%halved_error_force))
   call show("contact_normal_report.edge_count", c_loc(report%edge_count))
+
+  base = place(c_loc(accuracy))
+  print '(a, i0)', "contact_normal_accuracy ", c_sizeof(accuracy)
+  call show("contact_normal_accuracy.struct_size", c_loc(accuracy%struct_size))
+  call show("contact_normal_accuracy.target", c_loc(accuracy%target))
+  call show("contact_normal_accuracy.max_seconds", c_loc(accuracy%max_seconds))
+  call show("contact_normal_accuracy.max_bytes", c_loc(accuracy%max_bytes))
+  call show("contact_normal_accuracy.max_elements", c_loc(accuracy%max_elements))
+  call show("contact_normal_accuracy.surface", c_loc(accuracy%surface))
+  call show("contact_normal_accuracy.user", c_loc(accuracy%user))
+  call show("contact_normal_accuracy.mx", c_loc(accuracy%mx))
+  call show("contact_normal_accuracy.my", c_loc(accuracy%my))
+  call show("contact_normal_accuracy.dx", c_loc(accuracy%dx))
+  call show("contact_normal_accuracy.dy", c_loc(accuracy%dy))
+  call show("contact_normal_accuracy.reached", c_loc(accuracy%reached))
+  call show("contact_normal_accuracy.seconds", c_loc(accuracy%seconds))
 
   base = place(c_loc(solution))
   print '(a, i0)', "contact_normal_hertz_solution ", c_sizeof(solution)

@@ -15,6 +15,18 @@ contains
     calls = calls + 1
     cancel = merge(1, 0, progress%mx > 0 .and. progress%cycles > 0)
   end function
+  function cancelling_surface(mx, my, dx, dy, h, user) bind(C) result(cancel)
+    integer(c_int32_t), value :: mx, my
+    real(c_double), value :: dx, dy
+    real(c_double), intent(inout) :: h(mx, my)
+    type(c_ptr), value :: user
+    integer(c_int32_t) :: cancel
+    integer(c_int32_t), pointer :: calls
+    call c_f_pointer(user, calls)
+    calls = calls + 1
+    h = dx*dy
+    cancel = 1
+  end function
   subroutine count_messages(level, message)
     integer(c_int32_t), intent(in) :: level
     character(*), intent(in) :: message
@@ -34,6 +46,8 @@ program fortran_module
   type(contact_normal_report) :: report
   type(contact_normal_ledger_row), target :: ledger(8)
   type(contact_normal_solver) :: solver
+  type(contact_normal_accuracy) :: accuracy
+  type(contact_normal_fields) :: none_wanted
   real(dp), target :: h(M, M), p(M, M), u(M, M), e(M*M), cf(-M:M - 1, -M:M - 1)
   real(dp) :: half_space(M, M)
   integer(c_int32_t), target :: contact(M, M), calls
@@ -47,7 +61,7 @@ program fortran_module
 
   print '(a)', contact_normal_version_string()
   call hold(contact_normal_library_abi_version() >= CONTACT_NORMAL_ABI_VERSION, "the ABI's version")
-  call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by the progress callback", "text")
+  call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by a callback", "text")
 
   ! A structure that has seen no _init is refused, not misread.
   call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_STRUCT_SIZE, "a scene without _init")
@@ -77,6 +91,25 @@ program fortran_module
   call hold(all(abs(reshape(h, [M*M]) - scene%approach + reshape(u, [M*M]) - e) <= 1e-15_dp), "e = h - approach + u")
   call hold(report%contact_count == count(contact > 0), "the count of elements in contact")
   call hold(report%ledger_rows >= 2 .and. ledger(report%ledger_rows)%mx == M .and. ledger(1)%mx < M, "the ledger")
+
+  ! An accuracy, from the array; then from a surface that cancels at once.
+  call contact_normal_accuracy_init(accuracy)
+  accuracy%target = 1e-2_dp
+  call hold(contact_normal_solve_to_accuracy(scene, accuracy=accuracy) == CONTACT_NORMAL_OK, "an accuracy")
+  call hold(accuracy%mx >= M .and. accuracy%reached >= 0 .and. accuracy%reached <= 1e-2_dp, "is reached")
+  call hold(contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report) == CONTACT_NORMAL_OK, "with all")
+  call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_STRUCT_SIZE, "fields without _init")
+  call contact_normal_fields_init(none_wanted)
+  call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_OK, "no fields wanted")
+  call contact_normal_solver_free(solver)
+  calls = 0
+  accuracy%user = c_loc(calls)
+  call contact_normal_set_surface(accuracy, cancelling_surface)
+  call hold(contact_normal_solve_to_accuracy(scene, options, accuracy, solver) == CONTACT_NORMAL_CANCELLED, "cancelled")
+  call hold(calls == 1 .and. accuracy%mx == 0, "one call, no grid")
+  call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_NULL_POINTER, "no solver")
+  call contact_normal_set_surface(accuracy)
+  call hold(contact_normal_solve_to_accuracy(scene, options, accuracy) == CONTACT_NORMAL_OK, "no surface any more")
 
   ! The half-space's own coefficients, as a table.
   call hold(contact_normal_influence_half_space(M, M, scene%dx, scene%dy, scene%shear_modulus, scene%poisson_ratio, &

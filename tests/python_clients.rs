@@ -9,7 +9,7 @@ use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, scratch};
+use clients::{assert_certified, recompute, root, run, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
@@ -51,6 +51,35 @@ fn python_in(folder: &Path) -> Command {
     command
 }
 
+fn number(text: &str) -> f64 {
+    text.parse().expect("a number")
+}
+
+/// The measures of the arrays that an example wrote: "mx my dx dy approach", then "h p contact" per element; steel on steel.
+fn recomputed(arrays: &Path) -> Recomputed {
+    let arrays = std::fs::read_to_string(arrays).expect("the arrays");
+    let (first, rows) = arrays.split_once('\n').expect("a first line");
+    let numbers: Vec<f64> = first.split_whitespace().map(number).collect();
+    let grid = Grid::new(numbers[0] as usize, numbers[1] as usize, numbers[2], numbers[3]).expect("a grid");
+    let rows: Vec<Vec<f64>> = rows.lines().map(|line| line.split_whitespace().map(number).collect()).collect();
+    let column = |k: usize| rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
+    let contact: Vec<bool> = column(2).iter().map(|&inside| inside != 0.0).collect();
+    let steel = Bodies::same(82000.0, 0.28);
+    let influence = Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
+    recompute(&grid, &influence, &column(0), numbers[4], &column(1), &contact)
+}
+
+#[test]
+fn the_to_accuracy_example_prints_what_is_expected() {
+    let folder = scratch("python_to_accuracy");
+    let example = root().join("python_examples/to_accuracy.py");
+    let printed = run(python_in(&folder).arg(&example).arg("arrays.txt"));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("to_accuracy.expected");
+    assert_eq!(printed, expected);
+    // The tolerance that the example asks for.
+    assert_certified(&recomputed(&folder.join("arrays.txt")), 1e-8);
+}
+
 #[test]
 fn the_ledger_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_ledger");
@@ -72,17 +101,7 @@ fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("wheel_rail.expected");
     assert_eq!(printed, expected);
 
-    let arrays = std::fs::read_to_string(folder.join("arrays.txt")).expect("the arrays");
-    let (first, rows) = arrays.split_once('\n').expect("a first line");
-    let number = |text: &str| text.parse::<f64>().expect("a number");
-    let numbers: Vec<f64> = first.split_whitespace().map(number).collect();
-    let grid = Grid::new(numbers[0] as usize, numbers[1] as usize, numbers[2], numbers[3]).expect("a grid");
-    let rows: Vec<Vec<f64>> = rows.lines().map(|line| line.split_whitespace().map(number).collect()).collect();
-    let column = |k: usize| rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
-    let contact: Vec<bool> = column(2).iter().map(|&inside| inside != 0.0).collect();
-    let steel = Bodies::same(82000.0, 0.28);
-    let influence = Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
-    let measures = recompute(&grid, &influence, &column(0), numbers[4], &column(1), &contact);
+    let measures = recomputed(&folder.join("arrays.txt"));
     assert_certified(&measures, TOLERANCE);
     // The force that the data file prescribes, up to the round-off of a sum of 8360 terms.
     let data = std::fs::read_to_string(&data).expect("the data");
@@ -285,6 +304,24 @@ fn ctypes_structs_have_the_layout_of_the_library() {
     );
     layout!(
         ours,
+        "Accuracy",
+        contact_normal_accuracy,
+        struct_size,
+        target,
+        max_seconds,
+        max_bytes,
+        max_elements,
+        surface,
+        user,
+        mx,
+        my,
+        dx,
+        dy,
+        reached,
+        seconds
+    );
+    layout!(
+        ours,
         "HertzSolution",
         contact_normal_hertz_solution,
         semi_axis_x,
@@ -392,6 +429,21 @@ with cn.Solver(10, 12, 0.2, 0.2, threads=2, **steel) as solver:
         solver.solve_batch([h], approach=0.1, initial_guess=cn.INITIAL_GUESS_PREVIOUS)
     except cn.ContactNormalError as error:
         print('PREVIOUS' in error.message)
+# An accuracy: from an array and from a callable, whose exception comes through, and a limit, whose message says the best.
+ball = lambda x, y: 0.01 * (x ** 2 + y ** 2)
+near = cn.solve_to_accuracy(0.04 * h, 0.5, 0.5, target=1e-2, approach=0.1, **steel)
+print(near.status, near.reached <= 1e-2, near.pressure.shape[1] * near.dx, near.seconds > 0, len(near.ledger) > 1)
+far = cn.solve_to_accuracy(ball, 0.5, 0.5, shape=(10, 12), target=1e-9, max_elements=40 * 48, approach=0.1, **steel)
+print(far.status == cn.ITERATION_LIMIT, far.pressure.shape, 'max_elements' in far.message and '48 x 40' in far.message)
+for bad in (dict(shape=(10, 12)), dict()):
+    try:
+        cn.solve_to_accuracy(lambda x, y: 1 / 0, 0.5, 0.5, approach=0.1, **bad, **steel)
+    except (ZeroDivisionError, TypeError) as error:
+        print(type(error).__name__)
+try:
+    cn.solve_to_accuracy(h, 0.5, 0.5, target=-1, approach=0.1, **steel)
+except cn.ContactNormalError as error:
+    print(error.message)
 exact = cn.hertz(0.0016681, 0.0030671, approach=0.1091, **steel)
 print(round(exact.force), round(exact.max_pressure))
 ";
@@ -410,6 +462,11 @@ raised
 True True
 0
 True
+0 True 6.0 True True
+True (40, 48) True
+ZeroDivisionError
+TypeError
+target is -1; it must be positive and finite
 ";
     let (start, hertz) = printed.split_at(expected.len().min(printed.len()));
     assert_eq!(start, expected);

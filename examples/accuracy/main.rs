@@ -28,7 +28,15 @@ struct Problem {
     exact: f64,
 }
 
-fn on_square(name: &'static str, m: usize, size: (f64, f64), h: impl Fn(f64, f64) -> f64, bodies: Bodies, load: Load, exact: f64) -> Problem {
+fn on_square(
+    name: &'static str,
+    m: usize,
+    size: (f64, f64),
+    h: impl Fn(f64, f64) -> f64,
+    bodies: Bodies,
+    load: Load,
+    exact: f64,
+) -> Problem {
     let grid = Grid::new(m, m, size.0 / m as f64, size.1 / m as f64).expect("a grid");
     let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
     let h = (0..m * m).map(|i| h(centre(i % m, grid.dx), centre(i / m, grid.dy))).collect();
@@ -46,7 +54,15 @@ fn closed_form(name: &str, m: usize) -> Problem {
             let exact = hertz(0.5, 0.5, 0.13, 1.0).expect("a contact").force;
             on_square("sphere", m, (1.0, 1.0), |x, y| 0.5 * (x * x + y * y), UNIT, Load::Approach(0.13), exact)
         }
-        "cone" => on_square("cone", m, (1.0, 1.0), f64::hypot, UNIT, Load::Approach(FRAC_PI_2 * 0.37), FRAC_PI_2 * 0.37 * 0.37),
+        "cone" => on_square(
+            "cone",
+            m,
+            (1.0, 1.0),
+            f64::hypot,
+            UNIT,
+            Load::Approach(FRAC_PI_2 * 0.37),
+            FRAC_PI_2 * 0.37 * 0.37,
+        ),
         _ => {
             let h = |x: f64, y: f64| if x.hypot(y) < 0.37 { 0.0 } else { f64::INFINITY };
             on_square("flat punch", m, (1.0, 1.0), h, UNIT, Load::Approach(0.1), 2.0 * 0.37 * 0.1)
@@ -116,8 +132,11 @@ fn main() {
             for method in METHODS {
                 // Work against precision at one size, and what the grid gives at a tolerance that does not limit it.
                 let all = m == 128 && name == "ellipse" || m == 256 && name == "sphere";
-                let tolerances: &[f64] =
-                    if all { &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12] } else { &[1e-4, 1e-8] };
+                let tolerances: &[f64] = if all {
+                    &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
+                } else {
+                    &[1e-4, 1e-8]
+                };
                 tolerances.iter().for_each(|tolerance| study(&problem, method, *tolerance));
             }
         }
@@ -125,12 +144,16 @@ fn main() {
     for m in [64, 128, 256, 512].into_iter().filter(|m| 4 * m <= largest) {
         let exact = run(&of_case(case::rough(4 * m), "rough", 1.0), Method::Auto, 1e-9).map_or(f64::NAN, |run| run.0);
         let problem = of_case(case::rough(m), "rough", exact);
-        METHODS.iter().for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
+        METHODS
+            .iter()
+            .for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
     }
     for refinement in [1, 2] {
         let rail = |refinement| case::wheel_rail("y4_82kN", refinement);
         let exact = run(&of_case(rail(4 * refinement), "", 1.0), Method::Auto, 1e-9).map_or(f64::NAN, |run| run.0);
         let problem = of_case(rail(refinement), "wheel-rail", exact);
-        METHODS.iter().for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
+        METHODS
+            .iter()
+            .for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
     }
 }

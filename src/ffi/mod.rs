@@ -3,6 +3,7 @@
 #![allow(non_camel_case_types)]
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
+mod accuracy;
 mod batch;
 mod effects;
 mod floating_point;
@@ -18,6 +19,7 @@ mod status;
 mod structs;
 
 pub use self::log::*;
+pub use accuracy::*;
 pub use batch::*;
 pub use effects::*;
 pub use options::*;

@@ -143,6 +143,24 @@ pub(super) unsafe fn translate_for<'a>(
     scene: *const contact_normal_scene,
     has_own_influence: bool,
 ) -> Result<Scene<'a>, Refusal> {
+    // SAFETY: by the caller.
+    unsafe { translate_parts(scene, has_own_influence, true) }
+}
+
+/// The same where the undeformed distance may come from elsewhere: then that of the scene is empty.
+pub(super) unsafe fn translate_with<'a>(
+    scene: *const contact_normal_scene,
+    has_distance: bool,
+) -> Result<Scene<'a>, Refusal> {
+    // SAFETY: by the caller.
+    unsafe { translate_parts(scene, false, has_distance) }
+}
+
+unsafe fn translate_parts<'a>(
+    scene: *const contact_normal_scene,
+    has_own_influence: bool,
+    has_distance: bool,
+) -> Result<Scene<'a>, Refusal> {
     // SAFETY: NULL or a struct that declares its size.
     let scene = unsafe { structs::read(scene, "scene")? };
     let grid = Grid::new(count("mx", scene.mx)?, count("my", scene.my)?, scene.dx, scene.dy)?;
@@ -158,11 +176,12 @@ pub(super) unsafe fn translate_for<'a>(
             )))
         }
     };
-    if scene.undeformed_distance.is_null() {
-        return Err(Refusal::null("scene->undeformed_distance"));
-    }
-    // SAFETY: the caller passes my * mx values, by the conventions of the ABI.
-    let h = unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) };
+    let h: &[f64] = match (has_distance, scene.undeformed_distance.is_null()) {
+        (true, true) => return Err(Refusal::null("scene->undeformed_distance")),
+        // SAFETY: the caller passes my * mx values, by the conventions of the ABI.
+        (true, false) => unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) },
+        (false, _) => &[],
+    };
     let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
     let influence = if scene.influence.is_null() || has_own_influence {
         None

@@ -5,10 +5,12 @@ use super::options::{self, contact_normal_options, Translated};
 use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_progress, contact_normal_report};
 use super::scene::{self, contact_normal_scene};
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
-use super::structs;
+use super::structs::{self, Versioned};
 use crate::memory::reserve;
 use crate::scene::Scene;
-use crate::solver::{ActiveSet, Guess, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
+use crate::solver::{
+    ActiveSet, Guess, InitialGuess, LedgerRow, Options, Progress, ProgressCallback, Report, Solver, Stop,
+};
 
 /// Solves one scene. `options` NULL: the defaults; `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -59,6 +61,13 @@ impl Outputs {
             }
         }
         Ok(Outputs { fields, report, ledger, ledger_capacity })
+    }
+
+    /// Where no arrays are wanted.
+    pub unsafe fn report_only(report: *mut contact_normal_report) -> Result<Outputs, Refusal> {
+        let mut nothing = contact_normal_fields::defaults();
+        // SAFETY: by the caller; a whole struct.
+        unsafe { Outputs::of(&mut nothing, report) }
     }
 
     /// Whether the arrays that are read are there and hold what they must.
@@ -133,7 +142,8 @@ impl Outputs {
         .filter(|&(_, start, bytes)| start != 0 && bytes > 0)
     }
 
-    fn write(&self, solver: &Solver, report: &Report) -> Result<(), Refusal> {
+    /// Writes the caller's arrays.
+    pub fn write_fields(&self, solver: &Solver) {
         let state = solver.state();
         let n = state.p.len();
         let fields = &self.fields;
@@ -154,10 +164,13 @@ impl Outputs {
                 at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));
             }
         }
+    }
+
+    /// Writes the caller's report and ledger.
+    pub fn write_report(&self, report: &Report, rows: &[LedgerRow]) -> Result<(), Refusal> {
         if self.report.is_null() {
             return Ok(());
         }
-        let rows = solver.ledger();
         // Where there is not room for all, those of the finest grids.
         let skipped = rows.len().saturating_sub(self.ledger_capacity as usize);
         for (i, row) in rows[skipped..].iter().enumerate() {
@@ -196,6 +209,15 @@ impl Outcome {
     }
 }
 
+/// Tells the caller's progress callback, if there is one; whether to cancel.
+pub(super) fn watcher(options: &Translated) -> impl FnMut(&Progress) -> bool + '_ {
+    |progress| match options.progress {
+        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held.
+        Some(callback) => unsafe { callback(&contact_normal_progress::from(progress), options.user) != 0 },
+        None => false,
+    }
+}
+
 /// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches.
 pub(super) fn run_watched(
     solver: &mut Solver,
@@ -204,11 +226,7 @@ pub(super) fn run_watched(
     outputs: &Outputs,
     guess: &mut GuessBuffer,
 ) -> Result<contact_normal_status, Refusal> {
-    let mut callback = |progress: &Progress| match options.progress {
-        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held.
-        Some(callback) => unsafe { callback(&contact_normal_progress::from(progress), options.user) != 0 },
-        None => false,
-    };
+    let mut callback = watcher(options);
     let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
     run(solver, scene, &options.options, progress, outputs, guess)?.conclude()
 }
@@ -226,7 +244,8 @@ pub(super) fn run(
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, guess)?, progress)?;
-    outputs.write(solver, &report)?;
+    outputs.write_fields(solver);
+    outputs.write_report(&report, solver.ledger())?;
     let message = if stop == Stop::Converged { String::new() } else { explain(stop, &report) };
     Ok(Outcome { status: stop.into(), message })
 }

@@ -16,6 +16,13 @@ pub struct contact_normal_solver {
     guess: GuessBuffer,
 }
 
+impl contact_normal_solver {
+    /// A handle for a solver that is set up; `contact_normal_solver_free` frees it.
+    pub(super) fn holding(solver: Solver) -> *mut contact_normal_solver {
+        Box::into_raw(Box::new(contact_normal_solver { solver, guess: GuessBuffer::default() }))
+    }
+}
+
 /// Sets up a solver for the grid, the bodies and the influence coefficients of `scene`, whose undeformed distance and load do not
 /// matter yet but must be valid, with the smoother, sweeps, relaxation, coarsest and threads of `options` (NULL: the defaults).
 /// `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`. Since 0.1.
@@ -31,10 +38,9 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         }
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let (scene, options) = unsafe { (scene::translate(scene)?, options::translate(options)?) };
-        let new =
-            contact_normal_solver { solver: Solver::new(&scene, &options.options)?, guess: GuessBuffer::default() };
+        let new = Solver::new(&scene, &options.options)?;
         // SAFETY: not null: room for a pointer.
-        unsafe { solver.write(Box::into_raw(Box::new(new))) };
+        unsafe { solver.write(contact_normal_solver::holding(new)) };
         Ok(CONTACT_NORMAL_OK)
     })
 }

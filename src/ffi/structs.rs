@@ -88,12 +88,13 @@ pub unsafe fn init<T: Versioned>(to: *mut T) {
 /// Sizes of version 0.1: a struct may grow, never change.
 const _: () = {
     use super::{
-        contact_normal_fields, contact_normal_influence, contact_normal_options, contact_normal_report,
-        contact_normal_scene,
+        contact_normal_accuracy, contact_normal_fields, contact_normal_influence, contact_normal_options,
+        contact_normal_report, contact_normal_scene,
     };
     assert!(size_of::<contact_normal_scene>() >= contact_normal_scene::FIRST_SIZE);
     assert!(size_of::<contact_normal_influence>() >= contact_normal_influence::FIRST_SIZE);
     assert!(size_of::<contact_normal_options>() >= contact_normal_options::FIRST_SIZE);
     assert!(size_of::<contact_normal_fields>() >= contact_normal_fields::FIRST_SIZE);
+    assert!(size_of::<contact_normal_accuracy>() >= contact_normal_accuracy::FIRST_SIZE);
     assert!(size_of::<contact_normal_report>() >= contact_normal_report::FIRST_SIZE);
 };

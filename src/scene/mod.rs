@@ -6,6 +6,7 @@ mod load;
 mod patches;
 mod period;
 mod pressure_limit;
+mod refine;
 
 pub use bodies::Bodies;
 pub use layer::Layer;
@@ -13,6 +14,7 @@ pub use load::Load;
 pub use patches::Patches;
 pub use period::Period;
 pub use pressure_limit::PressureLimit;
+pub use refine::refine;
 
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;

@@ -3,6 +3,7 @@
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
+mod accuracy;
 mod batch;
 mod descent_method;
 mod estimates;
@@ -18,6 +19,7 @@ mod start;
 
 use std::time::Instant;
 
+pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
 pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
@@ -199,6 +201,16 @@ impl Solver {
     /// The result: pressures, displacements, contact area and approach.
     pub fn state(&self) -> &State {
         &self.states[0]
+    }
+
+    /// The grid that it was set up for.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Whether there is a result yet.
+    pub fn has_solved(&self) -> bool {
+        self.solved_before
     }
 
     /// What the last solve knew when: one row per grid, coarsest first.

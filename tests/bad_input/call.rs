@@ -42,6 +42,8 @@ pub enum Through {
     SolverSolve,
     /// As the only problem of a batch.
     SolverSolveBatch,
+    /// The handle that it makes is freed.
+    ToAccuracy,
 }
 
 /// The arguments of a call; as made by `new`, a valid one.
@@ -55,6 +57,7 @@ pub struct Call {
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
+    pub accuracy: Box<Grown<contact_normal_accuracy>>,
     pub h: Vec<f64>,
     pub table: Vec<f64>,
     /// Values per element, of a layer or of limits.
@@ -96,6 +99,7 @@ impl Call {
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
+            accuracy: Grown::new(initialised(contact_normal_accuracy_init)),
             h: (0..N)
                 .map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2))
                 .collect(),
@@ -130,6 +134,7 @@ impl Call {
         let report = &mut call.report.known;
         (report.ledger, report.ledger_capacity) = (call.ledger.as_mut_ptr(), call.ledger.len() as i64);
         (report.force, report.cycles) = (SENTINEL, -77);
+        (call.accuracy.known.target, call.accuracy.known.reached) = (0.05, SENTINEL);
         call
     }
 
@@ -196,6 +201,7 @@ impl Call {
         let options = if self.without == "options" { null() } else { &raw const self.options.known };
         let fields = if self.without == "fields" { null_mut() } else { &raw mut self.fields.known };
         let report = if self.without == "report" { null_mut() } else { &raw mut self.report.known };
+        let accuracy = if self.without == "accuracy" { null_mut() } else { &raw mut self.accuracy.known };
         // SAFETY: pointers to structs with room for what they declare; a wrong size or NULL is what is tested.
         unsafe {
             let status = match through {
@@ -208,6 +214,14 @@ impl Call {
                     // Untouched when the call itself is refused.
                     assert!(self.status == SENTINEL_CONTACT || self.status == returned);
                     returned
+                }
+                Through::ToAccuracy => {
+                    let made = &raw mut self.handle;
+                    let status = contact_normal_solve_to_accuracy(scene, options, accuracy, made, report);
+                    if status >= CONTACT_NORMAL_OK {
+                        contact_normal_solver_free(std::mem::replace(&mut self.handle, null_mut()));
+                    }
+                    status
                 }
             };
             // After OK the message is still that of the last call that had one.
@@ -224,7 +238,7 @@ impl Call {
 
     /// Every byte that a call may write.
     pub fn outputs(&self) -> Vec<u8> {
-        let mut bytes = [self.fields.bytes(), self.report.bytes()].concat();
+        let mut bytes = [self.fields.bytes(), self.report.bytes(), self.accuracy.bytes()].concat();
         bytes.extend((self.handle as usize).to_ne_bytes());
         bytes.extend(self.pressure.iter().chain(&self.others).flat_map(|value| value.to_ne_bytes()));
         bytes.extend(self.contact.iter().flat_map(|value| value.to_ne_bytes()));

@@ -1,0 +1,171 @@
+//! `contact_normal_solve_to_accuracy`: an accuracy instead of a grid.
+
+use libc::c_void;
+
+use super::guard::guard;
+use super::options::{self, contact_normal_options};
+use super::report::{contact_normal_fields, contact_normal_report};
+use super::scene::{self, contact_normal_scene};
+use super::solve::{watcher, Outcome, Outputs};
+use super::solver::contact_normal_solver;
+use super::status::{contact_normal_status, Refusal};
+use super::structs::{self, Versioned};
+use crate::grid::Grid;
+use crate::solver::{solve_to_accuracy, Accuracy, ProgressCallback, SurfaceCallback};
+
+/// Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
+/// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread.
+pub type contact_normal_surface_callback = Option<
+    unsafe extern "C" fn(mx: i32, my: i32, dx: f64, dy: f64, undeformed_distance: *mut f64, user: *mut c_void) -> i32,
+>;
+
+/// The accuracy that is asked for, what it may cost, and the grid that it took.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_accuracy {
+    /// Set by `contact_normal_accuracy_init`.
+    pub struct_size: i64,
+    /// Estimated relative error of the force (of the approach, when the force is prescribed) at most; default 1e-3.
+    pub target: f64,
+    /// Seconds for all grids together; 0 (default): no limit.
+    pub max_seconds: f64,
+    /// Bytes that the solvers of two successive grids may hold; 0 (default): no limit.
+    pub max_bytes: i64,
+    /// Elements of a grid; 0 (default): 4096 x 4096.
+    pub max_elements: i64,
+    /// Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics through
+    /// the four nearest centres in each direction.
+    pub surface: contact_normal_surface_callback,
+    /// Passed to `surface`.
+    pub user: *mut c_void,
+    /// Out: elements in x of the grid that was used; 0: cancelled before a grid was solved.
+    pub mx: i32,
+    /// Out: elements in y.
+    pub my: i32,
+    /// Out: element size in x.
+    pub dx: f64,
+    /// Out: element size in y.
+    pub dy: f64,
+    /// Out: estimated relative error on it; < 0: not known.
+    pub reached: f64,
+    /// Out: seconds for all grids together.
+    pub seconds: f64,
+}
+
+// SAFETY: integers, floats, raw pointers and an optional function pointer only, struct_size first.
+unsafe impl Versioned for contact_normal_accuracy {
+    const NAME: &'static str = "contact_normal_accuracy";
+    const FIRST_SIZE: usize = 96;
+    fn defaults() -> Self {
+        Self {
+            struct_size: size_of::<Self>() as i64,
+            target: 1e-3,
+            max_seconds: 0.0,
+            max_bytes: 0,
+            max_elements: 0,
+            surface: None,
+            user: std::ptr::null_mut(),
+            mx: 0,
+            my: 0,
+            dx: 0.0,
+            dy: 0.0,
+            reached: -1.0,
+            seconds: 0.0,
+        }
+    }
+}
+
+/// Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_accuracy_init(accuracy: *mut contact_normal_accuracy) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(accuracy) }
+}
+
+/// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
+/// `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
+/// undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
+/// OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
+/// surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases
+/// `contact_normal_last_error` says the best reached, and report and handle hold it: the finest grid that was solved. `*solver`
+/// (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+/// `contact_normal_solver_free`; NULL if cancelled before a grid was solved. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
+    scene: *const contact_normal_scene,
+    options: *const contact_normal_options,
+    accuracy: *mut contact_normal_accuracy,
+    solver: *mut *mut contact_normal_solver,
+    report: *mut contact_normal_report,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
+        let (mut given, options) =
+            unsafe { (structs::read(accuracy.cast_const(), "accuracy")?, options::translate(options)?) };
+        // SAFETY: as above.
+        let (scene, outputs) =
+            unsafe { (scene::translate_with(scene, given.surface.is_none())?, Outputs::report_only(report)?) };
+        let (asked, user) = (translate(&given)?, given.user);
+
+        let mut write = |grid: &Grid, h: &mut [f64]| match given.surface {
+            // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
+            Some(surface) => unsafe {
+                surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
+            },
+            None => false,
+        };
+        let mut callback = watcher(&options);
+        let surface: Option<SurfaceCallback<'_>> = given.surface.is_some().then_some(&mut write);
+        let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
+        let outcome = solve_to_accuracy(&scene, &options.options, &asked, surface, progress)?;
+
+        let found = outcome.solver.as_ref();
+        let grid = found.map(|found| *found.grid());
+        (given.mx, given.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
+        (given.dx, given.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
+        (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
+        outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()))?;
+        // SAFETY: a struct that declares its size; NULL or room for a pointer.
+        unsafe {
+            structs::write(accuracy, &given)?;
+            if !solver.is_null() {
+                solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
+            }
+        }
+        Outcome { status: outcome.stop.into(), message: outcome.reason }.conclude()
+    })
+}
+
+fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Refusal> {
+    let limit = |name: &str, value: i64| {
+        let refuse = |_| Refusal::invalid(format!("{name} is {value}; it must be positive, or 0 for no limit"));
+        u64::try_from(value).map_err(refuse)
+    };
+    Ok(Accuracy {
+        target: given.target,
+        max_seconds: given.max_seconds,
+        max_bytes: limit("max_bytes", given.max_bytes)?,
+        max_elements: limit("max_elements", given.max_elements)?,
+    })
+}
+
+/// Copies the result of the last solve with a handle: of `contact_normal_solver_solve`, or the one that
+/// `contact_normal_solve_to_accuracy` made it with, whose grid has `accuracy->mx` x `accuracy->my` elements. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solver_fields(
+    solver: *const contact_normal_solver,
+    fields: *mut contact_normal_fields,
+) -> contact_normal_status {
+    guard(|| {
+        if solver.is_null() {
+            return Err(Refusal::null("solver"));
+        }
+        // SAFETY: not null: a handle of ours, used by one thread at a time; NULL or a struct that declares its size.
+        let (solver, outputs) = unsafe { (&(*solver).solver, Outputs::of(fields, std::ptr::null_mut())?) };
+        if !solver.has_solved() {
+            return Err(Refusal::invalid("solver has no result yet: nothing was solved with it".into()));
+        }
+        outputs.write_fields(solver);
+        Ok(super::status::CONTACT_NORMAL_OK)
+    })
+}

@@ -1,0 +1,197 @@
+//! Which grid comes next, and whether the limits allow it.
+
+use crate::error::{invalid, require, Result};
+use crate::grid::Grid;
+
+/// The accuracy that is asked for, and what it may cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Relative error of the force, or of the approach when the force is prescribed.
+    pub target: f64,
+    /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
+    pub max_seconds: f64,
+    /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
+    pub max_bytes: u64,
+    /// Elements of a grid; 0: 4096 x 4096.
+    pub max_elements: u64,
+}
+
+impl Accuracy {
+    /// A target, no limits but the number of elements.
+    pub fn new(target: f64) -> Accuracy {
+        Accuracy { target, max_seconds: 0.0, max_bytes: 0, max_elements: 0 }
+    }
+}
+
+/// What the last grid has shown.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Past {
+    pub grid: Grid,
+    /// Estimated relative error, if known.
+    pub relative: Option<f64>,
+    /// By what the error falls with a doubling, if known: 4 where it is of second order in the element size.
+    pub falls_by: Option<f64>,
+    /// Bytes held by its solver.
+    pub bytes: u64,
+    /// Seconds that it took: undeformed distance, set-up and solve.
+    pub seconds: f64,
+    /// Seconds since the first grid was begun.
+    pub elapsed: f64,
+}
+
+/// What to do next.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Next {
+    /// Double the elements of both directions, so many times.
+    Refine(u32),
+    /// A limit is in the way: which.
+    Limit(String),
+}
+
+/// Without a limit of the caller's.
+const MOST_ELEMENTS: u64 = 4096 * 4096;
+/// Elements that a grid can have at all.
+const ALL_ELEMENTS: u64 = i32::MAX as u64;
+/// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
+const MOST_DOUBLINGS: u32 = 3;
+/// By what errors of the force fall with a doubling on smooth bodies, and the least that is believed: order 1/2.
+const FALLS_BY: (f64, f64) = (4.0, std::f64::consts::SQRT_2);
+/// The target may be missed by a quarter of a doubling: a grid too few costs a quarter more, one too many four times as much.
+const SLACK: f64 = 0.25;
+/// Seconds grow with this power of the number of elements (docs/performance.md).
+const SECONDS_EXPONENT: f64 = 1.13;
+
+impl Accuracy {
+    /// Refuses what makes no sense.
+    pub fn check(&self) -> Result<()> {
+        let (target, seconds) = (self.target, self.max_seconds);
+        require(target > 0.0 && target.is_finite(), "target", target, "it must be positive and finite")?;
+        require(
+            seconds >= 0.0 && seconds.is_finite(),
+            "max_seconds",
+            seconds,
+            "it must be positive, or 0 for no limit",
+        )?;
+        if self.max_elements > ALL_ELEMENTS {
+            return invalid(format!(
+                "max_elements is {}; a grid has at most {ALL_ELEMENTS} elements",
+                self.max_elements
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether the time is over.
+    pub(super) fn is_late(&self, elapsed: f64) -> bool {
+        self.max_seconds > 0.0 && elapsed > self.max_seconds
+    }
+
+    /// The next grid: the one that is predicted to meet the target, or as many doublings towards it as the limits allow.
+    pub(super) fn next(&self, past: &Past) -> Next {
+        let mut doublings = self.doublings(past);
+        loop {
+            match self.limit(past, doublings) {
+                None => return Next::Refine(doublings),
+                Some(_) if doublings > 1 => doublings -= 1,
+                Some(limit) => return Next::Limit(limit),
+            }
+        }
+    }
+
+    /// Doublings that the estimate asks for; one if there is none.
+    fn doublings(&self, past: &Past) -> u32 {
+        let falls_by = past.falls_by.unwrap_or(FALLS_BY.0).clamp(FALLS_BY.1, FALLS_BY.0);
+        let wanted = past.relative.map_or(1.0, |relative| (relative / self.target).log(falls_by) - SLACK);
+        // `as` saturates, and takes a NaN for 0.
+        (wanted.ceil() as u32).clamp(1, MOST_DOUBLINGS)
+    }
+
+    /// The limit that so many doublings would break, if any.
+    fn limit(&self, past: &Past, doublings: u32) -> Option<String> {
+        let (mx, my) = ((past.grid.mx as u64) << doublings, (past.grid.my as u64) << doublings);
+        let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements"));
+        let most = if self.max_elements == 0 { MOST_ELEMENTS } else { self.max_elements };
+        // mx and my are below 2^34.
+        if mx.saturating_mul(my) > most.min(ALL_ELEMENTS) {
+            return in_the_way(format!("max_elements, {most},"));
+        }
+        let ratio = 4f64.powi(doublings as i32);
+        let bytes = past.bytes as f64 * (1.0 + ratio);
+        if self.max_bytes > 0 && bytes > self.max_bytes as f64 {
+            return in_the_way(format!("max_bytes, {} of the {bytes:.0} predicted,", self.max_bytes));
+        }
+        let seconds = past.elapsed + past.seconds * ratio.powf(SECONDS_EXPONENT);
+        if self.is_late(seconds) {
+            return in_the_way(format!("max_seconds, {} of the {seconds:.3} predicted,", self.max_seconds));
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn past(relative: Option<f64>) -> Past {
+        Past {
+            grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"),
+            relative,
+            falls_by: None,
+            bytes: 100,
+            seconds: 1.0,
+            elapsed: 1.5,
+        }
+    }
+
+    #[test]
+    fn as_many_doublings_as_the_estimate_asks_for() {
+        let accuracy = Accuracy::new(1e-4);
+        // In powers of four, rounded up beyond a quarter: 4^1.25 = 5.66, 4^2.25 = 22.6.
+        for (relative, doublings) in
+            [(1.01e-4, 1), (5.6e-4, 1), (5.7e-4, 2), (22e-4, 2), (23e-4, 3), (0.5, 3), (f64::MAX, 3)]
+        {
+            assert_eq!(accuracy.next(&past(Some(relative))), Next::Refine(doublings), "{relative}");
+        }
+        assert_eq!(accuracy.next(&past(None)), Next::Refine(1));
+        // An order of 1, and one that is not believed: 2^2.25 = 4.76, 2^1.125 = 2.18.
+        for (falls_by, relative, doublings) in [(2.0, 4.7e-4, 2), (2.0, 4.8e-4, 3), (1.0, 2.1e-4, 2), (1.0, 2.2e-4, 3)]
+        {
+            let past = Past { falls_by: Some(falls_by), ..past(Some(relative)) };
+            assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{past:?}");
+        }
+    }
+
+    #[test]
+    fn limits_shorten_the_step_and_then_end_it() {
+        let far = past(Some(1.0));
+        let limited = |change: fn(&mut Accuracy, u32)| {
+            // The last that is allowed for k doublings.
+            (1..=3).for_each(|k| {
+                let mut accuracy = Accuracy::new(1e-4);
+                change(&mut accuracy, k);
+                assert_eq!(accuracy.next(&far), Next::Refine(k), "{accuracy:?}");
+            });
+            let mut accuracy = Accuracy::new(1e-4);
+            change(&mut accuracy, 0);
+            match accuracy.next(&far) {
+                Next::Limit(why) => why,
+                next => panic!("{next:?} with {accuracy:?}"),
+            }
+        };
+        let elements = limited(|accuracy, k| accuracy.max_elements = (64 * 32) << (2 * k));
+        assert_eq!(elements, "max_elements, 2048, is in the way of 128 x 64 elements");
+        let bytes = limited(|accuracy, k| accuracy.max_bytes = 100 + (100 << (2 * k)));
+        assert!(bytes.starts_with("max_bytes, 200 of the 500 predicted,"), "{bytes}");
+        // 1.5 s so far, and 4^(1.13 k) more: 4.79, 22.9 and 110.
+        let seconds = limited(|accuracy, k| accuracy.max_seconds = [6.2, 6.4, 24.5, 111.5][k as usize]);
+        assert!(seconds.starts_with("max_seconds, 6.2 of the 6.290 predicted,"), "{seconds}");
+    }
+
+    #[test]
+    fn no_grid_is_larger_than_grids_can_be() {
+        let mut huge = past(Some(1.0));
+        (huge.grid.mx, huge.grid.my) = (32768, 32768);
+        let accuracy = Accuracy { max_elements: i32::MAX as u64, ..Accuracy::new(1e-4) };
+        assert!(matches!(accuracy.next(&huge), Next::Limit(_)));
+    }
+}
