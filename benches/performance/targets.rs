@@ -141,6 +141,42 @@ pub fn force_against_approach(threads: usize) {
     }
 }
 
+/// What estimating errors costs, and what stopping at a part of the discretisation error saves.
+pub fn accuracy(threads: usize) {
+    println!("\n### What estimates cost, cold, {threads} thread(s)\n");
+    println!("| case | without | with estimates | more | at most | |");
+    println!("|---|---|---|---|---|---|");
+    let with = |threads| Options { estimates: true, ..options(threads) };
+    for case in [ellipse(64), ellipse(512), ellipse(1024), rough(512), rough(1024), wheel_rail("y4_82kN", 1)] {
+        let (scene, plain, with) = (case.scene(), options(threads), with(threads));
+        let times = in_turns(&mut [&mut || _ = cold(&scene, &plain), &mut || _ = cold(&scene, &with)]);
+        let (plain, with) = (median(&times[0]), median(&times[1]));
+        let more = 100.0 * (with / plain - 1.0);
+        println!("| {} | {} | {} | {more:.1} % | 1 % | {} |", case.name, shown(plain), shown(with), mark(more, 1.0));
+    }
+    println!("\n### error_ratio 0.1 against tolerance 1e-8, {threads} thread(s)\n");
+    println!("| case | method | tolerance 1e-8 | error_ratio 0.1 | ratio | work units | at most | |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for method in [Method::Auto, Method::FullMultigrid] {
+        let case = ellipse(1024);
+        let tight = Options { method, tolerance: 1e-8, ..options(threads) };
+        let enough = Options { error_ratio: 0.1, ..tight };
+        let work = [&tight, &enough].map(|options| cold(&case.scene(), options).1.work_units);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &tight), &mut || _ = cold(&case.scene(), &enough)]);
+        let (tight, enough) = (median(&times[0]), median(&times[1]));
+        let ratio = enough / tight;
+        println!(
+            "| {} | {method:?} | {} | {} | {ratio:.2} | {:.1} and {:.1} | 0.5 | {} |",
+            case.name,
+            shown(tight),
+            shown(enough),
+            work[0],
+            work[1],
+            mark(ratio, 0.5)
+        );
+    }
+}
+
 /// How the time grows with the number of elements.
 pub fn growth(threads: usize, sizes: &[usize]) {
     println!("\n### Growth of the time on the rough surface, {threads} thread(s)\n");

@@ -156,8 +156,8 @@ impl Solver {
             report.work_units,
             report.measures.certificate.residual
         );
-        if let Some(advice) = report.advice() {
-            log::info!("{advice}");
+        if log::log_enabled!(log::Level::Info) {
+            report.advice().iter().for_each(|advice| log::info!("{advice}"));
         }
         Ok((stop, report))
     }

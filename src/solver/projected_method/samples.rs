@@ -58,8 +58,8 @@ impl CoarseGrids {
         let Coarse { level, state, means } = &mut self.grids[l];
         sample_distance(&fine.grid, &state.grid, &fine.h, &mut state.h);
         take_means(&fine.grid, &state.grid, &fine.p, means);
-        for i in 0..means.len() {
-            state.p[i] = if state.h[i].is_finite() { means[i] } else { 0.0 };
+        for (i, &mean) in means.iter().enumerate() {
+            state.p[i] = if state.h[i].is_finite() { mean } else { 0.0 };
             state.contact[i] = state.p[i] > 0.0;
         }
         (state.load, state.approach) = (fine.load, fine.approach);
