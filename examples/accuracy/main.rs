@@ -118,7 +118,14 @@ fn main() {
         if problem.grid.mx > most {
             return;
         }
-        if let Some((found, seconds, work, cycles)) = run(problem, method, tolerance) {
+        if let Some((found, mut seconds, work, cycles)) = run(problem, method, tolerance) {
+            // The median of three; long runs are their own.
+            if seconds < 0.3 {
+                let mut times = [seconds; 3];
+                times[1..].iter_mut().for_each(|time| *time = run(problem, method, tolerance).map_or(*time, |again| again.1));
+                times.sort_by(f64::total_cmp);
+                seconds = times[1];
+            }
             let error = (found / problem.exact - 1.0).abs();
             let (name, mx) = (problem.name, problem.grid.mx);
             println!("{name},{method:?},{mx},{tolerance:e},{seconds:.3e},{work:.2},{cycles},{error:.3e}");
