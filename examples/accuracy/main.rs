@@ -122,7 +122,9 @@ fn main() {
             // The median of three; long runs are their own.
             if seconds < 0.3 {
                 let mut times = [seconds; 3];
-                times[1..].iter_mut().for_each(|time| *time = run(problem, method, tolerance).map_or(*time, |again| again.1));
+                times[1..]
+                    .iter_mut()
+                    .for_each(|time| *time = run(problem, method, tolerance).map_or(*time, |again| again.1));
                 times.sort_by(f64::total_cmp);
                 seconds = times[1];
             }

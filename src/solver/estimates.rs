@@ -88,11 +88,16 @@ pub fn predict(near: &Sample, far: &Sample) -> f64 {
 
 /// Writes the errors of all rows, of which the last is that of `finest`; `samples`: of a, then b, or a alone, or none. What limits
 /// the answer, and what the next finer grid would bring.
-pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], seconds: f64) -> (Limit, Halving) {
+pub fn estimate(
+    ledger: &mut [LedgerRow],
+    finest: &State,
+    outline: &Outline,
+    samples: &[Sample],
+    seconds: f64,
+) -> (Limit, Halving) {
     let Some(last) = ledger.last().copied() else { return Default::default() };
     let (near, far) = (samples.first(), samples.get(1));
-    let edges = Outline::of(finest).edges > 0;
-    let highest = if edges { 1.0 } else { 2.0 };
+    let highest = if outline.edges > 0 { 1.0 } else { 2.0 };
     let measures = last.measures;
     let found = measures.found(finest.load);
     let of = |value: f64, part: fn(&Sample) -> f64| {
@@ -136,7 +141,7 @@ pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], se
         };
     }
     if let (Some(row), Some(_)) = (ledger.last_mut(), max_pressure) {
-        row.error.max_pressure = row.error.max_pressure.max(missed_peak(finest));
+        row.error.max_pressure = row.error.max_pressure.max(missed_peak(finest, measures.max_pressure));
     }
 
     let Some((error, q)) = force else { return Default::default() };
@@ -149,9 +154,9 @@ pub fn estimate(ledger: &mut [LedgerRow], finest: &State, samples: &[Sample], se
 
 /// What the largest pressure may miss of a peak between the elements: half of the most, `(d^2 p)/8` of the second differences there.
 /// Samples that happen to agree do not show it.
-fn missed_peak(state: &State) -> f64 {
+fn missed_peak(state: &State, max_pressure: f64) -> f64 {
     let (mx, my) = (state.grid.mx, state.grid.my);
-    let peak = (0..state.p.len()).fold(0, |peak, i| if state.p[i] > state.p[peak] { i } else { peak });
+    let Some(peak) = state.p.iter().position(|p| *p == max_pressure) else { return 0.0 };
     let (x, y) = (peak % mx, peak / mx);
     let beside = |lower: usize, upper: usize| 2.0 * state.p[peak] - state.p[lower] - state.p[upper];
     let along = if x > 0 && x + 1 < mx { beside(peak - 1, peak + 1) } else { 0.0 };

@@ -50,6 +50,8 @@ pub struct Monitor<'a> {
     pub update: f64,
     ledger: Vec<LedgerRow>,
     estimates: bool,
+    /// Of the contact area of the last row.
+    outline: Outline,
     limit: Limit,
     halving: Halving,
 }
@@ -70,6 +72,7 @@ impl<'a> Monitor<'a> {
             update: 0.0,
             ledger,
             estimates,
+            outline: Outline::default(),
             limit: Limit::default(),
             halving: Halving::default(),
         }
@@ -130,7 +133,8 @@ impl<'a> Monitor<'a> {
     pub fn close_grid(&mut self, state: &State) {
         let mut measures = Measures::of(state);
         if self.estimates {
-            measures.corrected_area = Outline::of(state).corrected_area(state, measures.contact_count);
+            self.outline = Outline::of(state);
+            measures.corrected_area = self.outline.corrected_area(state, measures.contact_count);
         }
         self.ledger.push(LedgerRow {
             mx: state.grid.mx,
@@ -146,7 +150,8 @@ impl<'a> Monitor<'a> {
     /// The ledger with its errors, once they are known.
     pub fn estimate(&mut self, state: &State, samples: &[Sample]) {
         let solve_seconds = self.began.elapsed().as_secs_f64();
-        (self.limit, self.halving) = estimates::estimate(&mut self.ledger, state, samples, solve_seconds);
+        (self.limit, self.halving) =
+            estimates::estimate(&mut self.ledger, state, &self.outline, samples, solve_seconds);
     }
 
     /// The report of the whole solve, whose last ledger row is the finest grid's, and the ledger.

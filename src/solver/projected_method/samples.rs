@@ -156,7 +156,9 @@ fn take_means(fine: &Grid, coarse: &Grid, p: &[f64], means: &mut Vec<f64>) {
     let (fx, fy) = factors(fine, coarse);
     means.clear();
     means.resize(coarse.len(), 0.0);
-    for (y, row) in p.chunks_exact(fine.mx).enumerate() {
+    // Rows without pressures add nothing.
+    let loaded = |(_, row): &(usize, &[f64])| row.iter().fold(false, |any, p| any | (*p != 0.0));
+    for (y, row) in p.chunks_exact(fine.mx).enumerate().filter(loaded) {
         let to = &mut means[(y / fy) * coarse.mx..][..coarse.mx];
         for (to, p) in to.iter_mut().zip(row.chunks(fx)) {
             *to += p.iter().sum::<f64>();
