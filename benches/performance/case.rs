@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::scene::{refine, Bodies, Load, Scene};
 
 /// One problem, with both ways to load it.
 pub struct Case {
@@ -88,42 +88,16 @@ pub fn wheel_rail(name: &str, refinement: usize) -> Case {
     let (mx, my) = (head[0] as usize, head[1] as usize);
     let h: Vec<f64> = lines.map(|line| numbers(line)[0]).collect();
     assert_eq!(h.len(), mx * my, "{name}: one line per element");
-    let (fine_x, fine_y) = (mx * refinement, my * refinement);
-    let rows: Vec<f64> = h.chunks_exact(mx).flat_map(|row| refine(row, refinement)).collect();
-    let mut fine = vec![0.0; fine_x * fine_y];
-    for x in 0..fine_x {
-        let column: Vec<f64> = (0..my).map(|y| rows[y * fine_x + x]).collect();
-        for (y, value) in refine(&column, refinement).into_iter().enumerate() {
-            fine[y * fine_x + x] = value;
-        }
-    }
+    let given = Grid::new(mx, my, head[2], head[3]).expect("a valid grid");
     let d = |i: usize| head[i] / refinement as f64;
     let suffix = if refinement == 1 { String::new() } else { format!(" x{refinement}") };
     Case {
         name: format!("wheel-rail {name}{suffix}"),
-        grid: Grid::new(fine_x, fine_y, d(2), d(3)).expect("a valid grid"),
+        grid: Grid::new(mx * refinement, my * refinement, d(2), d(3)).expect("a valid grid"),
         bodies: Bodies::same(head[6], head[7]),
-        h: fine,
+        h: refine(&h, &given, refinement).expect("memory"),
         load: Load::Approach(head[4]),
     }
-}
-
-/// Values at the centres of the parts of each element, by the cubic through the four nearest centres.
-fn refine(values: &[f64], parts: usize) -> Vec<f64> {
-    let n = values.len();
-    (0..n * parts)
-        .map(|i| {
-            if parts == 1 {
-                return values[i];
-            }
-            let at = (i as f64 + 0.5) / parts as f64 - 0.5;
-            let first = (at.floor() as i64 - 1).clamp(0, n as i64 - 4) as usize;
-            let t = at - first as f64;
-            let lagrange =
-                |j: usize| (0..4).filter(|k| *k != j).map(|k| (t - k as f64) / (j as f64 - k as f64)).product::<f64>();
-            (0..4).map(|j| lagrange(j) * values[first + j]).sum()
-        })
-        .collect()
 }
 
 fn read(path: &str) -> String {

@@ -71,8 +71,16 @@ impl State {
     /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
         let Grid { mx, my, .. } = self.grid;
-        let at_edge = |i: usize| i % mx == 0 || i % mx == mx - 1 || i / mx == 0 || i / mx == my - 1;
-        (0..self.contact.len()).filter(|&i| self.contact[i] && at_edge(i)).count()
+        let in_row = |row: &[bool]| match row {
+            [first, .., last] => usize::from(*first) + usize::from(*last),
+            row => usize::from(row[0]),
+        };
+        let rows = self.contact.chunks_exact(mx).enumerate();
+        rows.map(|(iy, row)| match iy == 0 || iy == my - 1 {
+            true => row.iter().filter(|&&inside| inside).count(),
+            false => in_row(row),
+        })
+        .sum()
     }
 
     /// `sum of p dx dy`.

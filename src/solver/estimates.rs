@@ -37,8 +37,8 @@ const CLEAN: f64 = 0.6;
 const NO_ORDER: f64 = 0.5;
 /// Part of the correction of the contact area by which it is off.
 const CORRECTION_OFF: f64 = 0.3;
-/// Growth of the time from one grid to the next: `4^1.13`.
-const GROWTH: f64 = 4.79;
+/// Seconds grow with this power of the number of elements (docs/performance.md).
+pub const SECONDS_EXPONENT: f64 = 1.13;
 
 /// q of `(b^q - 1)/(a^q - 1) = ratio`; none where it is not positive, at most 4.
 fn order(ratio: f64, a: f64, b: f64) -> Option<f64> {
@@ -147,7 +147,7 @@ pub fn estimate(
     let Some((error, q)) = force else { return Default::default() };
     let hidden = residual * found.abs();
     let halved = error.abs() / 2.0_f64.powf(q);
-    let halving = Halving { seconds: GROWTH * seconds, force: halved + hidden };
+    let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
     let limit = if error.abs() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }

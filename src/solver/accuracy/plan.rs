@@ -2,6 +2,7 @@
 
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
+use crate::solver::estimates::SECONDS_EXPONENT;
 
 /// The accuracy that is asked for, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +59,6 @@ const MOST_DOUBLINGS: u32 = 3;
 const FALLS_BY: (f64, f64) = (4.0, std::f64::consts::SQRT_2);
 /// The target may be missed by a quarter of a doubling: a grid too few costs a quarter more, one too many four times as much.
 const SLACK: f64 = 0.25;
-/// Seconds grow with this power of the number of elements (docs/performance.md).
-const SECONDS_EXPONENT: f64 = 1.13;
 
 impl Accuracy {
     /// Refuses what makes no sense.
