@@ -21,7 +21,9 @@
 //! on. Debts shrink by that factor at each iteration; what is left of them at the end the fresh product of the certificate settles.
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
-//! a fixed length, truncates, and then computes u: one product for what would take three.
+//! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
+//! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
+//! product pays all.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
@@ -40,7 +42,7 @@ use crate::threads::Threads;
 /// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
 const OWED: f64 = 0.1;
-/// The length of the first step, which has no product: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
+/// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
 const FIRST_STEP: f64 = 0.4;
 /// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
 /// forecasts, each the last alpha.
@@ -183,7 +185,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Iterates from a state whose u is A p. `after_cycle` is told of every iteration and says whether to go on.
+    /// Iterates from a state whose u is A p; p may be negative. `after_cycle` is told of every iteration and says whether to go on.
     pub fn run(&mut self, state: &mut State, stop: &Stopping, mut after_cycle: impl FnMut(&Cycle) -> bool) -> End {
         let by_force = matches!(state.load, Load::Force(_));
         self.t.fill(T::zero());
@@ -197,10 +199,21 @@ impl<T: Real> Iteration<T> {
         let mut cycle: Option<Cycle> = None;
         let (mut iterations, mut floor) = (0, None);
         let (mut least, mut since_least) = (f64::INFINITY, 0);
-        state.fit_approach();
-        // 4.2
-        self.update_displacements(state, &Update::default(), stop.fixed);
+        // 4.1 and 4.2
         self.find_contact(state);
+        let mut update = Update::default();
+        if self.update_pressures(state, 0.0, None, stop.fixed) > 0 {
+            self.runs.find(&state.contact);
+            update.factor = self.carry_force(state);
+        }
+        if by_force {
+            self.fit_approach(state, &update);
+        }
+        self.update_displacements(state, &update, stop.fixed);
+        self.runs.find(&state.contact);
+        if self.owed() > 0.0 {
+            forecast = forecast.map(|_| FIRST_STEP);
+        }
         loop {
             // r = -e on C
             let residual = self.residual(state);
@@ -244,7 +257,10 @@ impl<T: Real> Iteration<T> {
                 return End::Breakdown;
             }
             tq = step.tq;
-            let alpha = step.rt / step.tq;
+            let mut alpha = step.rt / step.tq;
+            if iterations == 1 && self.owed() > OWED * alpha.abs() * step.t1 {
+                (alpha, tq) = (before, 0.0);
+            }
             for debt in &mut self.debts {
                 // What it is owed is no part of its direction.
                 let owed = T::of(debt.1 / before);
@@ -269,7 +285,7 @@ impl<T: Real> Iteration<T> {
                     *alpha = usual;
                 }
             }
-            let owed: f64 = self.debts.iter().map(|debt| debt.1.abs()).sum();
+            let owed = self.owed();
             let mut products = 1;
             if owed > OWED * alpha.abs() * step.t1 || forecast.is_none() && owed > 0.0 {
                 self.settle();
@@ -456,6 +472,11 @@ impl<T: Real> Iteration<T> {
             self.runs.change(debt.0);
         }
         left
+    }
+
+    /// The sum of |d|.
+    fn owed(&self) -> f64 {
+        self.debts.iter().map(|debt| debt.1.abs()).sum()
     }
 
     /// z = A d: a product pays all debts.

@@ -25,7 +25,8 @@ impl History {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
-    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then.
+    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
+    /// iteration truncates it, and owes u the change.
     pub fn predict(&mut self, state: &mut State) -> Result<Displacement> {
         state.scale_to_approach();
         if self.p.is_empty() {
@@ -57,15 +58,18 @@ impl History {
         let step = work / energy;
         let step = if energy > 0.0 && step.is_finite() { step } else { 0.0 };
 
+        let mut displacement = Displacement::Known;
         for i in 0..state.p.len() {
             let (p, u) = (state.p[i], state.u[i]);
-            let moved = p + step * ((1.0 - share) * p - self.p[i]);
-            state.p[i] = if state.h[i].is_finite() { moved.max(0.0) } else { 0.0 };
+            state.p[i] = p + step * ((1.0 - share) * p - self.p[i]);
             state.u[i] = u + step * ((1.0 - share) * u - self.u[i]);
-            state.contact[i] = state.p[i] > 0.0;
+            state.contact[i] = state.p[i] != 0.0;
             (self.p[i], self.u[i]) = (p, u);
+            if state.contact[i] && state.h[i].is_infinite() {
+                (state.p[i], state.contact[i]) = (0.0, false);
+                displacement = Displacement::Unknown;
+            }
         }
-        state.fit_approach();
-        Ok(if step == 0.0 { Displacement::Known } else { Displacement::Near })
+        Ok(displacement)
     }
 }

@@ -34,9 +34,9 @@ use history::History;
 use level::{Displacement, Level};
 use samples::{PREDICTS, SHOWS_ORDER};
 
-/// The iteration aims at this part of the tolerance, so that what is owed and the rounding of its single precision products do
-/// not fail the certificate.
-const AIM: f64 = 0.5;
+/// The iteration aims at this part of the tolerance: what is owed and the rounding of its single precision products shall not fail
+/// the certificate, and on a full contact of flat bodies, where A is worst conditioned, p be within ten tolerances (tests/random_problems.rs). Work over 40 cases at 0.5, 0.75, 0.9: 1, 0.98, 0.96.
+const AIM: f64 = 0.75;
 /// The first u on the finest grid is of single precision if the noise that this may leave in p is at most so many tolerances. Errors
 /// of transforms are some tenth of `EPSILON u`: what is left is below ten tolerances in the largest pressure.
 const NOISE: f64 = 25.0;
