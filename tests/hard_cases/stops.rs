@@ -44,7 +44,8 @@ mod promises {
     fn norm_below_round_off_ends_with_the_contact_area_found() {
         // Directions of mean zero lose that by round-off, and equations that are not symmetric are solved otherwise.
         let shaped = [super::super::surfaces::cases(), super::super::coefficients::cases()].concat();
-        let shaped = shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
+        let shaped =
+            shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
         let mut stagnated = 0;
         for case in shaped.chain(cases()) {
             let options = Options { method: Method::Norm, tolerance: 1e-30, max_cycles: 20_000, ..Options::default() };
