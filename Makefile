@@ -70,7 +70,8 @@ demo: tools all
 
 # Optimised, with debug assertions and overflow checks on; the feature is for tests/panics.rs.
 test: tools
-	$(CARGO) test --profile checked --locked --features test-panics --lib --tests --examples
+	$(CARGO) test --profile checked --locked --features test-panics --lib --tests
+	$(CARGO) build --profile checked --locked --features test-panics --examples
 	$(CARGO) test --profile checked --locked --features test-panics --doc
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.

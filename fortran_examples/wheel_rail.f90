@@ -32,6 +32,7 @@ program wheel_rail
   print '(2a)', "pressures differ by less than 1e-6 of the largest: ", &
     trim(merge("yes", "no ", all(abs(ps - reference) < 1e-6_c_double*maxval(reference))))
   call write_arrays()
+  deallocate (h, reference, in_contact, cf, ps, igs)
 
 contains
 

@@ -1,5 +1,5 @@
 //! The C and C++ clients: the header alone, every example with its expected output and a certificate recomputed from what it
-//! wrote, the layout of every struct, a C++ program, one example under valgrind.
+//! wrote, the layout of every struct, a C++ program, the examples under valgrind.
 
 mod clients;
 
@@ -7,7 +7,7 @@ use std::mem::{offset_of, size_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, run_linked, scratch, Recomputed};
+use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
@@ -133,19 +133,37 @@ fn the_effects() {
     }
 }
 
+/// All of them, as the folder has them, on small inputs: valgrind is some 50 times slower.
 #[test]
-fn an_example_under_valgrind() {
-    assert!(
-        Command::new("valgrind").arg("--version").output().is_ok(),
-        "valgrind is not installed: install it (Debian, Ubuntu: apt-get install valgrind)"
-    );
+fn the_examples_under_valgrind() {
     let folder = scratch("c_valgrind");
-    let program = compile(compiler("cc", "c99"), "c_examples/hertz.c", &folder);
-    let mut valgrind = Command::new("valgrind");
-    valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full"]).arg(program);
-    // A small grid: valgrind is some 50 times slower.
-    let printed = run(valgrind.arg("24").env("LD_LIBRARY_PATH", &folder).current_dir(&folder));
-    assert!(printed.starts_with("Hertz contact, 24 x 24 elements\n"), "{printed}");
+    let data = root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned();
+    let small = |text: String| {
+        text.replace("COUNT = 200", "COUNT = 5")
+            .replace("STEPS = 100", "STEPS = 4")
+            .replace("MX = 48, MY = 48", "MX = 16, MY = 16")
+    };
+    std::fs::copy(root().join("c_examples/example.h"), folder.join("example.h")).expect("a header");
+    let mut count = 0;
+    for file in std::fs::read_dir(root().join("c_examples")).expect("the examples") {
+        let file = file.expect("a file").path();
+        if file.extension().is_none_or(|extension| extension != "c") {
+            continue;
+        }
+        let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
+        let source = folder.join(format!("{name}.c"));
+        std::fs::write(&source, small(std::fs::read_to_string(&file).expect("a source"))).expect("a smaller source");
+        let program = compile(compiler("cc", "c99"), source.to_str().expect("a path in UTF-8"), &folder);
+        let arguments = match name.as_str() {
+            "hertz" | "ledger" => vec!["24"],
+            "wheel_rail" => vec![data.as_str()],
+            _ => Vec::new(),
+        };
+        let printed = run_under_valgrind(&program, &arguments, &folder);
+        assert!(!printed.is_empty(), "{name}");
+        count += 1;
+    }
+    assert!(count >= 11, "{count} examples");
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod clients;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, run_linked, scratch};
+use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
 
@@ -111,15 +111,24 @@ fn a_host_with_its_own_floating_point_environment_gets_the_same() {
     }
 }
 
+/// All of them, as the folder has them.
 #[test]
-fn an_example_under_valgrind() {
+fn the_examples_under_valgrind() {
     let folder = scratch("fortran_valgrind");
-    let program = compile("fortran_examples/norm_drop_in.f90", &["-g", "-O1"], &folder);
-    let mut valgrind = Command::new("valgrind");
-    // "still reachable" is what the Fortran library keeps for its units.
-    valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full", "--errors-for-leak-kinds=definite"]).arg(program);
-    let printed = run(valgrind.env("LD_LIBRARY_PATH", &folder).current_dir(&folder));
-    assert!(!printed.is_empty());
+    let mut count = 0;
+    for file in std::fs::read_dir(root().join("fortran_examples")).expect("the examples") {
+        let file = file.expect("a file").path();
+        if file.extension().is_none_or(|extension| extension != "f90") {
+            continue;
+        }
+        let program = compile(file.to_str().expect("a path in UTF-8"), &["-g", "-O1"], &folder);
+        let case = wheel_rail_case();
+        let arguments = if program.ends_with("wheel_rail") { vec![case.as_str()] } else { Vec::new() };
+        let printed = run_under_valgrind(&program, &arguments, &folder);
+        assert!(!printed.is_empty(), "{}", file.display());
+        count += 1;
+    }
+    assert!(count >= 9, "{count} examples");
 }
 
 #[test]

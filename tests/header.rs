@@ -1,7 +1,9 @@
-//! include/contact_normal.h is what cbindgen makes of src/ffi, byte for byte.
+//! include/contact_normal.h is what cbindgen makes of src/ffi, byte for byte, and versions are the same wherever they stand.
 //! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header` writes it anew.
 
 use std::path::Path;
+
+use contact_normal::ffi::CONTACT_NORMAL_ABI_VERSION;
 
 #[test]
 fn the_committed_header_is_the_generated_one() {
@@ -25,4 +27,19 @@ fn the_committed_header_is_the_generated_one() {
         header == committed,
         "include/contact_normal.h is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header"
     );
+}
+
+/// tests/installed_package.rs compares those of the library and of the installed package.
+#[test]
+fn the_header_and_the_modules_have_the_versions_of_the_library() {
+    let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
+    let abi = CONTACT_NORMAL_ABI_VERSION;
+    for (file, stands) in [
+        ("include/contact_normal.h", format!("\n * contact-normal {}: ", env!("CARGO_PKG_VERSION"))),
+        ("include/contact_normal.h", format!("\n#define CONTACT_NORMAL_ABI_VERSION {abi}\n")),
+        ("include/contact_normal.f90", format!(":: CONTACT_NORMAL_ABI_VERSION = {abi}\n")),
+        ("python_examples/contact_normal.py", format!("\nABI_VERSION = {abi}\n")),
+    ] {
+        assert!(read(file).contains(&stands), "{file} has no {stands:?}");
+    }
 }

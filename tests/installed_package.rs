@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use clients::{root, run, scratch};
+use contact_normal::ffi::CONTACT_NORMAL_ABI_VERSION;
 
 const PROGRAM: &str = r#"
 #include <contact_normal.h>
@@ -21,7 +22,8 @@ int main(void)
     if (status != CONTACT_NORMAL_OK) {
         return 1;
     }
-    printf("%s %d %.0f\n", contact_normal_version(), (int)contact_normal_abi_version(), exact.force);
+    printf("%s %d %d %.0f\n", contact_normal_version(), (int)contact_normal_abi_version(), CONTACT_NORMAL_ABI_VERSION,
+           exact.force);
     return 0;
 }
 "#;
@@ -71,7 +73,7 @@ fn the_installed_package_is_what_pkg_config_says() {
         program
     };
     // 81987 N: the paper's problem (tests/hertz.rs checks the closed form).
-    let expected = format!("{version} 1 81987\n");
+    let expected = format!("{version} {CONTACT_NORMAL_ABI_VERSION} {CONTACT_NORMAL_ABI_VERSION} 81987\n");
     let shared = compile("shared", pkg_config(&prefix, &["--cflags", "--libs"]));
     let dynamic = run(Command::new("readelf").arg("-d").arg(&shared));
     assert!(dynamic.contains("Shared library: [libcontact_normal.so.0]"), "{dynamic}");

@@ -13,7 +13,7 @@ use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
 /// good to some units of round-off.
-const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// When the inner iteration stops.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +97,8 @@ pub fn conjugate_gradients(
         for (r, q) in r.iter_mut().zip(&*product) {
             *r -= step * q;
         }
+        // A mean that round-off left once would add up in the directions, until they are nothing else.
+        project(r);
         let before = std::mem::replace(&mut rr, dot(r, r));
         inner.update = step.abs() * (dot(direction, direction) / count).sqrt();
         let met = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt() && stop.update > 0.0;

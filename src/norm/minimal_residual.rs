@@ -1,6 +1,7 @@
 //! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area when A is not symmetric: a table of the caller's own
 //! need not be, and conjugate gradients would then converge to something else, or not at all.
 
+use super::conjugate_gradients::ROUND_OFF;
 use super::{Inner, InnerStop, Workspace};
 use crate::active_set::{norm_of_distance, State};
 use crate::error::Result;
@@ -140,6 +141,12 @@ pub fn minimal_residual(
         residual.clear();
         residual.extend(elements.iter().map(|&i| state.approach - state.h[i] - product[i]));
         project(residual);
+        // A true residual that is round-off stays that, restart after restart.
+        let terms = |i: usize| (state.approach - state.h[i]).abs() + product[i].abs();
+        let noise = ROUND_OFF * elements.iter().map(|&i| terms(i) * terms(i)).sum::<f64>().sqrt();
+        if norm(residual) <= noise && norm(residual) > 0.5 * beta {
+            return Ok(inner);
+        }
     }
 }
 

@@ -300,6 +300,22 @@ impl Solver {
                 (pressure, pressure * influence)
             }
         };
+        // With a prescribed force the approach is a mean of distances, whatever they are measured from.
+        let farthest = match (scene.load, fixed) {
+            (Load::Approach(_), _) => 0.0,
+            (Load::Force(_), Some(fixed)) => {
+                let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
+                let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
+                on_contact.fold(0.0, |farthest: f64, (h, _)| farthest.max(h.abs()))
+            }
+            (Load::Force(_), None) => scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min).abs(),
+        };
+        if pressure != 0.0 && farthest >= 1e140 {
+            return invalid(format!(
+                "the undeformed distances of the contact area are of order {farthest:e}; with a prescribed force they must lie \
+                 below 1e140: choose other units"
+            ));
+        }
         let in_range = |value: f64| (1e-140..1e140).contains(&value);
         let loaded = pressure != 0.0 || displacement != 0.0;
         let largest = self.largest_influence;

@@ -43,6 +43,20 @@ pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
+/// Runs a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
+/// reachable, or possibly lost, the run-time library of Fortran keeps for its units, and the library's threads for their transforms.
+/// Returns what it printed.
+pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> String {
+    assert!(
+        Command::new("valgrind").arg("--version").output().is_ok(),
+        "valgrind is not installed: install it (Debian, Ubuntu: apt-get install valgrind)"
+    );
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full"]);
+    valgrind.args(["--show-leak-kinds=definite", "--errors-for-leak-kinds=definite"]);
+    run(valgrind.arg(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
+}
+
 /// The measures of a solution, recomputed from its arrays.
 #[derive(Debug)]
 pub struct Recomputed {

@@ -23,7 +23,7 @@ mod promises {
     use super::super::certificate::{assert_certified, assert_solved_or_told, run, run_with};
     use super::*;
     use contact_normal::error::Error;
-    use contact_normal::solver::{Method, Options};
+    use contact_normal::solver::{ActiveSet, Guess, Method, Options, Solver};
 
     const METHODS: [Method; 4] = [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm];
 
@@ -54,6 +54,24 @@ mod promises {
             assert_certified(&case, "one element", &found, 1e-6);
             // Two roundings.
             assert!((found.p[77] * grid.element_area() - 1.0).abs() <= 2.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn a_force_on_distances_that_overflow_is_refused() {
+        let grid = grid(9, 8, 1.0, 1.0);
+        let contact = vec![true; 72];
+        for far in [f64::MAX, -f64::MAX, 1e150] {
+            let case = Case::new("far away", grid, vec![far; 72], Load::Force(1.0));
+            for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
+                for active_set in [ActiveSet::Free, ActiveSet::Fixed] {
+                    let options = Options { method, active_set, ..Options::default() };
+                    let mut solver = Solver::new(&case.scene(), &options).expect("a solver");
+                    let guess = Guess { pressure: &[0.0; 72], contact: &contact };
+                    let refused = solver.solve(&case.scene(), &options, Some(guess), None).err();
+                    assert!(matches!(refused, Some(Error::InvalidArgument(_))), "{far:e}, {method:?}: {refused:?}");
+                }
+            }
         }
     }
 

@@ -208,7 +208,11 @@ impl Call {
         let outside: Vec<_> = (0..n).filter(|&i| contact[i] == 0 && p[i] != 0.0).map(|i| (p[i], self.h[i])).collect();
         assert!(outside.is_empty(), "status {status}, {how:?}: pressures outside, and h: {outside:?}");
         assert!(self.pressure[n..].iter().all(|&p| p.to_bits() == SENTINEL.to_bits()), "written beyond the grid");
-        assert!(self.report.approach.is_finite() && self.report.force.is_finite());
+        let (approach, force) = (self.report.approach, self.report.force);
+        assert!(
+            approach.is_finite() && force.is_finite(),
+            "status {status}, {how:?}: approach {approach}, force {force}"
+        );
         let by_residual = self.options.criterion == CONTACT_NORMAL_CRITERION_RESIDUAL;
         if status == CONTACT_NORMAL_OK && by_residual && self.options.error_ratio == 0.0 {
             self.certify(p, contact, fixed);
