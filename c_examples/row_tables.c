@@ -1,4 +1,4 @@
-/* Effect `row_tables`: a steel ball in a groove, 1000 N. y runs along the groove's section, which is a part of a circle: the normals turn
+/* Effect `row_tables`: a steel roller in a groove, 20 kN. y runs along the groove's section, which is a part of a circle: the normals turn
    with it, and what a pressure displaces along another normal is the cosine of what it would be in a plane. */
 #include "example.h"
 
@@ -21,17 +21,17 @@ int main(void)
     contact_normal_fields_init(&fields);
     contact_normal_report_init(&report);
     scene.mx = scene.my = M;
-    scene.dx = 0.02;
+    scene.dx = 0.2;
     scene.dy = 0.32;
     for (i = 0; i < M * M; i++) {
         const double x = (i % M - 0.5 * (M - 1)) * scene.dx, y = (i / M - 0.5 * (M - 1)) * scene.dy;
-        h[i] = 0.05 * x * x + 0.0001 * y * y;
+        h[i] = 0.002 * x * x + 0.0003 * y * y;
     }
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
     scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
-    scene.force = 1000.0;
+    scene.force = 20000.0;
     if (!solved(contact_normal_influence_half_space(M, M, scene.dx, scene.dy, scene.shear_modulus, scene.poisson_ratio,
                                                     &plane[0][0]),
                 "contact_normal_influence_half_space"))

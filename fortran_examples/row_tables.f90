@@ -1,4 +1,4 @@
-! Effect `row_tables`: a steel ball in a groove, 1000 N. y runs along the groove's section, which is a part of a circle: the
+! Effect `row_tables`: a steel roller in a groove, 20 kN. y runs along the groove's section, which is a part of a circle: the
 ! normals turn with it, and what a pressure displaces along another normal is the cosine of what it would be in a plane.
 program row_tables_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
@@ -19,19 +19,19 @@ program row_tables_example
   call contact_normal_report_init(report)
   scene%mx = M
   scene%my = M
-  scene%dx = 0.02_c_double
+  scene%dx = 0.2_c_double
   scene%dy = 0.32_c_double
   do iy = 1, M
     do ix = 1, M
-      h(ix, iy) = 0.05_c_double*((ix - 0.5_c_double*(M + 1))*scene%dx)**2 &
-                + 0.0001_c_double*((iy - 0.5_c_double*(M + 1))*scene%dy)**2
+      h(ix, iy) = 0.002_c_double*((ix - 0.5_c_double*(M + 1))*scene%dx)**2 &
+                + 0.0003_c_double*((iy - 0.5_c_double*(M + 1))*scene%dy)**2
     end do
   end do
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
   scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
-  scene%force = 1000
+  scene%force = 20000
   if (contact_normal_influence_half_space(M, M, scene%dx, scene%dy, scene%shear_modulus, scene%poisson_ratio, plane) &
       /= CONTACT_NORMAL_OK) call stop_with_message()
   allocate(tables(-M:M-1, M, M))

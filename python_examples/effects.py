@@ -61,18 +61,18 @@ def patches():
 
 
 def row_tables():
-    dx, dy = 0.02, 0.32  # a steel ball in a groove: y runs along the section of the groove, a part of a circle
+    dx, dy = 0.2, 0.32  # a steel roller in a groove: y runs along the section of the groove, a part of a circle
     x, y = ((np.arange(M) - 0.5 * (M - 1)) * d for d in (dx, dy))
-    h = 0.05 * x[None, :] ** 2 + 0.0001 * y[:, None] ** 2
+    h = 0.002 * x[None, :] ** 2 + 0.0003 * y[:, None] ** 2
     plane = cn.influence_half_space(M, M, dx, dy, **STEEL)
     apart = np.arange(M)[None, :] - np.arange(M)[:, None]  # iy - jy
     print("curvature  approach  max pressure  contact area")
     for curvature in (0.0, 0.05, 0.1):
         # What a pressure displaces along another normal is the cosine of what it would be in a plane.
         tables = np.cos(apart * dy * curvature)[:, :, None] * plane[apart + M]
-        found = cn.solve(h, dx, dy, force=1000.0, row_tables=tables, **STEEL)
+        found = cn.solve(h, dx, dy, force=20000.0, row_tables=tables, **STEEL)
         print(f"{curvature:9.2f} {found.approach:9.6f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.2f}")
-        yield f"normals turn by {curvature * y[-1]:.2f} to either side" if curvature else "a plane", y, found.pressure[:, M // 2]
+        yield f"normals turn by {curvature * y[-1]:.1f} rad to either side" if curvature else "a plane", y, found.pressure[:, M // 2]
 
 
 def draw(folder, layered, limited, periodic, patched, tabled):
@@ -98,7 +98,7 @@ def draw(folder, layered, limited, periodic, patched, tabled):
     figure, axes = plt.subplots(figsize=(7, 4))
     for name, y, p in tabled:
         axes.plot(y, p, label=name)
-    axes.set(xlabel="y along the section [mm]", ylabel="pressure [N/mm$^2$]", title="A ball in a groove, 1000 N")
+    axes.set(xlabel="y along the section [mm]", ylabel="pressure [N/mm$^2$]", title="A roller in a groove, 20 kN")
     axes.legend(loc="lower center")
     figure.savefig(f"{folder}/effects_row_tables.png", dpi=100, bbox_inches="tight")
 

@@ -41,7 +41,7 @@ fn every_bad_scene_and_option_is_refused() {
             refused(row, through, handle);
         }
         // Own coefficients are refused there, whatever they are.
-        if !row.0.iter().any(|word| ["influence", "coefficients"].contains(word)) {
+        if !row.0.iter().any(|word| ["influence", "coefficients", "row_tables"].contains(word)) {
             refused(row, Through::ToAccuracy, null_mut());
         }
     }
@@ -116,8 +116,19 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
     }
 }
 
-const STRUCTS: [&str; 11] =
-    ["scene", "influence", "layer", "pressure_limit", "period", "patches", "row_tables", "options", "fields", "report", "accuracy"];
+const STRUCTS: [&str; 11] = [
+    "scene",
+    "influence",
+    "layer",
+    "pressure_limit",
+    "period",
+    "patches",
+    "row_tables",
+    "options",
+    "fields",
+    "report",
+    "accuracy",
+];
 
 /// A call that reads the struct.
 fn reader(name: &str) -> Through {
@@ -414,6 +425,24 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
         for through in [Through::SolverSolve, Through::SolverSolveBatch] {
             assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()), "{keep_table}");
         }
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+#[test]
+fn a_handle_with_row_tables_does_not_read_those_of_later_scenes() {
+    let mut call = Call::new();
+    call.use_row_tables();
+    call.scene.known.shear_modulus = [NAN; 2];
+    let handle = call.new_handle();
+    call.use_row_tables().coefficients = null();
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()));
+        let row: Row = (&["influence", "without"], INVALID, |c| {
+            c.use_table();
+        });
+        refused(&row, through, handle);
     }
     // SAFETY: made above.
     unsafe { contact_normal_solver_free(handle) };
