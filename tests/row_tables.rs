@@ -165,7 +165,8 @@ fn tables_of_the_half_space_are_no_effect() {
 /// `c_jy(iy, k) = d(jy) d(iy) c(k, iy - jy)` and h - approach times d: e is times d, and p over it.
 #[test]
 fn rows_in_other_units_have_the_same_solution() {
-    let grid = Grid::new(37, 44, 0.5, 0.4).unwrap();
+    // Plain, it would be solved on a window around the contact area.
+    let grid = Grid::new(75, 61, 0.5, 0.4).unwrap();
     let h: Vec<f64> = bump(&grid).iter().map(|h| h - 0.9).collect();
     let d = |iy: usize| 1.0 + 0.8 * (0.3 * iy as f64).sin();
     let plain = Scene::new(grid, &h, BODIES, Load::Approach(0.0));
