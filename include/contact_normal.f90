@@ -88,6 +88,13 @@ module contact_normal
     type(c_ptr) :: patch = c_null_ptr, factors = c_null_ptr
   end type
 
+  ! Own coefficients, one table per loaded row; filled by contact_normal_set_row_tables. Since 0.1.
+  type, bind(C), public :: contact_normal_row_tables
+    integer(c_int64_t) :: struct_size = 0
+    integer(c_int32_t) :: cx = 0, rows = 0
+    type(c_ptr) :: coefficients = c_null_ptr
+  end type
+
   ! What is simulated. Since 0.1.
   type, bind(C), public :: contact_normal_scene
     integer(c_int64_t) :: struct_size = 0
@@ -104,6 +111,7 @@ module contact_normal
     type(c_ptr) :: pressure_limit = c_null_ptr            ! contact_normal_set_pressure_limit
     type(c_ptr) :: period = c_null_ptr                    ! contact_normal_set_period
     type(c_ptr) :: patches = c_null_ptr                   ! contact_normal_set_patches
+    type(c_ptr) :: row_tables = c_null_ptr                ! contact_normal_set_row_tables
   end type
 
   ! How it is solved. Since 0.1.
@@ -306,6 +314,11 @@ module contact_normal
       type(contact_normal_patches), intent(out) :: patches
     end subroutine
     ! Since 0.1.
+    subroutine contact_normal_row_tables_init(row_tables) bind(C, name="contact_normal_row_tables_init")
+      import :: contact_normal_row_tables
+      type(contact_normal_row_tables), intent(out) :: row_tables
+    end subroutine
+    ! Since 0.1.
     subroutine contact_normal_options_init(options) bind(C, name="contact_normal_options_init")
       import :: contact_normal_options
       type(contact_normal_options), intent(out) :: options
@@ -360,7 +373,8 @@ module contact_normal
     contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_accuracy_init, &
     contact_normal_solve, &
     contact_normal_hertz, contact_normal_influence_half_space, contact_normal_layer_init, &
-    contact_normal_pressure_limit_init, contact_normal_period_init, contact_normal_patches_init
+    contact_normal_pressure_limit_init, contact_normal_period_init, contact_normal_patches_init, &
+    contact_normal_row_tables_init
 
   ! Exports that hand out or take C strings, handles or procedures: the wrappers below call them.
   interface
@@ -444,7 +458,8 @@ module contact_normal
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
     contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve, &
-    contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches
+    contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
+    contact_normal_set_row_tables
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
@@ -548,6 +563,19 @@ contains
     patches%patch = c_loc(patch)
     patches%factors = c_loc(factors)
     scene%patches = c_loc(patches)
+  end subroutine
+
+  ! The scene uses own coefficients(-cx:cx-1, my, my), of offset, row and loaded row, instead of the half-space. Since 0.1.
+  subroutine contact_normal_set_row_tables(scene, row_tables, cx, coefficients)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_row_tables), pointer, intent(in) :: row_tables
+    integer(c_int32_t), intent(in) :: cx
+    real(c_double), pointer, contiguous, intent(in) :: coefficients(:, :, :)
+    call contact_normal_row_tables_init(row_tables)
+    row_tables%cx = cx
+    row_tables%rows = size(coefficients, 3, kind=c_int32_t)
+    row_tables%coefficients = c_loc(coefficients)
+    scene%row_tables = c_loc(row_tables)
   end subroutine
 
   ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.

@@ -354,6 +354,31 @@ typedef struct contact_normal_patches {
 } contact_normal_patches;
 
 /*
+ Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
+ y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
+ my * my * mx.
+ */
+typedef struct contact_normal_row_tables {
+  /*
+   Set by `contact_normal_row_tables_init`.
+   */
+  int64_t struct_size;
+  /*
+   The tables cover offsets -cx..cx-1 in x; cx >= mx.
+   */
+  int32_t cx;
+  /*
+   Number of tables, and rows of each: my.
+   */
+  int32_t rows;
+  /*
+   `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
+   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
+   */
+  const double *coefficients;
+} contact_normal_row_tables;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -426,6 +451,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL: several contact patches, whose interaction is scaled.
    */
   const struct contact_normal_patches *patches;
+  /*
+   Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+   */
+  const struct contact_normal_row_tables *row_tables;
 } contact_normal_scene;
 
 /*
@@ -942,6 +971,11 @@ void contact_normal_scene_init(struct contact_normal_scene *scene);
  Fills an influence table with nothing. Since 0.1.
  */
 void contact_normal_influence_init(struct contact_normal_influence *influence);
+
+/*
+ Fills row tables with nothing. Since 0.1.
+ */
+void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
 
 /*
  Fills patches with none. Since 0.1.

@@ -73,6 +73,17 @@ class Patches(ctypes.Structure):
     ]
 
 
+class RowTables(ctypes.Structure):
+    """contact_normal_row_tables."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("cx", c_int32),
+        ("rows", c_int32),
+        ("coefficients", POINTER(c_double)),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -94,6 +105,7 @@ class Scene(ctypes.Structure):
         ("pressure_limit", POINTER(PressureLimit)),
         ("period", POINTER(Period)),
         ("patches", POINTER(Patches)),
+        ("row_tables", POINTER(RowTables)),
     ]
 
 
@@ -268,6 +280,7 @@ _PROTOTYPES = {
     "pressure_limit_init": (None, [POINTER(PressureLimit)]),
     "period_init": (None, [POINTER(Period)]),
     "patches_init": (None, [POINTER(Patches)]),
+    "row_tables_init": (None, [POINTER(RowTables)]),
     "options_init": (None, [POINTER(Options)]),
     "fields_init": (None, [POINTER(Fields)]),
     "report_init": (None, [POINTER(Report)]),
@@ -299,7 +312,8 @@ _PROTOTYPES = {
 # The structs that begin with their size, by the name of their _init.
 _SIZED = {
     "scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
-    "patches": Patches, "options": Options, "fields": Fields, "report": Report, "accuracy": Accuracy,
+    "patches": Patches, "row_tables": RowTables, "options": Options, "fields": Fields, "report": Report,
+    "accuracy": Accuracy,
 }
 
 
@@ -454,7 +468,7 @@ def _effect(scene, kept, name, number, array, value, shape):
 
 
 def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=None, layer=None, pressure_limit=None,
-           period=None, patches=None):
+           period=None, patches=None, row_tables=None):
     """A scene, and the arrays that must live as long as it is used."""
     if (approach is None) == (force is None):
         raise TypeError("give either approach or force")
@@ -497,6 +511,14 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=N
         effect.count, effect.patch, effect.factors = len(factors), _pointer(patch, c_int32), _pointer(factors)
         scene.patches = ctypes.pointer(effect)
         kept += [patch, factors, effect]
+    if row_tables is not None:
+        tables = np.ascontiguousarray(row_tables, np.float64)
+        if tables.ndim != 3 or tables.shape[0] != tables.shape[1] or tables.shape[2] % 2:
+            raise ValueError(f"row_tables has shape {tables.shape}; it must be (my, my, 2 cx)")
+        effect = _initialised("row_tables")
+        effect.rows, effect.cx, effect.coefficients = tables.shape[0], tables.shape[2] // 2, _pointer(tables)
+        scene.row_tables = ctypes.pointer(effect)
+        kept += [tables, effect]
     return scene, kept
 
 
@@ -548,6 +570,7 @@ def solve(
     pressure_limit=None,
     period=None,
     patches=None,
+    row_tables=None,
     pressure=None,
     contact=None,
     progress=None,
@@ -557,12 +580,13 @@ def solve(
 
     shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); layer: compliance,
     and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; patches: the patch of each element (my, mx), from 0
-    on, and the factors (count, count); pressure, contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle,
-    a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
+    on, and the factors (count, count); row_tables: own coefficients of each loaded row, row and offset (my, my, 2 cx); pressure,
+    contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each
+    cycle, a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
     Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
     """
     scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period,
-                         patches)
+                         patches, row_tables)
     watched = _Watched(progress)
     struct = _options(options, watched.callback)
 
@@ -665,13 +689,14 @@ class Solver:
     """
 
     def __init__(self, my, mx, dx, dy, *, shear_modulus, poisson_ratio, influence=None, layer=None, period=None,
-                 patches=None, **options):
+                 patches=None, row_tables=None, **options):
         self._handle = c_void_p()
         self._grid = (dx, dy, shear_modulus, poisson_ratio)
         self._effects = {"layer": layer, "period": period, "patches": patches}
         self._shape, self._set_up = (my, mx), options
         # The set-up reads neither the undeformed distance nor the load, but checks them.
-        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, None, 0.0, shear_modulus, poisson_ratio, influence, **self._effects)
+        scene, _kept = _scene(np.zeros((my, mx)), dx, dy, None, 0.0, shear_modulus, poisson_ratio, influence, row_tables=row_tables,
+                               **self._effects)
         struct = _options(options)
         _check(_library.contact_normal_solver_new(ctypes.byref(scene), ctypes.byref(struct), ctypes.byref(self._handle)))
 

@@ -1,4 +1,4 @@
-"""The effects layer, pressure_limit, period and patches, one after the other: `python3 effects.py [pictures]`, the folder of pictures
+"""The effects layer, pressure_limit, period, patches and row_tables, one after the other: `python3 effects.py [pictures]`, the folder of pictures
 (effects_layer.png, ...), those of docs/effects.md."""
 
 import sys
@@ -60,7 +60,22 @@ def patches():
         yield f"factor {factor:g}", x, found.pressure[M // 2]
 
 
-def draw(folder, layered, limited, periodic, patched):
+def row_tables():
+    dx, dy = 0.2, 0.32  # a steel roller in a groove: y runs along the section of the groove, a part of a circle
+    x, y = ((np.arange(M) - 0.5 * (M - 1)) * d for d in (dx, dy))
+    h = 0.002 * x[None, :] ** 2 + 0.0003 * y[:, None] ** 2
+    plane = cn.influence_half_space(M, M, dx, dy, **STEEL)
+    apart = np.arange(M)[None, :] - np.arange(M)[:, None]  # iy - jy
+    print("curvature  approach  max pressure  contact area")
+    for curvature in (0.0, 0.05, 0.1):
+        # What a pressure displaces along another normal is the cosine of what it would be in a plane.
+        tables = np.cos(apart * dy * curvature)[:, :, None] * plane[apart + M]
+        found = cn.solve(h, dx, dy, force=20000.0, row_tables=tables, **STEEL)
+        print(f"{curvature:9.2f} {found.approach:9.6f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.2f}")
+        yield f"normals turn by {curvature * y[-1]:.1f} rad to either side" if curvature else "a plane", y, found.pressure[:, M // 2]
+
+
+def draw(folder, layered, limited, periodic, patched, tabled):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -79,6 +94,13 @@ def draw(folder, layered, limited, periodic, patched):
     axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="Two balls side by side, 1000 N together")
     axes.legend(loc="upper center")
     figure.savefig(f"{folder}/effects_patches.png", dpi=100, bbox_inches="tight")
+
+    figure, axes = plt.subplots(figsize=(7, 4))
+    for name, y, p in tabled:
+        axes.plot(y, p, label=name)
+    axes.set(xlabel="y along the section [mm]", ylabel="pressure [N/mm$^2$]", title="A roller in a groove, 20 kN")
+    axes.legend(loc="lower center")
+    figure.savefig(f"{folder}/effects_row_tables.png", dpi=100, bbox_inches="tight")
 
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 6), sharex=True)
     for name, x, p, e in limited:
@@ -102,6 +124,6 @@ def draw(folder, layered, limited, periodic, patched):
 
 
 if __name__ == "__main__":
-    found = [list(effect()) for effect in (layers, pressure_limits, periods, patches)]
+    found = [list(effect()) for effect in (layers, pressure_limits, periods, patches, row_tables)]
     if len(sys.argv) > 1:
         draw(sys.argv[1], *found)

@@ -32,6 +32,11 @@ int main(void)
     OFFSET(contact_normal_patches, reserved);
     OFFSET(contact_normal_patches, patch);
     OFFSET(contact_normal_patches, factors);
+    SIZE(contact_normal_row_tables);
+    OFFSET(contact_normal_row_tables, struct_size);
+    OFFSET(contact_normal_row_tables, cx);
+    OFFSET(contact_normal_row_tables, rows);
+    OFFSET(contact_normal_row_tables, coefficients);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -50,6 +55,7 @@ int main(void)
     OFFSET(contact_normal_scene, pressure_limit);
     OFFSET(contact_normal_scene, period);
     OFFSET(contact_normal_scene, patches);
+    OFFSET(contact_normal_scene, row_tables);
     SIZE(contact_normal_progress);
     OFFSET(contact_normal_progress, struct_size);
     OFFSET(contact_normal_progress, mx);

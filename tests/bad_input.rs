@@ -41,7 +41,7 @@ fn every_bad_scene_and_option_is_refused() {
             refused(row, through, handle);
         }
         // Own coefficients are refused there, whatever they are.
-        if !row.0.iter().any(|word| ["influence", "coefficients"].contains(word)) {
+        if !row.0.iter().any(|word| ["influence", "coefficients", "row_tables"].contains(word)) {
             refused(row, Through::ToAccuracy, null_mut());
         }
     }
@@ -79,6 +79,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "pressure_limit" => _ = call.use_limit(),
         "period" => call.use_period(1, 0),
         "patches" => _ = call.use_patches(HALF),
+        "row_tables" => _ = call.use_row_tables(),
         "influence" => _ = call.use_table(),
         _ => {}
     }
@@ -89,6 +90,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "pressure_limit" => &mut call.limit.known.struct_size,
         "period" => &mut call.period.known.struct_size,
         "patches" => &mut call.patches.known.struct_size,
+        "row_tables" => &mut call.row_tables.known.struct_size,
         "options" => &mut call.options.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "accuracy" => &mut call.accuracy.known.struct_size,
@@ -106,6 +108,7 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
         "pressure_limit" => &mut call.limit.excess,
         "period" => &mut call.period.excess,
         "patches" => &mut call.patches.excess,
+        "row_tables" => &mut call.row_tables.excess,
         "options" => &mut call.options.excess,
         "fields" => &mut call.fields.excess,
         "accuracy" => &mut call.accuracy.excess,
@@ -113,8 +116,19 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
     }
 }
 
-const STRUCTS: [&str; 10] =
-    ["scene", "influence", "layer", "pressure_limit", "period", "patches", "options", "fields", "report", "accuracy"];
+const STRUCTS: [&str; 11] = [
+    "scene",
+    "influence",
+    "layer",
+    "pressure_limit",
+    "period",
+    "patches",
+    "row_tables",
+    "options",
+    "fields",
+    "report",
+    "accuracy",
+];
 
 /// A call that reads the struct.
 fn reader(name: &str) -> Through {
@@ -212,6 +226,9 @@ const ACCEPTED: &[Change] = &[
     ("no limit", |c| { c.use_limit(); }),
     ("a period", |c| c.use_period(0, 1)),
     ("patches", |c| { c.use_patches(HALF); }),
+    ("row tables", |c| { c.use_row_tables(); }),
+    ("elastic constants beside row tables", |c| { c.use_row_tables(); c.scene.known.shear_modulus = [NAN; 2]; }),
+    ("garbage in column -cx of row tables", |c| c.set_in_row(2, 1, -(CX as i64), NAN)),
     ("elastic constants beside a table", |c| { c.use_table(); c.scene.known.shear_modulus = [NAN; 2]; }),
     ("garbage in row -cy and column -cx", |c| {
         (-(CX as i64)..CX as i64).for_each(|kx| c.set_coefficient(kx, -(CY as i64), NAN));
@@ -264,6 +281,7 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         (&["grid", "dx: 0.75"], INVALID, |c| c.scene.known.dx = 0.75),
         (&["bodies", "80000"], INVALID, |c| c.scene.known.shear_modulus[1] = 80000.0),
         (&["influence"], INVALID, |c| { c.use_table(); }),
+        (&["row_tables", "without"], INVALID, |c| { c.use_row_tables(); }),
         (&["layer", "without"], INVALID, |c| c.use_layer().compliance = 1e-6),
         (&["period"], INVALID, |c| c.use_period(1, 0)),
         (&["patches", "without"], INVALID, |c| { c.use_patches(HALF); }),
@@ -313,6 +331,7 @@ fn what_only_an_accuracy_refuses() {
         (&["max_elements", "2147483648"], INVALID, |c| c.accuracy.known.max_elements = 1 << 31),
         (&["surface", "undeformed_distance", "(5, 4)", "NaN"], NOT_FINITE, |c| c.accuracy.known.surface = Some(incomplete)),
         (&["influence"], CONTACT_NORMAL_UNSUPPORTED, |c| { c.use_table(); }),
+        (&["row_tables"], CONTACT_NORMAL_UNSUPPORTED, |c| { c.use_row_tables(); }),
         (&["active_set", "FIXED"], CONTACT_NORMAL_UNSUPPORTED, |c| c.fix_contact()),
         (&["initial_guess"], INVALID, |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN),
         (&["initial_guess"], INVALID, |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS),
@@ -412,6 +431,24 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
 }
 
 #[test]
+fn a_handle_with_row_tables_does_not_read_those_of_later_scenes() {
+    let mut call = Call::new();
+    call.use_row_tables();
+    call.scene.known.shear_modulus = [NAN; 2];
+    let handle = call.new_handle();
+    call.use_row_tables().coefficients = null();
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()));
+        let row: Row = (&["influence", "without"], INVALID, |c| {
+            c.use_table();
+        });
+        refused(&row, through, handle);
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+#[test]
 fn a_method_for_symmetric_coefficients_refuses_others() {
     let row: Row = (&["PROJECTED_CG", "symmetric"], CONTACT_NORMAL_UNSUPPORTED, |c| {
         c.set_coefficient(1, 0, 0.0);
@@ -493,6 +530,7 @@ fn inits_ignore_null_and_levels_are_checked() {
         contact_normal_pressure_limit_init(null_mut());
         contact_normal_period_init(null_mut());
         contact_normal_patches_init(null_mut());
+        contact_normal_row_tables_init(null_mut());
         contact_normal_options_init(null_mut());
         contact_normal_fields_init(null_mut());
         contact_normal_report_init(null_mut());

@@ -124,7 +124,7 @@ fn time_steps() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects() {
-    for name in ["layer", "pressure_limit", "period", "patches"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
         let printed = run_linked(&program, &[], &folder);
@@ -229,9 +229,12 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_patches {
             struct_size, count, reserved, patch, factors
         }
+        contact_normal_row_tables {
+            struct_size, cx, rows, coefficients
+        }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
-            approach, force, influence, layer, pressure_limit, period, patches
+            approach, force, influence, layer, pressure_limit, period, patches, row_tables
         }
         contact_normal_progress {
             struct_size, mx, my, cycles, active_set_changes, seconds, work_units, update, residual

@@ -2,14 +2,16 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Table};
+use contact_normal::influence::{HalfSpace, RowTables, Table};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
-const EFFECTS: [&str; 6] = ["influence", "layer", "pressure_limit", "period", "patches", "excluded elements"];
+const EFFECTS: [&str; 7] =
+    ["influence", "layer", "pressure_limit", "period", "patches", "row_tables", "excluded elements"];
 
 /// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
-const REFUSED: [(&str, &str); 2] = [("influence", "period"), ("period", "patches")];
+const REFUSED: [(&str, &str); 4] =
+    [("influence", "period"), ("period", "patches"), ("influence", "row_tables"), ("period", "row_tables")];
 
 #[test]
 fn every_pair_is_solved_or_refused_and_each_effect_tells() {
@@ -28,6 +30,15 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
         })
         .collect();
     let table = Table::new(20, 18, &table, &grid).unwrap();
+    // Rows that answer less and less.
+    let answers = |iy: i64| 1.0 - 0.03 * iy as f64;
+    let row_tables: Vec<f64> = (0..18 * 18 * 40)
+        .map(|i| {
+            let (jy, iy, kx) = (i / 40 / 18, i / 40 % 18, i % 40 - 20);
+            half_space.at(kx, iy - jy) * answers(iy) * answers(jy)
+        })
+        .collect();
+    let row_tables = RowTables::new(20, 18, &row_tables, &grid).unwrap();
     let with = |names: [&str; 2]| {
         let has = |name: &str| names.contains(&name);
         Scene {
@@ -35,6 +46,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             layer: has("layer").then_some(Layer::Uniform(0.05)),
             pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
             patches: has("patches").then_some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.2, 0.2, 1.0] }),
+            row_tables: has("row_tables").then(|| row_tables.clone()),
             period: has("period").then_some(Period { x: true, y: false }),
             ..Scene::new(
                 grid,

@@ -87,7 +87,7 @@ fn wheel_rail_prints_what_is_expected() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
-    for name in ["layer", "pressure_limit", "period", "patches"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
         let expected =
@@ -201,9 +201,10 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_pressure_limit: struct_size, limit, limits;
         contact_normal_period: struct_size, x, y;
         contact_normal_patches: struct_size, count, reserved, patch, factors;
+        contact_normal_row_tables: struct_size, cx, rows, coefficients;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
-            patches;
+            patches, row_tables;
         contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
             coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
             threads, precision, reserved, progress, user;

@@ -8,6 +8,7 @@ program fortran_layout
   type(contact_normal_pressure_limit), target :: limit
   type(contact_normal_period), target :: period
   type(contact_normal_patches), target :: patches
+  type(contact_normal_row_tables), target :: row_tables
   type(contact_normal_scene), target :: scene
   type(contact_normal_options), target :: options
   type(contact_normal_progress), target :: progress
@@ -51,6 +52,13 @@ program fortran_layout
   call show("contact_normal_patches.patch", c_loc(patches%patch))
   call show("contact_normal_patches.factors", c_loc(patches%factors))
 
+  base = place(c_loc(row_tables))
+  print '(a, i0)', "contact_normal_row_tables ", c_sizeof(row_tables)
+  call show("contact_normal_row_tables.struct_size", c_loc(row_tables%struct_size))
+  call show("contact_normal_row_tables.cx", c_loc(row_tables%cx))
+  call show("contact_normal_row_tables.rows", c_loc(row_tables%rows))
+  call show("contact_normal_row_tables.coefficients", c_loc(row_tables%coefficients))
+
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
   call show("contact_normal_scene.struct_size", c_loc(scene%struct_size))
@@ -70,6 +78,7 @@ program fortran_layout
   call show("contact_normal_scene.pressure_limit", c_loc(scene%pressure_limit))
   call show("contact_normal_scene.period", c_loc(scene%period))
   call show("contact_normal_scene.patches", c_loc(scene%patches))
+  call show("contact_normal_scene.row_tables", c_loc(scene%row_tables))
 
   base = place(c_loc(options))
   print '(a, i0)', "contact_normal_options ", c_sizeof(options)

@@ -1,7 +1,10 @@
 //! The influence coefficients are exact, near and far, for square and for very slender elements.
 
 use astro_float::{BigFloat, Consts, RoundingMode};
-use contact_normal::influence::HalfSpace;
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Influence, Periodic, Table};
+use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{solve, Options};
 
 /// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 eats about 80 of them.
 const BITS: usize = 320;
@@ -80,4 +83,24 @@ fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
     for (kx, ky) in [(0, 0), (1, 0), (0, 1), (3, 2), (5, 40), (1000, 20)] {
         assert_eq!(a.at(kx, ky).to_bits(), (1024.0 * b.at(kx, ky)).to_bits());
     }
+}
+
+/// A table of the half-space's coefficients is solved with the operators of the half-space: all that is held beside them are the tables, of
+/// 2 mx by 2 my doubles on each grid.
+#[test]
+fn reported_bytes_hold_the_coefficients() {
+    let (mx, my) = (40, 36);
+    let grid = Grid::new(mx, my, 0.5, 0.5).expect("a grid");
+    let h: Vec<f64> = (0..grid.len()).map(|i| 0.01 * ((i % mx) as f64 - 20.0).powi(2)).collect();
+    let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.5));
+    let half_space = plain.influence();
+    let offsets = (0..4 * mx * my).map(|i| ((i % (2 * mx)) as i64 - mx as i64, (i / (2 * mx)) as i64 - my as i64));
+    let values: Vec<f64> = offsets.map(|(kx, ky)| half_space.at(kx, ky)).collect();
+    let table = Table::new(mx, my, &values, &grid).expect("a table");
+    let bytes = |scene: &Scene<'_>| solve(scene, &Options::default()).expect("a solution").2.bytes;
+    let more = bytes(&Scene { influence: Some(table), ..plain.clone() }) - bytes(&plain);
+    let tables: usize = [(40, 36), (20, 18), (10, 9), (5, 5)].map(|(mx, my)| 32 * mx * my).iter().sum();
+    assert_eq!(more, tables as u64);
+    let periodic = Periodic::new(HalfSpace::new(0.5, 0.5, 1.0), (true, true), &grid);
+    assert_eq!(Influence::Periodic(periodic).bytes(), 8 * 21 * 19);
 }

@@ -127,7 +127,25 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     assert_eq!(status, CONTACT_NORMAL_OK);
     (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
     let with_table = contact_normal_scene { influence: &influence, ..scene };
-    for (name, scene, methods) in [("half-space", &scene, &METHODS[..]), ("table", &with_table, &METHODS[..1])] {
+    // Few rows: else the tables would be gigabytes.
+    let my = 20;
+    let mx = m * m / my;
+    let mut values = vec![0.0; my * my * 2 * mx];
+    for (k, row) in values.chunks_exact_mut(2 * mx).enumerate() {
+        let apart = (k % my).abs_diff(k / my) as f64;
+        let offsets = row.iter_mut().zip(-(mx as i64)..);
+        offsets.for_each(|(value, kx)| *value = 0.01 / (1.0 + (kx * kx) as f64 + apart * apart).sqrt());
+    }
+    let mut row_tables = initialised(contact_normal_row_tables_init);
+    (row_tables.cx, row_tables.rows, row_tables.coefficients) = (mx as i32, my as i32, values.as_ptr());
+    let (mx, my) = (mx as i32, my as i32);
+    let with_rows = contact_normal_scene { mx, my, row_tables: &row_tables, ..scene };
+    let scenes = [
+        ("half-space", &scene, &METHODS[..]),
+        ("table", &with_table, &METHODS[..1]),
+        ("row tables", &with_rows, &METHODS[..1]),
+    ];
+    for (name, scene, methods) in scenes {
         for &method in methods {
             let mut options = initialised(contact_normal_options_init);
             (options.method, options.tolerance, options.max_cycles) = (method, 1e-3, 2);

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Periodic};
+use contact_normal::multigrid::coarsen;
 use contact_normal::operator::{dense, Toeplitz};
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver, Stop};
@@ -327,6 +328,33 @@ fn the_iteration_needs_no_more_products_than_without_a_period() {
             solve(&scene(grid, &h, (true, true), Load::Force(share * grid.len() as f64)), &Options::default()).unwrap();
         assert_eq!(stop, Stop::Converged);
         assert!(report.matrix_products <= 24, "{share}: {} products", report.matrix_products);
+    }
+}
+
+#[test]
+fn coarser_grids_have_the_coefficients_that_their_elements_have() {
+    for (mx, my, directions) in [
+        (64, 64, (true, true)),
+        (256, 1, (true, true)),
+        (256, 1, (false, true)),
+        (8, 128, (true, true)),
+        (48, 32, (true, false)),
+        (50, 21, (true, true)), // of which the coarser ones are longer by an element
+    ] {
+        let mut grid = Grid::new(mx, my, 0.5, 0.4).unwrap();
+        let mut coefficients = periodic(&grid, directions);
+        while let Some(coarse) = coarsen(&grid, 8) {
+            coefficients = coefficients.coarsen(&coarse);
+            grid = coarse;
+            let anew = periodic(&grid, directions);
+            let largest = anew.at(0, 0);
+            for (kx, ky) in (0..grid.len() as i64).map(|i| (i % grid.mx as i64, i / grid.mx as i64)) {
+                // What 12 Chebyshev nodes leave, see src/influence/periodic.rs, and sums over up to 1300 images.
+                let (value, exact) = (coefficients.at(kx, ky), anew.at(kx, ky));
+                assert!((value - exact).abs() <= 1e-12 * largest, "{grid:?} ({kx}, {ky}): {value} {exact}");
+            }
+        }
+        assert!(grid.mx <= 8 && grid.my <= 8);
     }
 }
 

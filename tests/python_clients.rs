@@ -126,7 +126,7 @@ fn the_effects_print_what_is_expected_and_draw() {
     let printed = run(python_in(&folder).arg(&example).arg("."));
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("effects.expected");
     assert_eq!(printed, expected);
-    for name in ["layer", "pressure_limit", "period", "patches"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
         let picture = std::fs::metadata(folder.join(format!("effects_{name}.png"))).expect("a picture");
         assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
     }
@@ -196,8 +196,10 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         layer,
         pressure_limit,
         period,
-        patches
+        patches,
+        row_tables
     );
+    layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients);
     layout!(ours, "Patches", contact_normal_patches, struct_size, count, reserved, patch, factors);
     layout!(ours, "Layer", contact_normal_layer, struct_size, compliance, compliances);
     layout!(ours, "PressureLimit", contact_normal_pressure_limit, struct_size, limit, limits);

@@ -6,10 +6,11 @@
 use std::time::Instant;
 
 use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, RowTables};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Report, Stop};
 
-const ROWS: [&str; 9] = [
+const ROWS: [&str; 10] = [
     "plain",
     "layer",
     "layer-per-element",
@@ -19,6 +20,7 @@ const ROWS: [&str; 9] = [
     "period-xy",
     "period-xy-layer",
     "patches",
+    "row_tables",
 ];
 const REPEATS: usize = 7;
 
@@ -55,12 +57,29 @@ impl Arrays {
             "patches" => {
                 scene.patches = Some(Patches { count: 2, patch: &self.patch, factors: &[1.0, 0.5, 0.5, 1.0] });
             }
+            "row_tables" => scene.row_tables = Some(self.row_tables(scene.bodies)),
             "period-xy-layer" => {
                 (scene.period, scene.layer) = (Some(Period { x: true, y: true }), Some(Layer::Uniform(1e-5)));
             }
             _ => {}
         }
         scene
+    }
+
+    /// Normals that turn by 0.6 over the grid.
+    fn row_tables(&self, bodies: Bodies) -> RowTables {
+        let Grid { mx, my, dx, dy } = self.grid;
+        let half_space = HalfSpace::new(dx, dy, bodies.compliance());
+        let mut values = vec![0.0; my * my * 2 * mx];
+        for (k, row) in values.chunks_exact_mut(2 * mx).enumerate() {
+            let (jy, iy) = ((k / my) as i64, (k % my) as i64);
+            half_space.fill_row(0, iy - jy, &mut row[mx..]);
+            for kx in 0..mx {
+                row[mx + kx] *= ((iy - jy) as f64 * 0.05 * dy).cos();
+                row[mx - kx] = row[mx + kx];
+            }
+        }
+        RowTables::new(mx, my, &values, &self.grid).expect("tables of the grid")
     }
 }
 

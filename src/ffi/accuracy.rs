@@ -5,7 +5,7 @@ use libc::c_void;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::{self, contact_normal_scene};
+use super::scene::{self, contact_normal_scene, Known};
 use super::solve::{watcher, Outcome, Outputs};
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
@@ -102,9 +102,9 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let (mut given, options) =
             unsafe { (structs::read(accuracy.cast_const(), "accuracy")?, options::translate(options)?) };
+        let known = Known { distance: given.surface.is_some(), ..Known::default() };
         // SAFETY: as above.
-        let (scene, outputs) =
-            unsafe { (scene::translate_with(scene, given.surface.is_none())?, Outputs::report_only(report)?) };
+        let (scene, outputs) = unsafe { (scene::translate_for(scene, known)?, Outputs::report_only(report)?) };
         let (asked, user) = (translate(&given)?, given.user);
 
         let mut write = |grid: &Grid, h: &mut [f64]| match given.surface {

@@ -4,6 +4,7 @@ use super::scene::contact_normal_scene;
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
+use crate::influence::RowTables;
 use crate::scene::{Layer, Patches, Period, PressureLimit};
 
 /// Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
@@ -97,6 +98,39 @@ unsafe impl Versioned for contact_normal_patches {
     }
 }
 
+/// Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
+/// y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
+/// my * my * mx.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_row_tables {
+    /// Set by `contact_normal_row_tables_init`.
+    pub struct_size: i64,
+    /// The tables cover offsets -cx..cx-1 in x; cx >= mx.
+    pub cx: i32,
+    /// Number of tables, and rows of each: my.
+    pub rows: i32,
+    /// `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
+    /// element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
+    pub coefficients: *const f64,
+}
+
+// SAFETY: integers and raw pointers only, struct_size first.
+unsafe impl Versioned for contact_normal_row_tables {
+    const NAME: &'static str = "contact_normal_row_tables";
+    const FIRST_SIZE: usize = 24;
+    fn defaults() -> Self {
+        Self { struct_size: size_of::<Self>() as i64, cx: 0, rows: 0, coefficients: std::ptr::null() }
+    }
+}
+
+/// Fills row tables with nothing. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_row_tables_init(tables: *mut contact_normal_row_tables) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(tables) }
+}
+
 /// Fills patches with none. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_patches_init(patches: *mut contact_normal_patches) {
@@ -131,15 +165,22 @@ pub(super) struct Effects<'a> {
     pub layer: Option<Layer<'a>>,
     pub pressure_limit: Option<PressureLimit<'a>>,
     pub patches: Option<Patches<'a>>,
+    pub row_tables: Option<RowTables>,
 }
 
-pub(super) unsafe fn translate<'a>(scene: &contact_normal_scene, grid: &Grid) -> Result<Effects<'a>, Refusal> {
+/// `has_row_tables`: a solver has them already, and those of the scene are not read.
+pub(super) unsafe fn translate<'a>(
+    scene: &contact_normal_scene,
+    grid: &Grid,
+    has_row_tables: bool,
+) -> Result<Effects<'a>, Refusal> {
     // SAFETY (all): NULL or structs that declare their size, with arrays of one value per element, by the conventions of the ABI.
     unsafe {
         let period = named(scene.period, "scene->period")?;
         let layer = named(scene.layer, "scene->layer")?;
         let limit = named(scene.pressure_limit, "scene->pressure_limit")?;
         let patches = named(scene.patches, "scene->patches")?;
+        let row_tables = if has_row_tables { None } else { named(scene.row_tables, "scene->row_tables")? };
         Ok(Effects {
             period: period.map(translate_period).transpose()?,
             layer: layer.map(|layer| match per_element(layer.compliances, grid) {
@@ -151,6 +192,7 @@ pub(super) unsafe fn translate<'a>(scene: &contact_normal_scene, grid: &Grid) ->
                 None => PressureLimit::Uniform(limit.limit),
             }),
             patches: patches.map(|patches| translate_patches(patches, grid)).transpose()?,
+            row_tables: row_tables.map(|tables| translate_row_tables(tables, grid)).transpose()?,
         })
     }
 }
@@ -192,4 +234,22 @@ unsafe fn translate_patches<'a>(patches: contact_normal_patches, grid: &Grid) ->
     // SAFETY: by the caller.
     let factors = unsafe { std::slice::from_raw_parts(patches.factors, values) };
     Ok(Patches { count, patch, factors })
+}
+
+/// SAFETY: rows by rows by 2 cx coefficients.
+unsafe fn translate_row_tables(tables: contact_normal_row_tables, grid: &Grid) -> Result<RowTables, Refusal> {
+    let cx = super::scene::count("row_tables->cx", tables.cx)?;
+    let rows = super::scene::count("row_tables->rows", tables.rows)?;
+    if tables.coefficients.is_null() {
+        return Err(Refusal::null("scene->row_tables->coefficients"));
+    }
+    // What is not that of the grid is refused before it is looked at.
+    let rows_read = if rows == grid.my && cx >= grid.mx { rows } else { 0 };
+    let size = rows_read.checked_mul(rows_read).and_then(|n| n.checked_mul(2)).and_then(|n| n.checked_mul(cx));
+    let size = size.filter(|n| *n <= isize::MAX as usize / 8).ok_or_else(|| {
+        Refusal::invalid(format!("rows * rows * 2 cx is {rows} * {rows} * 2 * {cx}; no row tables are that large"))
+    })?;
+    // SAFETY: by the caller.
+    let values = unsafe { std::slice::from_raw_parts(tables.coefficients, size) };
+    Ok(RowTables::new(cx, rows, values, grid)?)
 }

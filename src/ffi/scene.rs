@@ -1,7 +1,8 @@
 //! `contact_normal_scene` and its effects.
 
 use super::effects::{
-    self, contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit, Effects,
+    self, contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
+    contact_normal_row_tables, Effects,
 };
 use super::status::Refusal;
 use super::structs::{self, Versioned};
@@ -78,6 +79,8 @@ pub struct contact_normal_scene {
     pub period: *const contact_normal_period,
     /// Effect, or NULL: several contact patches, whose interaction is scaled.
     pub patches: *const contact_normal_patches,
+    /// Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+    pub row_tables: *const contact_normal_row_tables,
 }
 
 // SAFETY: integers, floats and raw pointers only, struct_size first.
@@ -103,6 +106,7 @@ unsafe impl Versioned for contact_normal_scene {
             pressure_limit: std::ptr::null(),
             period: std::ptr::null(),
             patches: std::ptr::null(),
+            row_tables: std::ptr::null(),
         }
     }
 }
@@ -132,35 +136,24 @@ pub(super) fn count(name: &str, value: i32) -> Result<usize, Refusal> {
 /// Translates a scene. The caller's arrays must live as long as the result is used.
 pub(super) unsafe fn translate<'a>(scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
     // SAFETY: by the caller.
-    let scene = unsafe { translate_for(scene, false)? };
+    let scene = unsafe { translate_for(scene, Known::default())? };
     scene.check()?;
     Ok(scene)
 }
 
-/// The same for a solver that may have coefficients of its own: then those of the scene are not read. The solver checks the
-/// rest.
-pub(super) unsafe fn translate_for<'a>(
-    scene: *const contact_normal_scene,
-    has_own_influence: bool,
-) -> Result<Scene<'a>, Refusal> {
-    // SAFETY: by the caller.
-    unsafe { translate_parts(scene, has_own_influence, true) }
+/// What is known from elsewhere: that is not read.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Known {
+    /// A solver has a table of its own.
+    pub influence: bool,
+    /// Or one per loaded row.
+    pub row_tables: bool,
+    /// The undeformed distance comes from a callback: that of the scene is empty.
+    pub distance: bool,
 }
 
-/// The same where the undeformed distance may come from elsewhere: then that of the scene is empty.
-pub(super) unsafe fn translate_with<'a>(
-    scene: *const contact_normal_scene,
-    has_distance: bool,
-) -> Result<Scene<'a>, Refusal> {
-    // SAFETY: by the caller.
-    unsafe { translate_parts(scene, false, has_distance) }
-}
-
-unsafe fn translate_parts<'a>(
-    scene: *const contact_normal_scene,
-    has_own_influence: bool,
-    has_distance: bool,
-) -> Result<Scene<'a>, Refusal> {
+/// The same without what is known. The caller checks the rest.
+pub(super) unsafe fn translate_for<'a>(scene: *const contact_normal_scene, known: Known) -> Result<Scene<'a>, Refusal> {
     // SAFETY: NULL or a struct that declares its size.
     let scene = unsafe { structs::read(scene, "scene")? };
     let grid = Grid::new(count("mx", scene.mx)?, count("my", scene.my)?, scene.dx, scene.dy)?;
@@ -176,22 +169,24 @@ unsafe fn translate_parts<'a>(
             )))
         }
     };
-    let h: &[f64] = match (has_distance, scene.undeformed_distance.is_null()) {
-        (true, true) => return Err(Refusal::null("scene->undeformed_distance")),
+    let h: &[f64] = match (known.distance, scene.undeformed_distance.is_null()) {
+        (false, true) => return Err(Refusal::null("scene->undeformed_distance")),
         // SAFETY: the caller passes my * mx values, by the conventions of the ABI.
-        (true, false) => unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) },
-        (false, _) => &[],
+        (false, false) => unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) },
+        (true, _) => &[],
     };
     let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
-    let influence = if scene.influence.is_null() || has_own_influence {
+    let influence = if scene.influence.is_null() || known.influence {
         None
     } else {
         // SAFETY: not null: a struct that declares its size.
         Some(unsafe { translate_influence(scene.influence, &grid)? })
     };
     // SAFETY: as for the scene.
-    let Effects { period, layer, pressure_limit, patches } = unsafe { effects::translate(&scene, &grid)? };
-    Ok(Scene { grid, undeformed_distance: h, bodies, load, influence, period, layer, pressure_limit, patches })
+    let Effects { period, layer, pressure_limit, patches, row_tables } =
+        unsafe { effects::translate(&scene, &grid, known.row_tables)? };
+    let undeformed_distance = h;
+    Ok(Scene { grid, undeformed_distance, bodies, load, influence, period, layer, pressure_limit, patches, row_tables })
 }
 
 /// Number of values in a table of coefficients.

@@ -3,7 +3,7 @@
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::{self, contact_normal_scene};
+use super::scene::{self, contact_normal_scene, Known};
 use super::solve::{run_watched, GuessBuffer, Outputs};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::scene::Scene;
@@ -72,10 +72,10 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 
 /// Translates a scene for a solver that is set up.
 pub(super) unsafe fn scene_for<'a>(solver: &Solver, scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
-    let own = solver.has_own_influence();
+    let known = Known { influence: solver.has_own_influence(), row_tables: solver.has_row_tables(), distance: false };
     // SAFETY: by the caller.
-    let scene = unsafe { scene::translate_for(scene, own)? };
-    if !own {
+    let scene = unsafe { scene::translate_for(scene, known)? };
+    if !known.influence && !known.row_tables {
         scene.check()?;
     }
     Ok(scene)

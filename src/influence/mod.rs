@@ -3,12 +3,13 @@
 //! `A_IJ = c(ix - jx, iy - jy)` depends on the offset only: A is block Toeplitz. The coefficients come from the
 //! elastic half-space ([`HalfSpace`], even in both offsets) or from a table of the caller's own ([`Table`], of
 //! which nothing is assumed). What else a scene names has its own file: [`Periodic`],
-//! [`Layered`], [`Patches`].
+//! [`Layered`], [`Patches`]; and [`RowTables`], of which A is Toeplitz in x only: their [`Influence::at`] is a mean over rows.
 
 mod half_space;
 mod layered;
 mod patches;
 mod periodic;
+mod row_tables;
 mod special;
 mod table;
 
@@ -16,6 +17,7 @@ pub use half_space::HalfSpace;
 pub use layered::Layered;
 pub use patches::Patches;
 pub use periodic::Periodic;
+pub use row_tables::RowTables;
 pub use table::Table;
 
 use crate::error::Result;
@@ -28,6 +30,8 @@ pub enum Influence {
     HalfSpace(HalfSpace),
     /// The caller's own coefficients.
     Table(Table),
+    /// The caller's own, one table per loaded row.
+    RowTables(RowTables),
     /// The half-space's, of a scene that repeats itself.
     Periodic(Periodic),
     /// Any of them, with a compliant layer.
@@ -42,6 +46,7 @@ impl Influence {
         match self {
             Influence::HalfSpace(half_space) => half_space.at(kx, ky),
             Influence::Table(table) => table.at(kx, ky),
+            Influence::RowTables(tables) => tables.mean(kx, ky),
             Influence::Periodic(periodic) => periodic.at(kx, ky),
             Influence::Patches(patches) => patches.base().at(kx, ky),
             Influence::Layered(layered) => {
@@ -55,6 +60,7 @@ impl Influence {
         Ok(match self {
             Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.times(factor)),
             Influence::Table(table) => Influence::Table(table.times(factor)?),
+            Influence::RowTables(tables) => Influence::RowTables(tables.times(factor)?),
             Influence::Periodic(periodic) => Influence::Periodic(periodic.times(factor)),
             Influence::Layered(layered) => Influence::Layered(layered.times(factor)?),
             Influence::Patches(patches) => Influence::Patches(patches.times(factor)?),
@@ -66,6 +72,9 @@ impl Influence {
         match self {
             Influence::HalfSpace(half_space) => half_space.fill_row(kx, ky, out),
             Influence::Table(table) => table.fill_row(kx, ky, out),
+            Influence::RowTables(tables) => {
+                out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = tables.mean(kx, ky));
+            }
             Influence::Periodic(periodic) => {
                 out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = periodic.at(kx, ky));
             }
@@ -90,6 +99,7 @@ impl Influence {
                     *value = 0.25 * four.into_iter().map(|(x, y)| table.at(x, y)).sum::<f64>();
                 }
             }
+            Influence::RowTables(tables) => tables.fill_even_mean(ky, out),
             Influence::Periodic(periodic) => {
                 let constant = periodic.constant_for_inverse();
                 out.iter_mut().zip(0..).for_each(|(value, kx)| *value = periodic.at(kx, ky) + constant);
@@ -113,6 +123,7 @@ impl Influence {
         match self {
             Influence::HalfSpace(half_space) => half_space.at(0, 0),
             Influence::Table(table) => table.largest(grid),
+            Influence::RowTables(tables) => tables.largest(),
             Influence::Periodic(periodic) => periodic.at(0, 0),
             Influence::Layered(layered) => layered.base().largest(grid) + layered.most(),
             Influence::Patches(patches) => patches.base().largest(grid),
@@ -124,6 +135,7 @@ impl Influence {
         match self {
             Influence::HalfSpace(_) | Influence::Periodic(_) => true,
             Influence::Table(table) => table.is_even(grid),
+            Influence::RowTables(_) => false,
             Influence::Layered(layered) => layered.base().is_even(grid),
             Influence::Patches(patches) => patches.base().is_even(grid),
         }
@@ -134,6 +146,7 @@ impl Influence {
         match self {
             Influence::HalfSpace(_) | Influence::Periodic(_) => true,
             Influence::Table(table) => table.is_symmetric(grid),
+            Influence::RowTables(tables) => tables.is_symmetric(),
             Influence::Layered(layered) => layered.base().is_symmetric(grid),
             Influence::Patches(patches) => patches.base().is_symmetric(grid),
         }
@@ -166,9 +179,19 @@ impl Influence {
         }
     }
 
+    /// Tables of loaded rows, and what a layer adds to all of them at offset (0, 0).
+    pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
+        match self {
+            Influence::RowTables(tables) => Some((tables, 0.0)),
+            Influence::Patches(patches) => patches.base().row_tables(),
+            Influence::Layered(layered) => layered.base().row_tables().map(|(tables, _)| (tables, layered.least())),
+            _ => None,
+        }
+    }
+
     /// Whether A is more than coefficients of offsets: then a part of the grid has an operator of its own, wherever it is.
     pub fn depends_on_place(&self) -> bool {
-        self.diagonal().is_some() || self.patches().is_some()
+        self.diagonal().is_some() || self.patches().is_some() || self.row_tables().is_some()
     }
 
     /// Whether a uniform pressure on the whole grid displaces nothing, so that A has no inverse.
@@ -177,14 +200,27 @@ impl Influence {
     }
 
     /// The coefficients on a grid coarsened from `fine` to `coarse`: for the half-space computed anew for the larger
-    /// element (the paper's direct coarse-grid operator), for a table summed from the fine coefficients.
+    /// element (the paper's direct coarse-grid operator), for tables summed from the fine coefficients.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Influence> {
         Ok(match self {
             Influence::HalfSpace(half_space) => Influence::HalfSpace(half_space.for_element(coarse.dx, coarse.dy)),
             Influence::Table(table) => Influence::Table(table.coarsen(fine, coarse)?),
+            Influence::RowTables(tables) => Influence::RowTables(tables.coarsen(coarse)?),
             Influence::Periodic(periodic) => Influence::Periodic(periodic.coarsen(coarse)),
             Influence::Layered(layered) => Influence::Layered(layered.coarsen(fine, coarse)?),
             Influence::Patches(patches) => Influence::Patches(patches.coarsen(fine, coarse)?),
         })
+    }
+
+    /// Bytes of coefficients held: none for the half-space.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Influence::HalfSpace(_) => 0,
+            Influence::Table(table) => table.bytes(),
+            Influence::RowTables(tables) => tables.bytes(),
+            Influence::Periodic(periodic) => periodic.bytes(),
+            Influence::Layered(layered) => layered.base().bytes() + layered.more().map_or(0, size_of_val),
+            Influence::Patches(patches) => patches.base().bytes() + patches.bytes(),
+        }
     }
 }

@@ -51,6 +51,11 @@ impl Patches {
         self.factors[a * self.count + b]
     }
 
+    /// Bytes held, beside the base.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.patch[..]) + size_of_val(&self.factors[..])
+    }
+
     /// The coefficients times `factor`.
     pub fn times(&self, factor: f64) -> Result<Patches> {
         Ok(Patches { base: Box::new(self.base.times(factor)?), ..self.clone() })

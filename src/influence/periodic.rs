@@ -16,7 +16,7 @@
 //!
 //! *How they are summed.* Near images by the half-space's own coefficients. The rest is smooth on one period: a polynomial in
 //! x^2 and y^2 through 12 x 12 Chebyshev nodes, whose means over elements are its integrals; at the nodes it is Ewald's sum (1921), or
-//! with one period the sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
+//! with one period the sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series. It serves all coarser grids of the same period.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -30,6 +30,8 @@ use crate::grid::Grid;
 const NODES: usize = 12;
 /// A Gaussian at this many widths is below 1e-17.
 const GAUSSIAN: f64 = 6.3;
+/// What a grid of 8 elements covers of its period: half, and half an element.
+const COARSE: f64 = 0.5626;
 
 /// Coefficients of a scene that repeats itself after a grid's length in x, in y or in both.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +42,8 @@ pub struct Periodic {
     y: bool,
     mx: usize,
     my: usize,
+    /// Shared with coarser grids.
+    far: Arc<Far>,
     /// Coefficients at offsets >= 0, up to half the period where there is one; `row` of them in a row.
     table: Arc<[f64]>,
     row: usize,
@@ -49,27 +53,34 @@ impl Periodic {
     /// The coefficients of `grid`, which is one period in the directions that repeat.
     pub fn new(half_space: HalfSpace, (x, y): (bool, bool), grid: &Grid) -> Periodic {
         assert!(x || y, "a scene that repeats itself nowhere");
-        let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
-        let (row, rows) = (offsets(x, grid.mx), offsets(y, grid.my));
-        let far = Far::new((x, y), grid, row, rows);
+        let far = Arc::new(Far::new((x, y), grid));
+        Periodic::with_far(half_space, (x, y), grid, far)
+    }
+
+    fn with_far(half_space: HalfSpace, (x, y): (bool, bool), grid: &Grid, far: Arc<Far>) -> Periodic {
+        let (row, rows) = offsets((x, y), grid);
+        let means = |count: usize, d: f64, half: f64| (0..count).map(move |k| chebyshev_means(k as f64, d / half));
+        let in_x: Vec<_> = means(row, grid.dx, far.half.0).collect();
         let strength = half_space.compliance() * grid.element_area();
         let mut table = Vec::with_capacity(row * rows);
         let (last_x, last_y) = (far.images_x * grid.mx, (far.images_y * grid.my) as i64);
-        let mut line = vec![0.0; last_x + row];
-        for ky in 0..rows as i64 {
+        let mut from_image = vec![0.0; last_x + row];
+        for (ky, in_y) in (0..rows as i64).zip(means(rows, grid.dy, far.half.1)) {
             let start = table.len();
-            table.extend(far.row(ky as usize).map(|value| strength * value));
+            let line = far.along_x(&in_y);
+            let at = |in_x: &[f64; NODES]| line.iter().zip(in_x).map(|(a, b)| a * b).sum::<f64>();
+            table.extend(in_x.iter().map(|in_x| strength * at(in_x)));
             for image in (-last_y..=last_y).step_by(grid.my) {
-                half_space.fill_row(0, ky + image, &mut line);
+                half_space.fill_row(0, ky + image, &mut from_image);
                 for (kx, value) in table[start..].iter_mut().enumerate() {
-                    *value += line[kx];
+                    *value += from_image[kx];
                     for image in (grid.mx..=last_x).step_by(grid.mx) {
-                        *value += line[image + kx] + line[image - kx];
+                        *value += from_image[image + kx] + from_image[image - kx];
                     }
                 }
             }
         }
-        let mut periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, table: Arc::new([]), row };
+        let mut periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, far, table: Arc::new([]), row };
         if x && y {
             periodic.remove_mean(&mut table);
         }
@@ -122,13 +133,16 @@ impl Periodic {
 
     /// The coefficients of a coarser grid. An odd count makes it longer by an element: good enough to start from.
     pub fn coarsen(&self, coarse: &Grid) -> Periodic {
-        Periodic::new(self.half_space.for_element(coarse.dx, coarse.dy), (self.x, self.y), coarse)
+        let directions = (self.x, self.y);
+        let far =
+            if self.far.serves(directions, coarse) { self.far.clone() } else { Arc::new(Far::new(directions, coarse)) };
+        Periodic::with_far(self.half_space.for_element(coarse.dx, coarse.dy), directions, coarse, far)
     }
 
     /// The coefficients times `factor`.
     pub fn times(&self, factor: f64) -> Periodic {
         let table = self.table.iter().map(|value| factor * value).collect();
-        Periodic { half_space: self.half_space.times(factor), table, ..*self }
+        Periodic { half_space: self.half_space.times(factor), far: self.far.clone(), table, ..*self }
     }
 
     /// Bytes held.
@@ -137,16 +151,33 @@ impl Periodic {
     }
 }
 
-/// What all but the near images contribute, per unit strength, as a polynomial.
+/// Number of offsets >= 0 in x and y: up to half the period where there is one.
+fn offsets((x, y): (bool, bool), grid: &Grid) -> (usize, usize) {
+    let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
+    (offsets(x, grid.mx), offsets(y, grid.my))
+}
+
+/// Half the rectangle that the offsets of a grid cover.
+fn covered(directions: (bool, bool), grid: &Grid) -> (f64, f64) {
+    let (row, rows) = offsets(directions, grid);
+    ((row as f64 - 0.5) * grid.dx, (rows as f64 - 0.5) * grid.dy)
+}
+
+/// The grid's lengths.
+fn lengths(grid: &Grid) -> (f64, f64) {
+    (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy)
+}
+
+/// What all but the near images contribute, per unit strength, as a polynomial on `|x| <= half.0, |y| <= half.1`.
+#[derive(Debug, PartialEq)]
 struct Far {
+    lengths: (f64, f64),
+    half: (f64, f64),
     /// Near images on either side.
     images_x: usize,
     images_y: usize,
     /// `[j][i]`: of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
     coefficients: [[f64; NODES]; NODES],
-    /// Means over elements of the `T`.
-    in_x: Vec<[f64; NODES]>,
-    in_y: Vec<[f64; NODES]>,
 }
 
 /// Images on either side that are near: beyond them no singularity is inside the ellipse about `[-here, here]` whose semi-axes are
@@ -156,9 +187,12 @@ fn reach(length: f64, here: f64, across: f64) -> usize {
 }
 
 impl Far {
-    fn new((x, y): (bool, bool), grid: &Grid, row: usize, rows: usize) -> Far {
-        let (half_x, half_y) = ((row as f64 - 0.5) * grid.dx, (rows as f64 - 0.5) * grid.dy);
-        let (length_x, length_y) = (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy);
+    /// Of a grid and, where there is a period, of coarser ones: half an element beyond half the period.
+    fn new((x, y): (bool, bool), grid: &Grid) -> Far {
+        let (length_x, length_y) = lengths(grid);
+        let (own_x, own_y) = covered((x, y), grid);
+        let half_x = if x { own_x.max(COARSE * length_x) } else { own_x };
+        let half_y = if y { own_y.max(COARSE * length_y) } else { own_y };
         let images_x = if x { reach(length_x, half_x, half_y) } else { 0 };
         let images_y = if y { reach(length_y, half_y, half_x) } else { 0 };
         let value = |u: f64, v: f64| match (x, y) {
@@ -181,17 +215,22 @@ impl Far {
                 }
             }
         }
-        let means = |count: usize, d: f64, half: f64| (0..count).map(|k| chebyshev_means(k as f64, d / half)).collect();
-        Far { images_x, images_y, coefficients, in_x: means(row, grid.dx, half_x), in_y: means(rows, grid.dy, half_y) }
+        Far { lengths: (length_x, length_y), half: (half_x, half_y), images_x, images_y, coefficients }
     }
 
-    /// The values at offsets `(0.., ky)`.
-    fn row(&self, ky: usize) -> impl Iterator<Item = f64> + '_ {
+    /// Whether it is that of a coarser grid, too.
+    fn serves(&self, directions: (bool, bool), grid: &Grid) -> bool {
+        let (half_x, half_y) = covered(directions, grid);
+        lengths(grid) == self.lengths && half_x <= self.half.0 && half_y <= self.half.1
+    }
+
+    /// The polynomial in x where those in y have the means `in_y`.
+    fn along_x(&self, in_y: &[f64; NODES]) -> [f64; NODES] {
         let mut line = [0.0; NODES];
-        for (coefficients, t) in self.coefficients.iter().zip(&self.in_y[ky]) {
+        for (coefficients, t) in self.coefficients.iter().zip(in_y) {
             line.iter_mut().zip(coefficients).for_each(|(sum, coefficient)| *sum += coefficient * t);
         }
-        self.in_x.iter().map(move |t| line.iter().zip(t).map(|(a, b)| a * b).sum())
+        line
     }
 }
 
@@ -227,7 +266,8 @@ fn ewald(x: f64, y: f64, (lx, ly): (f64, f64), (near_x, near_y): (usize, usize))
             if is_near && eta * rho < 1e-8 {
                 sum -= 2.0 * eta / PI.sqrt();
             } else if is_near {
-                sum -= (1.0 - complementary_error_function(eta * rho)) / rho;
+                let beyond = if eta * rho < GAUSSIAN { complementary_error_function(eta * rho) } else { 0.0 };
+                sum -= (1.0 - beyond) / rho;
             } else if eta * rho < GAUSSIAN {
                 sum += complementary_error_function(eta * rho) / rho;
             }

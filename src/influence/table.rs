@@ -17,7 +17,7 @@ use crate::memory::{reserve, zeros};
 const TABLE: &str = "the influence coefficients";
 
 /// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
-const SYMMETRY: f64 = 1e-7;
+pub(super) const SYMMETRY: f64 = 1e-7;
 
 /// A table of coefficients, `values[ky + cy][kx + cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,6 +127,11 @@ impl Table {
             values.extend((-(cx as i64)..cx as i64).map(|kx| in_both(kx, ky)));
         }
         Ok(Table { cx, cy, values: Arc::new(values) })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..])
     }
 
     fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {

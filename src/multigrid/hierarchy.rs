@@ -53,9 +53,10 @@ impl Hierarchy {
         self.levels[l].grid.len() as f64 / self.levels[0].grid.len() as f64
     }
 
-    /// Bytes held by the operators.
+    /// Bytes held by the operators, and by the coefficients of the coarser grids.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| level.operator.bytes()).sum()
+        let coefficients: usize = self.levels[1..].iter().map(|level| level.influence.bytes()).sum();
+        coefficients + self.levels.iter().map(|level| level.operator.bytes()).sum::<usize>()
     }
 }
 

@@ -5,6 +5,7 @@ pub mod columns;
 pub mod dense;
 pub mod fft;
 mod patches;
+mod row_tables;
 mod toeplitz;
 
 pub(crate) use crate::memory::{reserve, zeros};

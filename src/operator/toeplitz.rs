@@ -9,7 +9,8 @@
 //! hold pressures; per block of eight columns gather, transform, multiply, transform back, scatter; real transforms of
 //! those rows only that are asked for. Even coefficients have a real, even spectrum: a quarter of it is kept. In a direction in which
 //! the coefficients repeat themselves after the grid A is circulant: the period is the grid's, and nothing is padded. A diagonal of its
-//! own that A may have is added as the rows come back.
+//! own that A may have is added as the rows come back. Where A is Toeplitz in x only, a product by matrices takes the place of the
+//! transforms in y ([`PerRow`]).
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,9 +18,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::columns::{for_each_block, BLOCK};
 use super::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
 use super::patches::Mask;
+use super::row_tables::PerRow;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::{Influence, RowTables};
 use crate::memory::zeros;
 use crate::threads::Threads;
 
@@ -42,6 +44,8 @@ pub struct Toeplitz<T: Real> {
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
     mask: Option<Mask<T>>,
+    /// Tables of loaded rows, instead of the spectrum.
+    per_row: Option<PerRow<T>>,
     threads: Threads,
 }
 
@@ -91,6 +95,9 @@ impl<T: Real> Workspace<T> {
 impl<T: Real> Toeplitz<T> {
     /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
     pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
+        if let Some((tables, least)) = influence.row_tables() {
+            return Toeplitz::of_rows(influence, tables, least, threads);
+        }
         let even = influence.is_even(grid);
         let repeats = influence.repeats(grid);
         let period = |m: usize, repeats: bool| match (repeats, even) {
@@ -120,6 +127,25 @@ impl<T: Real> Toeplitz<T> {
             spectrum,
             diagonal,
             mask: influence.patches().map(Mask::new),
+            per_row: None,
+            threads: threads.clone(),
+        })
+    }
+
+    /// Products by tables of loaded rows. Columns have the length of the grid: they are not transformed.
+    fn of_rows(influence: &Influence, tables: &RowTables, least: f64, threads: &Threads) -> Result<Toeplitz<T>> {
+        let (mx, my) = (tables.columns(), tables.rows());
+        let px = good_length(if tables.is_even_in_x() { 2 * mx - 2 } else { 2 * mx - 1 });
+        let diagonal = influence.diagonal().unwrap_or_default().iter().map(|d| T::of(*d)).collect();
+        Ok(Toeplitz {
+            mx,
+            my,
+            rows: RowTransform::new(px),
+            columns: ColumnTransform::new(my),
+            spectrum: Spectrum::Even(Vec::new()),
+            diagonal,
+            mask: influence.patches().map(Mask::new),
+            per_row: Some(PerRow::new(tables, least, &RowTransform::new(px), threads)?),
             threads: threads.clone(),
         })
     }
@@ -157,6 +183,7 @@ impl<T: Real> Toeplitz<T> {
             spectrum,
             diagonal: Vec::new(),
             mask: None,
+            per_row: None,
             threads: threads.clone(),
         }))
     }
@@ -179,7 +206,8 @@ impl<T: Real> Toeplitz<T> {
         let (rows, columns) = (RowTransform::new(self.rows.length()), ColumnTransform::new(self.columns.length()));
         let diagonal = self.diagonal.iter().map(|d| convert(*d)).collect();
         let (mask, threads) = (self.mask.as_ref().map(Mask::in_precision), self.threads.clone());
-        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, mask, threads })
+        let per_row = self.per_row.as_ref().map(|per_row| per_row.in_precision(factor)).transpose()?;
+        Ok(Toeplitz { mx: self.mx, my: self.my, rows, columns, spectrum, diagonal, mask, per_row, threads })
     }
 
     /// Memory for products by this operator.
@@ -189,7 +217,8 @@ impl<T: Real> Toeplitz<T> {
             let mut scratch = self.rows.scratch();
             scratch.resize(scratch.len().max(self.columns.scratch().len()), Complex::default());
             let columns = vec![Complex::default(); (BLOCK * self.columns.length()).max(self.rows.bins())];
-            pieces.push(Piece { row: vec![T::zero(); self.rows.length()], columns, scratch });
+            let row = self.rows.length().max(self.per_row.as_ref().map_or(0, PerRow::scratch));
+            pieces.push(Piece { row: vec![T::zero(); row], columns, scratch });
         }
         let masked = self.mask.as_ref().map_or(0, |_| self.mx * self.my);
         let memory = |n| zeros(n, "the product's workspace");
@@ -207,7 +236,10 @@ impl<T: Real> Toeplitz<T> {
             Spectrum::Even(s) => std::mem::size_of_val(&s[..]),
             Spectrum::General(s) => std::mem::size_of_val(&s[..]),
         };
-        spectrum + std::mem::size_of_val(&self.diagonal[..]) + self.mask.as_ref().map_or(0, Mask::bytes)
+        spectrum
+            + std::mem::size_of_val(&self.diagonal[..])
+            + self.mask.as_ref().map_or(0, Mask::bytes)
+            + self.per_row.as_ref().map_or(0, PerRow::bytes)
     }
 
     /// `u = A p`.
@@ -276,6 +308,16 @@ impl<T: Real> Toeplitz<T> {
         let Workspace { bins, pieces, .. } = workspace;
         let nb = self.rows.bins();
         let length = self.columns.length();
+        if let Some(per_row) = &self.per_row {
+            return for_each_block(&mut bins[..self.my * nb], nb, &self.threads, pieces, |block, piece| {
+                let columns = &mut piece.columns[..block.columns() * length];
+                block.gather(loaded.clone(), length, columns);
+                for (c, column) in columns.chunks_exact_mut(length).enumerate() {
+                    per_row.multiply(block.first() + c, loaded.clone(), column, &mut piece.row);
+                }
+                block.scatter(wanted.clone(), length, columns);
+            });
+        }
         for_each_block(&mut bins[..self.my * nb], nb, &self.threads, pieces, |block, piece| {
             let columns = &mut piece.columns[..block.columns() * length];
             block.gather(loaded.clone(), length, columns);

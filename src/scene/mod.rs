@@ -18,7 +18,7 @@ pub use refine::refine;
 
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{HalfSpace, Influence, Periodic, Table};
+use crate::influence::{HalfSpace, Influence, Periodic, RowTables, Table};
 
 /// One contact problem: `e = h - approach + A p`.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ pub struct Scene<'a> {
     pub pressure_limit: Option<PressureLimit<'a>>,
     /// Effect: several contact patches, whose interaction is scaled.
     pub patches: Option<Patches<'a>>,
+    /// Effect: own coefficients, one table per loaded row.
+    pub row_tables: Option<RowTables>,
 }
 
 impl<'a> Scene<'a> {
@@ -56,15 +58,17 @@ impl<'a> Scene<'a> {
             layer: None,
             pressure_limit: None,
             patches: None,
+            row_tables: None,
         }
     }
 
     /// The coefficients that this scene asks for.
     pub fn influence(&self) -> Influence {
         let half_space = || HalfSpace::new(self.grid.dx, self.grid.dy, self.bodies.compliance());
-        let bodies = match (&self.influence, self.period) {
-            (Some(table), _) => Influence::Table(table.clone()),
-            (_, Some(Period { x, y })) => Influence::Periodic(Periodic::new(half_space(), (x, y), &self.grid)),
+        let bodies = match (&self.influence, &self.row_tables, self.period) {
+            (Some(table), ..) => Influence::Table(table.clone()),
+            (_, Some(tables), _) => Influence::RowTables(tables.clone()),
+            (.., Some(Period { x, y })) => Influence::Periodic(Periodic::new(half_space(), (x, y), &self.grid)),
             _ => Influence::HalfSpace(half_space()),
         };
         let scaled = match &self.patches {
@@ -81,10 +85,11 @@ impl<'a> Scene<'a> {
     pub fn check(&self) -> Result<()> {
         self.check_distance_and_load()?;
         self.check_effects()?;
-        match self.influence {
-            Some(_) => Ok(()),
-            None => self.bodies.check(),
+        // Own coefficients know no bodies.
+        if self.influence.is_some() || self.row_tables.is_some() {
+            return Ok(());
         }
+        self.bodies.check()
     }
 
     /// Checks each effect, and refuses pairs that are not solved.
@@ -93,6 +98,15 @@ impl<'a> Scene<'a> {
             period.check()?;
             if self.influence.is_some() {
                 return not_together("influence", "period");
+            }
+        }
+        if let Some(tables) = &self.row_tables {
+            tables.check(&self.grid)?;
+            if self.influence.is_some() {
+                return not_together("influence", "row_tables");
+            }
+            if self.period.is_some() {
+                return not_together("row_tables", "period");
             }
         }
         if let Some(patches) = &self.patches {

@@ -137,10 +137,11 @@ impl Outcome {
 
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
     options.check()?;
-    if scene.influence.is_some() {
-        return Err(Error::Unsupported(
-            "influence is given; own coefficients are those of one grid, and an accuracy needs several".into(),
-        ));
+    let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
+    if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Error::Unsupported(format!(
+            "{name} is given; own coefficients are those of one grid, and an accuracy needs several"
+        )));
     }
     if options.active_set == ActiveSet::Fixed {
         return Err(Error::Unsupported("active_set is FIXED; the contact area of finer grids is not known".into()));

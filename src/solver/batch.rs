@@ -99,6 +99,7 @@ impl Solver {
             grid: self.grid,
             bodies: self.bodies,
             has_own_influence: self.has_own_influence,
+            has_row_tables: self.has_row_tables,
             period: self.period,
             has_layer: self.has_layer,
             has_patches: self.has_patches,

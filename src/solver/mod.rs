@@ -57,6 +57,7 @@ pub struct Solver {
     grid: Grid,
     bodies: Bodies,
     has_own_influence: bool,
+    has_row_tables: bool,
     period: Option<Period>,
     has_layer: bool,
     has_patches: bool,
@@ -107,6 +108,7 @@ impl Solver {
             grid: scene.grid,
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
+            has_row_tables: scene.row_tables.is_some(),
             period: scene.period,
             has_layer: scene.layer.is_some(),
             has_patches: scene.patches.is_some(),
@@ -228,6 +230,11 @@ impl Solver {
         self.has_own_influence
     }
 
+    /// The same of tables per loaded row.
+    pub fn has_row_tables(&self) -> bool {
+        self.has_row_tables
+    }
+
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
         scene.check_distance_and_load()?;
         self.check_options(options)?;
@@ -235,11 +242,14 @@ impl Solver {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
         }
         // Own coefficients know no bodies.
-        if !self.has_own_influence && scene.bodies != self.bodies {
+        if !self.has_own_influence && !self.has_row_tables && scene.bodies != self.bodies {
             return invalid(format!("the bodies are {:?}; this solver was set up for {:?}", scene.bodies, self.bodies));
         }
         if scene.influence.is_some() && !self.has_own_influence {
-            return invalid("influence is given, but this solver was set up for the half-space".into());
+            return invalid("influence is given, but this solver was set up without".into());
+        }
+        if scene.row_tables.is_some() && !self.has_row_tables {
+            return invalid("row_tables is given, but this solver was set up without".into());
         }
         if scene.period != self.period {
             return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));
@@ -438,7 +448,9 @@ impl Solver {
 
     fn bytes(&self) -> usize {
         let states: usize = self.states.iter().map(State::bytes).sum();
-        let workers: usize = self.workers.iter().flatten().map(Solver::bytes).sum();
+        // Workers share the coefficients of the finest grid.
+        let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
+        let workers: usize = self.workers.iter().flatten().map(own).sum();
         self.projected.bytes()
             + self.multigrid.as_ref().map_or(0, Multigrid::bytes)
             + states
@@ -452,6 +464,7 @@ fn without_multigrid(scene: &Scene<'_>) -> Option<&'static str> {
     match scene {
         Scene { period: Some(_), .. } => Some("period"),
         Scene { patches: Some(_), .. } => Some("patches"),
+        Scene { row_tables: Some(_), .. } => Some("row_tables"),
         Scene { layer: Some(Layer::PerElement(_)), .. } => Some("a layer of one compliance per element"),
         _ => None,
     }

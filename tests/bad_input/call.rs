@@ -54,12 +54,15 @@ pub struct Call {
     pub limit: Box<Grown<contact_normal_pressure_limit>>,
     pub period: Box<Grown<contact_normal_period>>,
     pub patches: Box<Grown<contact_normal_patches>>,
+    pub row_tables: Box<Grown<contact_normal_row_tables>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
     pub accuracy: Box<Grown<contact_normal_accuracy>>,
     pub h: Vec<f64>,
     pub table: Vec<f64>,
+    /// The same for each loaded row.
+    pub tables: Vec<f64>,
     /// Values per element, of a layer or of limits.
     pub each: Vec<f64>,
     /// Of two patches.
@@ -96,6 +99,7 @@ impl Call {
             limit: Grown::new(initialised(contact_normal_pressure_limit_init)),
             period: Grown::new(initialised(contact_normal_period_init)),
             patches: Grown::new(initialised(contact_normal_patches_init)),
+            row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -104,6 +108,7 @@ impl Call {
                 .map(|i| 0.01 * ((i % MX) as f64 - 2.5).powi(2) + 0.02 * ((i / MX) as f64 - 2.0).powi(2))
                 .collect(),
             table: vec![0.0; 4 * CX * CY],
+            tables: Vec::new(),
             each: vec![1.0; N],
             patch: (0..N).map(|i| (2 * (i % MX) / MX) as i32).collect(),
             factors: [1.0, 0.5, 0.5, 1.0],
@@ -127,6 +132,10 @@ impl Call {
         assert_eq!(status, CONTACT_NORMAL_OK);
         (call.influence.known.cx, call.influence.known.cy) = (cx, cy);
         call.influence.known.coefficients = call.table.as_ptr();
+        let rows = (0..MY * MY).map(|k| (CY + k % MY - k / MY) * 2 * CX);
+        call.tables = rows.flat_map(|start| call.table[start..start + 2 * CX].to_vec()).collect();
+        (call.row_tables.known.cx, call.row_tables.known.rows) = (cx, MY as i32);
+        call.row_tables.known.coefficients = call.tables.as_ptr();
         let fields = &mut call.fields.known;
         (fields.pressure, fields.contact) = (call.pressure.as_mut_ptr(), call.contact.as_mut_ptr());
         fields.deformed_distance = call.others.as_mut_ptr();
@@ -142,6 +151,18 @@ impl Call {
     pub fn use_table(&mut self) -> &mut contact_normal_influence {
         self.scene.known.influence = &raw const self.influence.known;
         &mut self.influence.known
+    }
+
+    /// The same with one table per loaded row.
+    pub fn use_row_tables(&mut self) -> &mut contact_normal_row_tables {
+        self.scene.known.row_tables = &raw const self.row_tables.known;
+        &mut self.row_tables.known
+    }
+
+    /// Sets a coefficient of a loaded row and a row.
+    pub fn set_in_row(&mut self, jy: usize, iy: usize, kx: i64, value: f64) {
+        self.use_row_tables();
+        self.tables[(jy * MY + iy) * 2 * CX + (kx + CX as i64) as usize] = value;
     }
 
     /// Names a layer in the scene, and the layer to change.

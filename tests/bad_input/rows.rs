@@ -110,6 +110,21 @@ pub const SET_UP: &[Row] = &[
     (&["patches->factors", "(1, 1)", "0.9"], INVALID, |c| { c.use_patches([1.0, 0.5, 0.5, 0.9]); }),
     (&["patches", "period"], UNSUPPORTED, |c| { c.use_patches(HALF); c.use_period(1, 0); }),
     (&["influence", "period"], UNSUPPORTED, |c| { c.use_table(); c.use_period(1, 0); }),
+    (&["row_tables->coefficients"], NULL, |c| c.use_row_tables().coefficients = null()),
+    (&["row_tables->cx", "0"], INVALID, |c| c.use_row_tables().cx = 0),
+    (&["row_tables->cx", "5", "mx = 6"], INVALID, |c| c.use_row_tables().cx = 5),
+    (&["row_tables->rows", "-1"], INVALID, |c| c.use_row_tables().rows = -1),
+    (&["row_tables->rows", "4", "my = 5"], INVALID, |c| c.use_row_tables().rows = 4),
+    (&["row_tables->rows", "2147483647", "my = 5"], INVALID, |c| (c.use_row_tables().cx, c.use_row_tables().rows) = (i32::MAX, i32::MAX)),
+    // A grid, and so a number of tables, for which there is no memory address.
+    (&["rows * rows * 2 cx", "2000000000"], INVALID, |c| {
+        (c.scene.known.mx, c.scene.known.my, c.use_row_tables().rows) = (1, 2_000_000_000, 2_000_000_000);
+    }),
+    (&["row_tables->coefficients", "jy 4", "iy 1", "offset -3", "NaN"], NOT_FINITE, |c| c.set_in_row(4, 1, -3, NAN)),
+    (&["row_tables->coefficients", "jy 0", "iy 0", "offset 5", "inf"], NOT_FINITE, |c| c.set_in_row(0, 0, 5, INF)),
+    (&["row_tables->coefficients", "jy 3", "iy 3", "offset 0", "-2"], NOT_POSITIVE, |c| c.set_in_row(3, 3, 0, -2.0)),
+    (&["influence", "row_tables"], UNSUPPORTED, |c| { c.use_table(); c.use_row_tables(); }),
+    (&["row_tables", "period"], UNSUPPORTED, |c| { c.use_row_tables(); c.use_period(1, 0); }),
     // The mean of the distance is 0.0691...
     (&["approach", "0.5", "mean plane"], INFEASIBLE, |c| { c.scene.known.approach = 0.5; c.use_period(1, 1); }),
 

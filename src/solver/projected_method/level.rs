@@ -151,7 +151,8 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.windowed.as_ref().map_or(0, |w| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes))
+        let windowed = |w: &Windowed| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes);
+        self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
     /// Iterates on the window around the contact area. Outside it u is not known afterwards.

@@ -1,0 +1,252 @@
+//! Coefficients that differ per loaded row: one table for each row jy of the loaded element.
+//!
+//! ```text
+//! A_IJ = c_jy(iy, ix - jx),     u(ix, iy) = sum over jy and jx of c_jy(iy, ix - jx) p(jx, jy)
+//! ```
+//!
+//! For surfaces whose shape along y is no plane: conformal contact, an inclination that varies, a layer whose thickness does. A is
+//! Toeplitz in x only. Neither symmetric nor positive coefficients are assumed.
+//!
+//! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit pressure on those
+//! of another: in x as for [`Table`](super::Table), in y
+//!
+//! ```text
+//! C_J(I, k) = (c_2J(2I, k) + c_2J(2I+1, k) + c_2J+1(2I, k) + c_2J+1(2I+1, k))/2
+//! ```
+//!
+//! A row beyond the last (of an odd count) is that at the same distance, one row before.
+//!
+//! A preconditioner knows the mean over the rows at each offset.
+
+use std::sync::Arc;
+
+use super::table::SYMMETRY;
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+use crate::memory::reserve;
+
+/// What memory is for.
+const TABLES: &str = "the tables of coefficients";
+
+/// The tables: of offsets >= 0 in x only, where all are even.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowTables {
+    mx: usize,
+    my: usize,
+    even: bool,
+    /// `[jy][iy][width]`, shared by all that hold the tables.
+    values: Arc<Vec<f64>>,
+}
+
+impl RowTables {
+    /// Tables of `rows` by `rows` by `2 cx` coefficients, `values[jy][iy][kx + cx]`, that must fit `grid`: `rows` is my, cx >= mx.
+    /// Column `-cx` never matters.
+    pub fn new(cx: usize, rows: usize, values: &[f64], grid: &Grid) -> Result<RowTables> {
+        let Grid { mx, my, .. } = *grid;
+        if cx < mx {
+            return invalid(format!("row_tables->cx is {cx}; the tables must reach offsets of the grid, mx = {mx}"));
+        }
+        if rows != my {
+            return invalid(format!(
+                "row_tables->rows is {rows}; there must be a table for each row of the grid, my = {my}"
+            ));
+        }
+        let expected = rows.checked_mul(rows).and_then(|n| n.checked_mul(2)).and_then(|n| n.checked_mul(cx));
+        if expected != Some(values.len()) {
+            return invalid(format!(
+                "the row tables have {} values; they must have rows by rows by 2 cx",
+                values.len()
+            ));
+        }
+        let mut even = true;
+        for (k, row) in values.chunks_exact(2 * cx).enumerate() {
+            let (jy, iy) = (k / my, k % my);
+            let row = &row[cx + 1 - mx..cx + mx];
+            if let Some(i) = row.iter().position(|value| !value.is_finite()) {
+                let kx = i as i64 - (mx as i64 - 1);
+                return Err(Error::NotFinite(format!(
+                    "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
+                    row[i]
+                )));
+            }
+            if jy == iy && row[mx - 1] <= 0.0 {
+                return Err(Error::NotPositiveDefinite(format!(
+                    "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset 0 is {}; a pressure must displace its own \
+                     element inwards",
+                    row[mx - 1]
+                )));
+            }
+            even &= row[mx - 1..].iter().eq(row[..mx].iter().rev());
+        }
+        // Only the offsets of the grid matter, so only they are kept.
+        let mut kept = Vec::new();
+        reserve(&mut kept, my * my * width(mx, even), TABLES)?;
+        for row in values.chunks_exact(2 * cx) {
+            kept.extend_from_slice(&row[if even { cx } else { cx + 1 - mx }..cx + mx]);
+        }
+        Ok(RowTables { mx, my, even, values: Arc::new(kept) })
+    }
+
+    /// Refuses a grid that these are no tables of.
+    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
+        let RowTables { mx, my, .. } = *self;
+        if (mx, my) != (grid.mx, grid.my) {
+            return invalid(format!(
+                "row_tables are those of {mx} x {my} elements; the grid has {} x {}",
+                grid.mx, grid.my
+            ));
+        }
+        Ok(())
+    }
+
+    /// Elements of the grid in x.
+    pub fn columns(&self) -> usize {
+        self.mx
+    }
+
+    /// Rows of the grid.
+    pub fn rows(&self) -> usize {
+        self.my
+    }
+
+    /// Whether all tables are even in x.
+    pub fn is_even_in_x(&self) -> bool {
+        self.even
+    }
+
+    /// The coefficient of a loaded row jy and a row iy at offset kx, the outermost one where the table ends.
+    pub fn at(&self, jy: usize, iy: usize, kx: i64) -> f64 {
+        self.row(jy, iy)[self.column(kx)]
+    }
+
+    /// Fills `out` with the period that starts at offset 0: offsets `0..mx-1` first, negative ones at its end.
+    pub fn fill_period(&self, jy: usize, iy: usize, out: &mut [f64]) {
+        let (row, mx, n) = (self.row(jy, iy), self.mx, out.len());
+        out.fill(0.0);
+        if self.even {
+            out[..mx].copy_from_slice(row);
+            for k in 1..mx {
+                out[n - k] = row[k];
+            }
+        } else {
+            out[..mx].copy_from_slice(&row[mx - 1..]);
+            out[n - (mx - 1)..].copy_from_slice(&row[..mx - 1]);
+        }
+    }
+
+    /// The mean over the rows at offset `(kx, ky)`.
+    pub fn mean(&self, kx: i64, ky: i64) -> f64 {
+        let rows = self.rows_apart(ky);
+        let count = rows.clone().count() as f64;
+        rows.map(|(jy, iy)| self.at(jy, iy, kx)).sum::<f64>() / count
+    }
+
+    /// Fills `out[k]` with the mean over the rows at offsets `(+-k, +-ky)`.
+    pub fn fill_even_mean(&self, ky: i64, out: &mut [f64]) {
+        out.fill(0.0);
+        let rows = || self.rows_apart(ky).chain(self.rows_apart(-ky));
+        for row in rows().map(|(jy, iy)| self.row(jy, iy)) {
+            for (value, kx) in out.iter_mut().zip(0..) {
+                *value += row[self.column(kx)] + row[self.column(-kx)];
+            }
+        }
+        let share = 0.5 / rows().count() as f64;
+        out.iter_mut().for_each(|value| *value *= share);
+    }
+
+    /// The largest coefficient, whatever its sign.
+    pub fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    }
+
+    /// Whether A is symmetric, `c_jy(iy, k) = c_iy(jy, -k)`, to within round-off.
+    pub fn is_symmetric(&self) -> bool {
+        let allowed = SYMMETRY * self.largest();
+        let alike = |jy: usize, iy: usize| {
+            let (row, turned) = (self.row(jy, iy), self.row(iy, jy));
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() <= allowed;
+            match self.even {
+                true => row.iter().zip(turned).all(near),
+                false => row.iter().zip(turned.iter().rev()).all(near),
+            }
+        };
+        (0..self.my).all(|jy| (0..=jy).all(|iy| alike(jy, iy)))
+    }
+
+    /// The coefficients times `factor`.
+    pub fn times(&self, factor: f64) -> Result<RowTables> {
+        if factor == 1.0 {
+            return Ok(self.clone());
+        }
+        let mut values = Vec::new();
+        reserve(&mut values, self.values.len(), TABLES)?;
+        values.extend(self.values.iter().map(|value| value * factor));
+        Ok(RowTables { values: Arc::new(values), ..*self })
+    }
+
+    /// The coefficients of the coarser grid, as means of the finer ones.
+    pub fn coarsen(&self, coarse: &Grid) -> Result<RowTables> {
+        let Grid { mx, my, .. } = *coarse;
+        let (half_x, half_y) = (mx < self.mx, my < self.my);
+        // The outer two are added first: so what is even stays so to the last bit.
+        let in_x = |row: &[f64], kx: i64| match half_x {
+            true => row[self.column(2 * kx)] + 0.5 * (row[self.column(2 * kx - 1)] + row[self.column(2 * kx + 1)]),
+            false => row[self.column(kx)],
+        };
+        // The row at the same distance where one lies beyond the last.
+        let row = |jy: usize, iy: usize| {
+            let beyond = jy.max(iy).saturating_sub(self.my - 1);
+            self.row(jy.saturating_sub(beyond), iy.saturating_sub(beyond))
+        };
+        let mut values = Vec::new();
+        reserve(&mut values, my * my * width(mx, self.even), TABLES)?;
+        let first = if self.even { 0 } else { 1 - mx as i64 };
+        for (jy, iy) in (0..my * my).map(|k| (k / my, k % my)) {
+            let (one, other) = match half_y {
+                true => (
+                    [row(2 * jy, 2 * iy), row(2 * jy + 1, 2 * iy + 1)],
+                    Some([row(2 * jy, 2 * iy + 1), row(2 * jy + 1, 2 * iy)]),
+                ),
+                false => ([row(jy, iy); 2], None),
+            };
+            let both = |rows: [&[f64]; 2], kx: i64| 0.5 * (in_x(rows[0], kx) + in_x(rows[1], kx));
+            values.extend((first..mx as i64).map(|kx| both(one, kx) + other.map_or(0.0, |other| both(other, kx))));
+        }
+        Ok(RowTables { mx, my, even: self.even, values: Arc::new(values) })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..])
+    }
+
+    fn row(&self, jy: usize, iy: usize) -> &[f64] {
+        let width = width(self.mx, self.even);
+        &self.values[(jy * self.my + iy) * width..][..width]
+    }
+
+    /// Where offset kx stands in a row, the outermost one where it ends.
+    fn column(&self, kx: i64) -> usize {
+        let last = self.mx as i64 - 1;
+        match self.even {
+            true => kx.abs().min(last) as usize,
+            false => (kx.clamp(-last, last) + last) as usize,
+        }
+    }
+
+    /// Pairs of rows (jy, iy), `iy - jy = ky`; those furthest apart where the grid ends.
+    fn rows_apart(&self, ky: i64) -> impl Iterator<Item = (usize, usize)> + Clone {
+        let last = self.my as i64 - 1;
+        let ky = ky.clamp(-last, last);
+        ((-ky).max(0)..=(last - ky).min(last)).map(move |jy| (jy as usize, (jy + ky) as usize))
+    }
+}
+
+/// Coefficients of one row that are kept.
+fn width(mx: usize, even: bool) -> usize {
+    if even {
+        mx
+    } else {
+        2 * mx - 1
+    }
+}

@@ -1,0 +1,121 @@
+//! Products of a scene with [one table per loaded row](crate::influence::RowTables): A is Toeplitz in x only.
+//!
+//! ```text
+//! u^(iy, kx) = sum over jy of S_kx(jy, iy) p^(jy, kx),     ^: the transform in x
+//! ```
+//!
+//! For each of the `px/2 + 1` bins kx a matrix of my by my: real where the tables are even in x, or else a real and an imaginary one.
+//! That is `my^2 (mx + 1)` numbers, twice as many if not even, and as many multiplications of a complex number: a product reads all of
+//! them (of the loaded rows), which takes longer than the transforms.
+
+use std::ops::Range;
+
+use super::fft::{Complex, Real, RowTransform};
+use crate::error::{Error, Result};
+use crate::influence::RowTables;
+use crate::memory::zeros;
+use crate::threads::Threads;
+
+/// What memory is for.
+const MATRICES: &str = "the row tables' transforms";
+
+/// The matrices, with the normalisation `1/px` folded in.
+pub(super) struct PerRow<T> {
+    my: usize,
+    /// 1: real, 2: and imaginary.
+    planes: usize,
+    /// `[bin][plane][jy][iy]`.
+    values: Vec<T>,
+}
+
+impl<T: Real> PerRow<T> {
+    /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element.
+    pub fn new(tables: &RowTables, least: f64, rows: &RowTransform<f64>, threads: &Threads) -> Result<PerRow<T>> {
+        let (my, nb, px) = (tables.rows(), rows.bins(), rows.length());
+        let planes = if tables.is_even_in_x() { 1 } else { 2 };
+        let size = (my * my).checked_mul(planes * nb);
+        let size =
+            size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {nb} values of {MATRICES}")))?;
+        let mut values: Vec<T> = zeros(size, MATRICES)?;
+        let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
+        let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| (vec![0.0; px], rows.scratch())).collect();
+        let scale = 1.0 / px as f64;
+        for jy in 0..my {
+            threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
+                tables.fill_period(jy, iy, row);
+                if iy == jy {
+                    row[0] += least;
+                }
+                rows.forward(row, bins, scratch);
+            });
+            let of_row = &of_row[..];
+            threads.for_each_row(&mut values, planes * my * my, &mut pieces, |bin, matrices, _| {
+                let column = of_row[bin..].iter().step_by(nb);
+                for (value, from) in matrices[jy * my..].iter_mut().zip(column.clone()) {
+                    *value = T::of(scale * from.re);
+                }
+                if planes == 2 {
+                    for (value, from) in matrices[(my + jy) * my..].iter_mut().zip(column) {
+                        *value = T::of(scale * from.im);
+                    }
+                }
+            });
+        }
+        Ok(PerRow { my, planes, values })
+    }
+
+    /// The same in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
+        let mut values = zeros(self.values.len(), MATRICES)?;
+        values.iter_mut().zip(&self.values).for_each(|(to, from)| *to = S::of(factor * from.to_double()));
+        Ok(PerRow { my: self.my, planes: self.planes, values })
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..])
+    }
+
+    /// Numbers that [`multiply`](Self::multiply) needs for sums.
+    pub fn scratch(&self) -> usize {
+        2 * self.my
+    }
+
+    /// Multiplies one column, that of x bin `bin`, which holds pressures in rows `loaded` only.
+    pub fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
+        let my = self.my;
+        let (re, im) = sums[..2 * my].split_at_mut(my);
+        re.fill(T::zero());
+        im.fill(T::zero());
+        let matrices = &self.values[bin * self.planes * my * my..][..self.planes * my * my];
+        add(&matrices[..my * my], loaded.clone(), |jy| column[jy], re, im);
+        if self.planes == 2 {
+            // i p
+            add(&matrices[my * my..], loaded, |jy| Complex::new(-column[jy].im, column[jy].re), re, im);
+        }
+        for ((value, re), im) in column.iter_mut().zip(&*re).zip(&*im) {
+            *value = Complex::new(*re, *im);
+        }
+    }
+}
+
+/// `u = u + M p`, row after row of M, four at a time.
+fn add<T: Real>(matrix: &[T], loaded: Range<usize>, p: impl Fn(usize) -> Complex<T>, re: &mut [T], im: &mut [T]) {
+    let my = re.len();
+    let row = |jy: usize| &matrix[jy * my..(jy + 1) * my];
+    let fours = loaded.end - (loaded.end - loaded.start) % 4;
+    for jy in (loaded.start..fours).step_by(4) {
+        let p: [Complex<T>; 4] = std::array::from_fn(|k| p(jy + k));
+        let rows = row(jy).iter().zip(row(jy + 1)).zip(row(jy + 2)).zip(row(jy + 3));
+        for ((re, im), (((a, b), c), d)) in re.iter_mut().zip(&mut *im).zip(rows) {
+            *re += *a * p[0].re + *b * p[1].re + (*c * p[2].re + *d * p[3].re);
+            *im += *a * p[0].im + *b * p[1].im + (*c * p[2].im + *d * p[3].im);
+        }
+    }
+    for jy in fours..loaded.end {
+        let p = p(jy);
+        for ((re, im), m) in re.iter_mut().zip(&mut *im).zip(row(jy)) {
+            *re += *m * p.re;
+            *im += *m * p.im;
+        }
+    }
+}
