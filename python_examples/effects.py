@@ -71,7 +71,7 @@ def row_tables():
         # What a pressure displaces along another normal is the cosine of what it would be in a plane.
         tables = np.cos(apart * dy * curvature)[:, :, None] * plane[apart + M]
         found = cn.solve(h, dx, dy, force=20000.0, row_tables=tables, **STEEL)
-        print(f"{curvature:9.2f} {found.approach:9.6f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.2f}")
+        print(f"{curvature:9.2f} {found.approach:9.6f} {found.report['max_pressure']:13.1f} {found.report['contact_area']:13.2f}")
         yield f"normals turn by {curvature * y[-1]:.1f} rad to either side" if curvature else "a plane", y, found.pressure[:, M // 2]
 
 
