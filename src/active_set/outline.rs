@@ -59,6 +59,11 @@ impl Outline {
         outline
     }
 
+    /// Mean length of the runs of `count` elements in contact, along rows and columns alike.
+    pub fn chord(&self, count: usize) -> f64 {
+        4.0 * count as f64 / (self.changes + self.edges).max(1) as f64
+    }
+
     /// A*: the area of `count` elements in contact, corrected.
     pub fn corrected_area(&self, state: &State, count: usize) -> f64 {
         (count as f64 - SHARE * self.changes as f64).max(0.0) * state.grid.element_area()
@@ -85,6 +90,8 @@ mod tests {
         }
         let outline = Outline::of(&state);
         assert_eq!(outline, Outline { changes: 2, edges: 4 + 2 });
+        // Two runs along rows, two along columns: of 2 and 1 elements.
+        assert_eq!(outline.chord(3), 1.5);
         assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * SHARE) * 2.0);
     }
 

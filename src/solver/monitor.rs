@@ -147,6 +147,11 @@ impl<'a> Monitor<'a> {
         });
     }
 
+    /// The outline of the contact area of the grid that was closed last, if errors are estimated.
+    pub fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
     /// The ledger with its errors, once they are known.
     pub fn estimate(&mut self, state: &State, samples: &[Sample]) {
         let solve_seconds = self.began.elapsed().as_secs_f64();

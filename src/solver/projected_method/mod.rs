@@ -206,12 +206,13 @@ impl Projected {
 
     /// What the scene of `state` is on coarser grids: up to two samples.
     pub fn samples(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<([Sample; 2], usize)> {
-        self.coarse_grids()?.samples(state, SHOWS_ORDER, monitor)
+        let chord = monitor.outline().chord(state.contact_count());
+        self.coarse_grids()?.samples(state, chord, SHOWS_ORDER, monitor)
     }
 
     /// Relative discretisation error of the force (or the approach), before the finest grid is solved; 0 where it is not known.
     fn predicted_error(&mut self, state: &State, monitor: &mut Monitor<'_>) -> Result<f64> {
-        let ([near, far], count) = self.coarse_grids()?.samples(state, PREDICTS, monitor)?;
+        let ([near, far], count) = self.coarse_grids()?.samples(state, 0.0, PREDICTS, monitor)?;
         Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
     }
 

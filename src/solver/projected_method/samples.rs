@@ -13,24 +13,26 @@ use crate::scene::Load;
 use crate::solver::estimates::Sample;
 use crate::solver::monitor::Monitor;
 
-/// The coarser grids to look at, by how often they are coarsened, coarsest first, and the elements in contact that each needs: enough for
-/// its own errors to be regular.
-const NEAR: [(usize, f64); 3] = [(3, 200.0), (2, 50.0), (1, 10.0)];
+/// The coarser grids to look at, by how often they are coarsened, coarsest first, and the elements in contact and the chord (see
+/// [`Outline::chord`](crate::active_set::Outline::chord)) that each needs: enough for its own errors to be regular.
+const NEAR: [(usize, f64, f64); 4] = [(4, 200.0, 8.0), (3, 200.0, 0.0), (2, 50.0, 0.0), (1, 10.0, 0.0)];
 /// That of the grid that shows the order, by how often it is coarsened more.
 const FAR: [usize; 2] = [2, 1];
 /// The elements in contact that it needs to show an order, and to predict an error when the order is taken for granted.
 pub const SHOWS_ORDER: f64 = 50.0;
 pub const PREDICTS: f64 = 10.0;
-/// A sample is solved well enough for its error not to matter among those of the grids.
-const TOLERANCE: f64 = 1e-7;
+/// The residual of a sample of so many elements in contact: its discretisation error is about one over that number, and this part of it
+/// does not matter.
+const TOLERANCE: f64 = 3e-3;
 const ITERATIONS: u64 = 40;
 
 impl CoarseGrids {
-    /// Up to two samples, of the nearer grid first, starting from the pressures of `fine`; the farther one has at least `far_contact`
-    /// elements in contact.
+    /// Up to two samples, of the nearer grid first, starting from the pressures of `fine`, whose contact area has chords of length
+    /// `chord`; the farther one has at least `far_contact` elements in contact.
     pub fn samples(
         &mut self,
         fine: &State,
+        chord: f64,
         far_contact: f64,
         monitor: &mut Monitor<'_>,
     ) -> Result<([Sample; 2], usize)> {
@@ -39,7 +41,10 @@ impl CoarseGrids {
         let enough = |grids: &Self, l: usize, least: f64| {
             grids.grids.get(l - 1).is_some_and(|grid| contact / size(fine, &grid.state).powi(2) >= least)
         };
-        let Some((near, _)) = NEAR.into_iter().find(|(l, least)| enough(self, *l, *least)) else {
+        let suits = |(l, least, chord_least): &(usize, f64, f64)| {
+            enough(self, *l, *least) && chord >= *chord_least * f64::from(1 << *l)
+        };
+        let Some((near, ..)) = NEAR.into_iter().find(suits) else {
             return Ok((samples, 0));
         };
         let far = FAR.into_iter().map(|more| near + more).find(|l| enough(self, *l, far_contact));
@@ -63,10 +68,12 @@ impl CoarseGrids {
             state.contact[i] = state.p[i] > 0.0;
         }
         (state.load, state.approach) = (fine.load, fine.approach);
-        if state.contact_count() == 0 {
+        let count = state.contact_count();
+        if count == 0 {
             return Ok(None);
         }
-        let stop = Stopping { tolerance: TOLERANCE, by_update: false, fixed: false, iterations: ITERATIONS };
+        let tolerance = TOLERANCE / count as f64;
+        let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
         let mut silent = Monitor::new(None, Vec::new(), false);
         level.run(state, Displacement::Unknown, &stop, finest, &mut silent)?;
         monitor.count_work(silent.work_units);
