@@ -36,8 +36,8 @@ fn main() {
                 cells.push(cell(&case, &outcome));
             }
             let load = match case.load {
-                Load::Approach(approach) => format!("approach {approach:.3}"),
-                Load::Force(force) => format!("force {force:.3}"),
+                Load::Approach(approach) => format!("approach {}", shown(approach)),
+                Load::Force(force) => format!("force {}", shown(force)),
             };
             println!("| {} | {} x {} | {load} | {} |", case.name, case.grid.mx, case.grid.my, cells.join(" | "));
         }
@@ -69,5 +69,14 @@ fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
         Stop::IterationLimit => format!("**ITERATION_LIMIT** {numbers}"),
         Stop::Cancelled => format!("**CANCELLED** {numbers}"),
         Stop::Stagnated => format!("**STAGNATED** {numbers}"),
+    }
+}
+
+/// Three decimals, of numbers that are not too long for a table.
+fn shown(value: f64) -> String {
+    if value.abs() < 1e6 {
+        format!("{value:.3}")
+    } else {
+        format!("{value:e}")
     }
 }
