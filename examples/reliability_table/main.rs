@@ -74,9 +74,9 @@ fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
 
 /// Three decimals, of numbers that are not too long for a table.
 fn shown(value: f64) -> String {
-    if value.abs() < 1e6 {
+    if value.abs() < 1e9 {
         format!("{value:.3}")
     } else {
-        format!("{value:e}")
+        format!("{value:.3e}")
     }
 }
