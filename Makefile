@@ -123,7 +123,7 @@ accuracy: tools
 install:
 	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all
 	$(INSTALL) -d $(INCLUDEDIR) $(LIBDIR)/pkgconfig
-	$(INSTALL) -m 644 include/contact_normal.h include/contact_normal.f90 $(INCLUDEDIR)
+	$(INSTALL) -m 644 $(addprefix include/contact_normal,.h .f90 _exports.inc _norm_solve.inc) $(INCLUDEDIR)
 	$(INSTALL) -m 755 $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR)/$(SONAME).$(VERSION:0.%=%)
 	ln -sfn $(SONAME).$(VERSION:0.%=%) $(LIBDIR)/$(SONAME)
 	ln -sfn $(SONAME) $(LIBDIR)/libcontact_normal.so

@@ -3,6 +3,7 @@
 !
 ! Compile this file with your program and link the library:
 !   gfortran contact_normal.f90 my_program.f90 -lcontact_normal
+! contact_normal_exports.inc and contact_normal_norm_solve.inc, which it includes, stand beside it.
 !
 ! It mirrors contact_normal.h, which says what each member and each call does; what differs in Fortran is said here.
 !   * Arrays are a(mx, my), x first. A call returns a status: 0 OK; > 0 stopped early, outputs hold the best iterate;
@@ -44,13 +45,13 @@ module contact_normal
   ! options%precision
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_PRECISION_AUTO = 0, CONTACT_NORMAL_PRECISION_DOUBLE = 1, &
     CONTACT_NORMAL_PRECISION_MIXED = 2
-  ! contact_normal_set_log
+  ! Bits of untrusted, in reports and ledger rows
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_UNTRUSTED_FORCE = 1, CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE = 2, &
     CONTACT_NORMAL_UNTRUSTED_PRESSURE = 4
-
+  ! report%limited_by
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LIMITED_BY_UNKNOWN = 0, CONTACT_NORMAL_LIMITED_BY_GRID = 1, &
     CONTACT_NORMAL_LIMITED_BY_TOLERANCE = 2
-
+  ! contact_normal_set_log
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LOG_OFF = 0, CONTACT_NORMAL_LOG_WARNING = 1, &
     CONTACT_NORMAL_LOG_INFO = 2
 
@@ -277,182 +278,7 @@ module contact_normal
   end interface
   public :: contact_normal_progress_callback, contact_normal_surface_callback, contact_normal_log_callback
 
-  interface
-    ! contact_normal_abi_version of C, whose name is that of the constant here: the library's own. Since 0.1.
-    function contact_normal_library_abi_version() bind(C, name="contact_normal_abi_version") result(version)
-      import :: c_int32_t
-      integer(c_int32_t) :: version
-    end function
-    ! Since 0.1.
-    subroutine contact_normal_scene_init(scene) bind(C, name="contact_normal_scene_init")
-      import :: contact_normal_scene
-      type(contact_normal_scene), intent(out) :: scene
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_influence_init(influence) bind(C, name="contact_normal_influence_init")
-      import :: contact_normal_influence
-      type(contact_normal_influence), intent(out) :: influence
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_layer_init(layer) bind(C, name="contact_normal_layer_init")
-      import :: contact_normal_layer
-      type(contact_normal_layer), intent(out) :: layer
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_pressure_limit_init(limit) bind(C, name="contact_normal_pressure_limit_init")
-      import :: contact_normal_pressure_limit
-      type(contact_normal_pressure_limit), intent(out) :: limit
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_period_init(period) bind(C, name="contact_normal_period_init")
-      import :: contact_normal_period
-      type(contact_normal_period), intent(out) :: period
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_patches_init(patches) bind(C, name="contact_normal_patches_init")
-      import :: contact_normal_patches
-      type(contact_normal_patches), intent(out) :: patches
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_row_tables_init(row_tables) bind(C, name="contact_normal_row_tables_init")
-      import :: contact_normal_row_tables
-      type(contact_normal_row_tables), intent(out) :: row_tables
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_options_init(options) bind(C, name="contact_normal_options_init")
-      import :: contact_normal_options
-      type(contact_normal_options), intent(out) :: options
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_fields_init(fields) bind(C, name="contact_normal_fields_init")
-      import :: contact_normal_fields
-      type(contact_normal_fields), intent(out) :: fields
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_report_init(report) bind(C, name="contact_normal_report_init")
-      import :: contact_normal_report
-      type(contact_normal_report), intent(out) :: report
-    end subroutine
-    ! Since 0.1.
-    subroutine contact_normal_accuracy_init(accuracy) bind(C, name="contact_normal_accuracy_init")
-      import :: contact_normal_accuracy
-      type(contact_normal_accuracy), intent(out) :: accuracy
-    end subroutine
-    ! Solves one scene. Without options: the defaults. Since 0.1.
-    function contact_normal_solve(scene, options, fields, report) bind(C, name="contact_normal_solve") result(status)
-      import :: contact_normal_scene, contact_normal_options, contact_normal_fields, contact_normal_report, c_int32_t
-      type(contact_normal_scene), intent(in) :: scene
-      type(contact_normal_options), intent(in), optional :: options
-      type(contact_normal_fields), intent(inout) :: fields
-      type(contact_normal_report), intent(inout), optional :: report
-      integer(c_int32_t) :: status
-    end function
-    ! The exact solution for h = curvature_x x^2 + curvature_y y^2. Since 0.1.
-    function contact_normal_hertz(curvature_x, curvature_y, shear_modulus, poisson_ratio, load, amount, solution) &
-        bind(C, name="contact_normal_hertz") result(status)
-      import :: contact_normal_hertz_solution, c_double, c_int32_t
-      real(c_double), value, intent(in) :: curvature_x, curvature_y
-      real(c_double), intent(in) :: shear_modulus(2), poisson_ratio(2)
-      integer(c_int32_t), value, intent(in) :: load
-      real(c_double), value, intent(in) :: amount
-      type(contact_normal_hertz_solution), intent(inout) :: solution
-      integer(c_int32_t) :: status
-    end function
-    ! The half-space's coefficients(-cx:cx-1, -cy:cy-1). Since 0.1.
-    function contact_normal_influence_half_space(cx, cy, dx, dy, shear_modulus, poisson_ratio, coefficients) &
-        bind(C, name="contact_normal_influence_half_space") result(status)
-      import :: c_double, c_int32_t
-      integer(c_int32_t), value, intent(in) :: cx, cy
-      real(c_double), value, intent(in) :: dx, dy
-      real(c_double), intent(in) :: shear_modulus(2), poisson_ratio(2)
-      real(c_double), intent(inout) :: coefficients(*)
-      integer(c_int32_t) :: status
-    end function
-  end interface
-  public :: contact_normal_library_abi_version, contact_normal_scene_init, contact_normal_influence_init, &
-    contact_normal_options_init, contact_normal_fields_init, contact_normal_report_init, contact_normal_accuracy_init, &
-    contact_normal_solve, &
-    contact_normal_hertz, contact_normal_influence_half_space, contact_normal_layer_init, &
-    contact_normal_pressure_limit_init, contact_normal_period_init, contact_normal_patches_init, &
-    contact_normal_row_tables_init
-
-  ! Exports that hand out or take C strings, handles or procedures: the wrappers below call them.
-  interface
-    function c_status_text(status) bind(C, name="contact_normal_status_text") result(text)
-      import :: c_ptr, c_int32_t
-      integer(c_int32_t), value, intent(in) :: status
-      type(c_ptr) :: text
-    end function
-    function c_last_error() bind(C, name="contact_normal_last_error") result(text)
-      import :: c_ptr
-      type(c_ptr) :: text
-    end function
-    function c_version() bind(C, name="contact_normal_version") result(text)
-      import :: c_ptr
-      type(c_ptr) :: text
-    end function
-    function c_solver_new(scene, options, solver) bind(C, name="contact_normal_solver_new") result(status)
-      import :: contact_normal_scene, contact_normal_options, c_ptr, c_int32_t
-      type(contact_normal_scene), intent(in) :: scene
-      type(contact_normal_options), intent(in), optional :: options
-      type(c_ptr), intent(inout) :: solver
-      integer(c_int32_t) :: status
-    end function
-    function c_solver_solve(solver, scene, options, fields, report) &
-        bind(C, name="contact_normal_solver_solve") result(status)
-      import
-      type(c_ptr), value, intent(in) :: solver
-      type(contact_normal_scene), intent(in) :: scene
-      type(contact_normal_options), intent(in), optional :: options
-      type(contact_normal_fields), intent(inout) :: fields
-      type(contact_normal_report), intent(inout), optional :: report
-      integer(c_int32_t) :: status
-    end function
-    function c_solver_solve_batch(solver, count, scenes, options, fields, reports, statuses) &
-        bind(C, name="contact_normal_solver_solve_batch") result(status)
-      import
-      type(c_ptr), value, intent(in) :: solver
-      integer(c_int32_t), value, intent(in) :: count
-      type(contact_normal_scene), intent(in) :: scenes(*)
-      type(contact_normal_options), intent(in), optional :: options
-      type(contact_normal_fields), intent(inout), optional :: fields(*)
-      type(contact_normal_report), intent(inout), optional :: reports(*)
-      integer(c_int32_t), intent(inout), optional :: statuses(*)
-      integer(c_int32_t) :: status
-    end function
-    function c_solve_to_accuracy(scene, options, accuracy, solver, report) &
-        bind(C, name="contact_normal_solve_to_accuracy") result(status)
-      import
-      type(contact_normal_scene), intent(in) :: scene
-      type(contact_normal_options), intent(in), optional :: options
-      type(contact_normal_accuracy), intent(inout) :: accuracy
-      type(c_ptr), intent(inout), optional :: solver
-      type(contact_normal_report), intent(inout), optional :: report
-      integer(c_int32_t) :: status
-    end function
-    function c_solver_fields(solver, fields) bind(C, name="contact_normal_solver_fields") result(status)
-      import :: contact_normal_fields, c_ptr, c_int32_t
-      type(c_ptr), value, intent(in) :: solver
-      type(contact_normal_fields), intent(inout) :: fields
-      integer(c_int32_t) :: status
-    end function
-    subroutine c_solver_free(solver) bind(C, name="contact_normal_solver_free")
-      import :: c_ptr
-      type(c_ptr), value, intent(in) :: solver
-    end subroutine
-    function c_set_log(callback, level, user) bind(C, name="contact_normal_set_log") result(status)
-      import :: c_ptr, c_funptr, c_int32_t
-      type(c_funptr), value, intent(in) :: callback
-      integer(c_int32_t), value, intent(in) :: level
-      type(c_ptr), value, intent(in) :: user
-      integer(c_int32_t) :: status
-    end function
-    function c_strlen(text) bind(C, name="strlen") result(length)
-      import :: c_ptr, c_size_t
-      type(c_ptr), value, intent(in) :: text
-      integer(c_size_t) :: length
-    end function
-  end interface
+  include 'contact_normal_exports.inc'
   public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
@@ -699,118 +525,7 @@ contains
     solver%handle = c_null_ptr
   end subroutine
 
-  ! Normal contact in one call with plain arrays, in the place of a NORM: finds ps and igs with
-  !     e = hs - pen + A ps,   e = 0, ps >= 0 in contact,   e >= 0, ps = 0 elsewhere,   A_ij = cf(ix-jx, iy-jy).
-  ! Units: any consistent ones, a length L and a pressure P. Since 0.1.
-  !   mx, my   in      elements of the grid in x and y, >= 1
-  !   dx, dy   in      their sizes, > 0 [L]
-  !   cx, cy   in      reach of the table, cx >= mx, cy >= my
-  !   cf       in      influence coefficients, any table [L/P]; only the offsets of the grid are read, never row -cy nor
-  !                    column -cx, which may hold anything
-  !   hs       in      undeformed distance [L]; an element with hs >= 1d20 is excluded
-  !   norm     in      0: pen is given; 1: fn is given
-  !   pen      in/out  approach [L]; norm 1: returned, the mean of hs + u over the contact area
-  !   fn       in/out  normal force, the sum of ps dx dy [P L^2], >= 0; norm 0: returned
-  !   igs      in/out  0 exterior, > 0 contact (less than 0 counts as 0). in: the initial estimate; if it is empty,
-  !                    ps is not read. out: codes of elements that stay in contact are kept, new ones get 1
-  !   ps       in/out  pressure [P]. in: initial estimate, read where igs > 0. out: exactly 0 outside the contact area
-  !   eps      in      stop once the rms of the last update of ps is <= eps times the rms of ps, both over the contact
-  !                    area, and the contact area stays
-  !   maxit    in      iterations (cycles) at most
-  !   itcg     out     iterations
-  !   err      out     rms of the last update of ps [P]. No contact: ps = 0, itcg = 0, err = 0
-  !   ierror   out     the status. < 0: refused, all other arguments are as they were;
-  !                    contact_normal_last_error_message() calls norm `load`, pen `approach`, fn `force`, eps
-  !                    `tolerance`, maxit `max_cycles`, cf `influence.coefficients`, hs `undeformed_distance`
-  subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
-    integer(c_int32_t), intent(in) :: mx, my, cx, cy, norm, maxit
-    real(c_double), intent(in) :: dx, dy, eps
-    real(c_double), intent(in), target :: cf(-cx:cx-1, -cy:cy-1)
-    real(c_double), intent(in) :: hs(mx, my)
-    real(c_double), intent(inout) :: pen, fn, ps(mx, my), err
-    integer(c_int32_t), intent(inout) :: igs(mx, my), itcg
-    integer(c_int32_t), intent(out) :: ierror
-    type(contact_normal_scene) :: scene
-    type(contact_normal_influence), target :: influence
-    type(contact_normal_options) :: options
-    type(contact_normal_fields) :: fields
-    type(contact_normal_report) :: report
-    real(c_double), allocatable, target :: h(:, :), p(:, :)
-    integer(c_int32_t), allocatable, target :: contact(:, :)
-    logical :: has_arrays
-    integer :: ix, iy, failed
-
-    call contact_normal_scene_init(scene)
-    call contact_normal_influence_init(influence)
-    call contact_normal_options_init(options)
-    call contact_normal_fields_init(fields)
-    call contact_normal_report_init(report)
-
-    ! Sizes that make no sense are for the library to refuse; no array is touched before it has seen them.
-    has_arrays = mx > 0 .and. my > 0 .and. cx >= mx .and. cy >= my
-    if (has_arrays) has_arrays = int(mx, c_int64_t)*my <= huge(mx)
-    if (has_arrays) then
-      allocate (h(mx, my), p(mx, my), contact(mx, my), stat=failed)
-      if (failed /= 0) then
-        ierror = CONTACT_NORMAL_OUT_OF_MEMORY
-        return
-      end if
-      do iy = 1, my
-        do ix = 1, mx
-          h(ix, iy) = without_surface(hs(ix, iy))
-          contact(ix, iy) = merge(1_c_int32_t, 0_c_int32_t, igs(ix, iy) > 0)
-          p(ix, iy) = 0
-          if (igs(ix, iy) > 0) p(ix, iy) = ps(ix, iy)
-        end do
-      end do
-      if (any(contact /= 0)) options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN
-      influence%coefficients = c_loc(cf)
-    else
-      allocate (h(1, 1), p(1, 1), contact(1, 1))     ! something to point to; the library refuses before it looks
-      influence%coefficients = c_loc(h)
-      h = 0
-    end if
-    call contact_normal_set_undeformed_distance(scene, h)
-    call contact_normal_set_fields(fields, pressure=p, contact=contact)
-
-    scene%mx = mx
-    scene%my = my
-    scene%dx = dx
-    scene%dy = dy
-    scene%load = norm
-    ! Only the given one is read: the other may be uninitialised.
-    if (norm == 0) scene%approach = pen
-    if (norm == 1) scene%force = fn
-    influence%cx = cx
-    influence%cy = cy
-    scene%influence = c_loc(influence)
-    options%criterion = CONTACT_NORMAL_CRITERION_UPDATE
-    options%tolerance = eps
-    options%max_cycles = maxit
-
-    ierror = contact_normal_solve(scene, options, fields, report)
-    if (ierror < 0) return
-
-    ps = p
-    igs = merge(max(1_c_int32_t, igs), 0_c_int32_t, contact /= 0)
-    if (norm == 0) fn = report%force
-    if (norm == 1) pen = report%approach
-    itcg = int(min(report%cycles, int(huge(itcg), c_int64_t)), c_int32_t)
-    err = report%update
-  end subroutine
-
-  ! hs, or +infinity where hs >= 1d20. By the bits, whose order is that of positive numbers: a comparison of a NaN would
-  ! trap with -ffpe-trap=invalid, and pass for anything with -ffast-math; so it reaches the library, which refuses it.
-  elemental function without_surface(hs) result(h)
-    real(c_double), intent(in) :: hs
-    real(c_double) :: h
-    integer(c_int64_t), parameter :: INFINITE = int(z'7FF0000000000000', c_int64_t)
-    integer(c_int64_t), parameter :: NONE = transfer(1e20_c_double, INFINITE)
-    integer(c_int64_t) :: bits
-    bits = transfer(hs, bits)
-    if (bits >= NONE .and. bits <= INFINITE) bits = INFINITE
-    h = transfer(bits, h)
-  end function
+  include 'contact_normal_norm_solve.inc'
 
 end module contact_normal
 
