@@ -354,11 +354,11 @@ for name, kind in vars(contact_normal).items():
 fn constants_and_prototypes_are_those_of_the_header() {
     let header = std::fs::read_to_string(root().join("include/contact_normal.h")).expect("the header");
     let script = "
-import contact_normal
+import contact_normal, contact_normal_abi
 for name, value in vars(contact_normal).items():
     if name.isupper() and isinstance(value, int) and not name.startswith('_'):
         print('#define CONTACT_NORMAL_' + name, value)
-for name in contact_normal._PROTOTYPES:
+for name in contact_normal_abi._PROTOTYPES:
     print('contact_normal_' + name + '(')
 ";
     let mut theirs: Vec<String> =
