@@ -1,22 +1,19 @@
 //! Effect `layer`: Winkler's foundation when it is soft, nothing when it is rigid, one compliance per element against the uniform one,
 //! and a count of products that does not grow.
 
+mod solved;
+
 use contact_normal::active_set::State;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Period, Scene};
-use contact_normal::solver::{solve, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, Method, Options, Solver};
+use solved::run;
 
 fn ellipse(grid: &Grid) -> Vec<f64> {
     let (mx, my) = (grid.mx, grid.my);
     let at = |k: usize, m: usize| (2 * k + 1) as f64 / m as f64 - 1.0;
     (0..grid.len()).map(|i| 0.3 * at(i % mx, mx).powi(2) + 0.5 * at(i / mx, my).powi(2)).collect()
-}
-
-fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
-    let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?}", options.method);
-    (solver, report)
 }
 
 fn tight(method: Method) -> Options {

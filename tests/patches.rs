@@ -1,9 +1,12 @@
 //! Effect `patches`: independent ones are scenes of their own, factors of 1 are none, and the equations hold with the direct sum.
 
+mod solved;
+
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Patches, PressureLimit, Scene};
-use contact_normal::solver::{solve, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, Method, Options, Solver};
+use solved::run;
 
 /// Two or three bumps side by side, and whose element is whose: thirds of the grid in x.
 fn bumps(grid: &Grid) -> (Vec<f64>, Vec<i32>) {
@@ -20,12 +23,6 @@ fn bumps(grid: &Grid) -> (Vec<f64>, Vec<i32>) {
 
 const FACTORS: [f64; 9] = [1.0, 0.5, 0.1, 0.5, 1.0, 0.0, 0.1, 0.0, 1.0];
 const INDEPENDENT: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-
-fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
-    let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?}", options.method);
-    (solver, report)
-}
 
 fn tight(method: Method) -> Options {
     Options { method, tolerance: 1e-10, ..Options::default() }

@@ -1,10 +1,13 @@
 //! Effect `pressure_limit`: the conditions of both sides with a direct sum, nothing where the limit is not reached, forces that
 //! cannot be carried, and an independent method.
 
+mod solved;
+
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Report, Solver, Stop};
+use solved::run;
 
 fn ball(grid: &Grid) -> Vec<f64> {
     let (mx, my) = (grid.mx, grid.my);
@@ -22,12 +25,6 @@ fn rough(grid: &Grid) -> Vec<f64> {
             .sum::<f64>()
     };
     ball(grid).iter().enumerate().map(|(k, h)| 0.2 * h + waves(k)).collect()
-}
-
-fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
-    let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?} {:?}", options.method, scene.load);
-    (solver, report)
 }
 
 fn tight(method: Method) -> Options {

@@ -1,14 +1,15 @@
 //! Effect `row_tables`: the half-space's tables are no effect, products are those of the direct sum, tables that scale rows have the
 //! solution of plain ones, and the conditions hold with the direct sum, symmetric or not.
 
+mod solved;
+
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, RowTables};
 use contact_normal::operator::Toeplitz;
 use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
-use contact_normal::solver::{
-    solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Report, Solver, Stop,
-};
+use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
+use solved::run;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 
@@ -57,12 +58,6 @@ fn bump(grid: &Grid) -> Vec<f64> {
 
 fn tight(method: Method) -> Options {
     Options { method, tolerance: 1e-10, ..Options::default() }
-}
-
-fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
-    let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?}", options.method);
-    (solver, report)
 }
 
 /// The contact conditions from what is returned, with the direct sum; `give` is a layer's compliance.

@@ -16,12 +16,15 @@ use super::start::Start;
 use super::{Options, Solver};
 use crate::active_set::{ExchangeGuard, State};
 use crate::error::Result;
+use crate::memory::reserve;
 use crate::scene::{Load, PressureLimit};
 
 /// Changes of L at most.
 const ROUNDS: u32 = 200;
 /// A force that is left over of this part is round-off of the sum of limits.
 const NO_FORCE: f64 = 1e-12;
+/// What the memory is for.
+const MEMORY: &str = "the pressure limit";
 
 /// Memory, kept from one solve to the next; none before a scene has a limit that is reached.
 #[derive(Default)]
@@ -51,40 +54,45 @@ impl Solver {
         rule: &Rule,
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
-        let (mut stop, load) = (stop, self.states[0].load);
         if (0..self.grid.len()).all(|i| self.states[0].p[i] <= limit.at(i)) {
             return Ok(stop);
         }
         let mut work = std::mem::take(&mut self.limited);
-        work.at_limit.clear();
-        work.at_limit.resize(self.grid.len(), false);
-        work.h.clone_from(&self.states[0].h);
-        work.limits.resize(self.grid.len(), 0.0);
-        work.displacement.resize(self.grid.len(), 0.0);
+        let stop = self.settle_limit(&mut work, limit, stop, options, rule, monitor);
+        self.limited = work;
+        stop
+    }
+
+    /// Elements enter and leave L, each time with a solve for what is outside it, until none does.
+    fn settle_limit(
+        &mut self,
+        work: &mut Workspace,
+        limit: PressureLimit<'_>,
+        mut stop: Stop,
+        options: &Options,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let load = self.states[0].load;
+        work.begin(&self.states[0])?;
         let (mut guard, mut rounds) = (ExchangeGuard::default(), 0);
         loop {
             let changes = work.exchange(&mut self.states[0], limit, rule.tolerance, &mut guard);
-            if stop == Stop::Converged && changes > 0 && rounds < ROUNDS {
-                rounds += 1;
-                monitor.active_set_changes += changes;
-                monitor.active_set_steps += 1;
-            } else {
-                // Not settled: what is above the limit is cut off.
-                stop = if stop == Stop::Converged && changes > 0 { Stop::Stagnated } else { stop };
+            if stop != Stop::Converged || changes == 0 {
                 break;
             }
-            let solved = self.solve_outside(&mut work, limit, load, options, rule, monitor);
-            match solved {
-                Ok(ended) => stop = ended,
-                Err(error) => {
-                    self.limited = work;
-                    return Err(error);
-                }
+            if rounds == ROUNDS {
+                // Not settled: what is above the limit is cut off.
+                stop = Stop::Stagnated;
+                break;
             }
+            rounds += 1;
+            monitor.active_set_changes += changes;
+            monitor.active_set_steps += 1;
+            stop = self.solve_outside(work, limit, load, options, rule, monitor)?;
         }
         log::info!("the pressure limit: {rounds} changes of the elements at it");
-        self.join(&work, load, monitor);
-        self.limited = work;
+        self.join(work, load, monitor)?;
         Ok(stop)
     }
 
@@ -132,9 +140,11 @@ impl Solver {
     }
 
     /// The whole state again: p of both, u = A p anew, and L beside C.
-    fn join(&mut self, work: &Workspace, load: Load, monitor: &mut Monitor<'_>) {
+    fn join(&mut self, work: &Workspace, load: Load, monitor: &mut Monitor<'_>) -> Result<()> {
         let state = &mut self.states[0];
-        (state.load, state.at_limit) = (load, work.at_limit.clone());
+        state.load = load;
+        reserve(&mut state.at_limit, work.at_limit.len(), MEMORY)?;
+        state.at_limit.clone_from(&work.at_limit);
         state.h.copy_from_slice(&work.h);
         for i in 0..work.h.len() {
             if work.at_limit[i] {
@@ -148,10 +158,35 @@ impl Solver {
             let held = (0..work.h.len()).filter(|&i| work.at_limit[i]).map(|i| state.h[i] + state.u[i]);
             state.approach = held.fold(f64::NEG_INFINITY, f64::max);
         }
+        Ok(())
     }
 }
 
 impl Workspace {
+    /// No element is at the limit of the scene that `state` has.
+    fn begin(&mut self, state: &State) -> Result<()> {
+        let n = state.h.len();
+        reserve(&mut self.at_limit, n, MEMORY)?;
+        for values in [&mut self.h, &mut self.limits, &mut self.displacement] {
+            reserve(values, n, MEMORY)?;
+        }
+        self.at_limit.clear();
+        self.at_limit.resize(n, false);
+        self.h.clone_from(&state.h);
+        self.limits.resize(n, 0.0);
+        self.displacement.resize(n, 0.0);
+        Ok(())
+    }
+
+    /// Whether element i is on the wrong side of the limit: inside L a deformed distance above `allowed` is judged as penetrations
+    /// outside C are.
+    fn violates(&self, i: usize, state: &State, limit: PressureLimit<'_>, allowed: f64) -> bool {
+        match self.at_limit[i] {
+            true => self.h[i] - state.approach + state.u[i] + self.displacement[i] > allowed,
+            false => state.p[i] > limit.at(i),
+        }
+    }
+
     /// Who enters L and who leaves it; all of them, or one if that may cycle. Returns how many.
     fn exchange(
         &mut self,
@@ -160,34 +195,33 @@ impl Workspace {
         tolerance: f64,
         guard: &mut ExchangeGuard,
     ) -> u64 {
-        // Inside L a deformed distance above 0 is judged as penetrations outside C are.
+        let n = self.h.len();
         let (mut sum, mut count) = (0.0, 0.0);
-        for i in 0..self.h.len() {
+        for i in 0..n {
             if self.at_limit[i] || state.contact[i] {
                 sum += (self.h[i] - state.approach).powi(2);
                 count += 1.0;
             }
         }
         let allowed = tolerance * (sum / f64::max(count, 1.0)).sqrt();
-        let violates = |at_limit: bool, i: usize| match at_limit {
-            true => self.h[i] - state.approach + state.u[i] + self.displacement[i] > allowed,
-            false => state.p[i] > limit.at(i),
-        };
-        let violators = (0..self.h.len()).filter(|&i| violates(self.at_limit[i], i)).count();
+        let violators = (0..n).filter(|&i| self.violates(i, state, limit, allowed)).count();
         if violators == 0 {
             return 0;
         }
         let first = if guard.allows_all(violators) {
             0
         } else {
-            (0..self.h.len()).rfind(|&i| violates(self.at_limit[i], i)).unwrap_or(0)
+            (0..n).rfind(|&i| self.violates(i, state, limit, allowed)).unwrap_or(0)
         };
-        let changing: Vec<usize> = (first..self.h.len()).filter(|&i| violates(self.at_limit[i], i)).collect();
-        for &i in &changing {
-            self.at_limit[i] = !self.at_limit[i];
-            state.p[i] = if self.at_limit[i] { 0.0 } else { limit.at(i) };
-            self.limits[i] = if self.at_limit[i] { limit.at(i) } else { 0.0 };
+        let mut changes = 0;
+        for i in first..n {
+            if self.violates(i, state, limit, allowed) {
+                self.at_limit[i] = !self.at_limit[i];
+                state.p[i] = if self.at_limit[i] { 0.0 } else { limit.at(i) };
+                self.limits[i] = if self.at_limit[i] { limit.at(i) } else { 0.0 };
+                changes += 1;
+            }
         }
-        changing.len() as u64
+        changes
     }
 }

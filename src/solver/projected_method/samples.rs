@@ -8,6 +8,7 @@ use super::level::Displacement;
 use crate::active_set::State;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::memory::reserve;
 use crate::projected_cg::Stopping;
 use crate::scene::Load;
 use crate::solver::estimates::Sample;
@@ -62,6 +63,7 @@ impl CoarseGrids {
         let finest = self.finest;
         let Coarse { level, state, means } = &mut self.grids[l];
         sample_distance(&fine.grid, &state.grid, &fine.h, &mut state.h);
+        reserve(means, state.p.len(), "means of the pressures")?;
         take_means(&fine.grid, &state.grid, &fine.p, means);
         for (i, &mean) in means.iter().enumerate() {
             state.p[i] = if state.h[i].is_finite() { mean } else { 0.0 };
