@@ -58,21 +58,20 @@
 #![warn(missing_docs)]
 #![deny(unsafe_code)]
 
-pub mod active_set;
 pub mod analytic;
+pub mod contact;
 pub mod error;
 #[allow(unsafe_code)]
 pub mod ffi;
 pub mod grid;
 pub mod influence;
 mod memory;
-pub mod multigrid;
-pub mod norm;
+pub mod methods;
 pub mod operator;
 #[cfg(feature = "test-panics")]
 #[doc(hidden)]
 pub mod panics;
-pub mod projected_cg;
+pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod threads;

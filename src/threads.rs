@@ -100,7 +100,7 @@ impl Threads {
         }
     }
 
-    /// Runs `work(k, scratch)` on each of the pieces' scratch.
+    /// Segments `work(k, scratch)` on each of the pieces' scratch.
     pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
         match self.workers() {
             None => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
@@ -110,7 +110,7 @@ impl Threads {
         }
     }
 
-    /// Runs `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
+    /// Segments `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
     pub fn for_each_row<A: Send, S: Send>(
         &self,
         data: &mut [A],
@@ -135,7 +135,7 @@ impl Threads {
         }
     }
 
-    /// Runs `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
+    /// Segments `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
     pub fn for_each_row_pair<A: Send, B: Send>(
         &self,
         (a, length_a): (&mut [A], usize),

@@ -3,7 +3,7 @@
 
 use std::ptr::{null, null_mut};
 
-use contact_normal::active_set::State;
+use contact_normal::contact::State;
 use contact_normal::error::Error;
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;

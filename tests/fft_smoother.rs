@@ -8,8 +8,8 @@ mod rough;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};
-use contact_normal::multigrid::smoother::{Smoother, SmootherKind};
-use contact_normal::multigrid::{CycleShape, Multigrid};
+use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
+use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::good_length;
 use contact_normal::operator::{dense, Toeplitz};
 use contact_normal::scene::{Bodies, Load, Scene};

@@ -29,7 +29,7 @@ fn without_times(output: &str) -> String {
     output.lines().filter(|line| !line.starts_with("time")).map(|line| format!("{line}\n")).collect()
 }
 
-/// Runs an example; it must print what stands beside it. Recomputes the certificate of the arrays that it wrote.
+/// Segments an example; it must print what stands beside it. Recomputes the certificate of the arrays that it wrote.
 fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64) {
     let folder = scratch(&format!("fortran_{name}{}", flags.concat().replace(['=', ','], "_")));
     let program = compile(&format!("fortran_examples/{name}.f90"), flags, &folder);

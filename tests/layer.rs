@@ -3,7 +3,7 @@
 
 mod solved;
 
-use contact_normal::active_set::State;
+use contact_normal::contact::State;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Period, Scene};

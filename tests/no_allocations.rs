@@ -8,7 +8,7 @@ use std::ptr::null_mut;
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
-use contact_normal::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::SmootherKind;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Solver, Stop};
 

@@ -5,7 +5,7 @@
 mod case;
 
 use case::{linear_system, whole_problem};
-use contact_normal::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
+use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{Method, Stop};
 
 /// Grid, omega, the paper's count and factor (4 digits).

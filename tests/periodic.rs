@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Periodic};
-use contact_normal::multigrid::coarsen;
+use contact_normal::methods::multigrid::coarsen;
 use contact_normal::operator::{dense, Toeplitz};
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver, Stop};

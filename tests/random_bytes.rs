@@ -4,7 +4,7 @@
 #[path = "random_bytes/target.rs"]
 mod target;
 
-/// Runs a target on so many strings of bytes.
+/// Segments a target on so many strings of bytes.
 fn run(runs: u64, target: fn(&[u8])) {
     let mut state = 1u64;
     let mut next = move || {

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};
-use contact_normal::multigrid::smoother::{Smoother, SmootherKind};
+use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::dense;
 use contact_normal::threads::Threads;
 

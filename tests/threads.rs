@@ -5,7 +5,7 @@
 mod case;
 
 use case::{ellipse, rough, wheel_rail, Case};
-use contact_normal::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::SmootherKind;
 use contact_normal::scene::{Load, Scene};
 use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Precision, Solver, Stop};
 

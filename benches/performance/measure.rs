@@ -40,7 +40,7 @@ pub fn seconds(work: impl FnOnce()) -> f64 {
     now() - began
 }
 
-/// Runs all of `things` in turns; the times of each.
+/// Segments all of `things` in turns; the times of each.
 pub fn in_turns(things: &mut [&mut dyn FnMut()]) -> Vec<Vec<f64>> {
     let mut times = vec![Vec::new(); things.len()];
     things.iter_mut().for_each(|thing| thing());

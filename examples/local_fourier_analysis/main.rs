@@ -12,9 +12,9 @@ mod picture;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
-use contact_normal::multigrid::analysis::Analysis;
-use contact_normal::multigrid::CycleShape;
-use contact_normal::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
+use contact_normal::methods::multigrid::analysis::Analysis;
+use contact_normal::methods::multigrid::CycleShape;
+use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{Method, Stop};
 
 /// Sizes of the paper's problem, m x m elements.

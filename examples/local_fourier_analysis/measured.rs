@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Influence;
-use contact_normal::multigrid::{CycleShape, Multigrid};
+use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::threads::Threads;
 
 /// Uniform in -1/2..1/2.

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{BufWriter, Result, Write};
 use std::path::Path;
 
-use contact_normal::multigrid::analysis::Analysis;
-use contact_normal::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
+use contact_normal::methods::multigrid::analysis::Analysis;
+use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
 
 fn create(folder: &Path, name: &str, header: &str) -> Result<BufWriter<File>> {
     let mut file = BufWriter::new(File::create(folder.join(name))?);

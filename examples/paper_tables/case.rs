@@ -1,7 +1,7 @@
 //! The test problem of the paper (section 5.1) and the runs behind its tables.
 
 use contact_normal::grid::Grid;
-use contact_normal::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::SmootherKind;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 

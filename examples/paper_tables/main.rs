@@ -8,8 +8,8 @@ mod figure;
 use std::path::PathBuf;
 
 use case::{linear_system, whole_problem, APPROACH};
-use contact_normal::multigrid::transfer;
-use contact_normal::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
+use contact_normal::methods::multigrid::transfer;
+use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{solve, Method, Options, Report, Stop};
 
 /// V(n1, n2) of the columns of tables 2 and 3.

@@ -12,7 +12,7 @@ mod rough;
 
 use std::time::Instant;
 
-use contact_normal::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::SmootherKind;
 use contact_normal::scene::Scene;
 use contact_normal::solver::{ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
-use contact_normal::multigrid::smoother::{Smoother, SmootherKind};
+use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::Toeplitz;
 use contact_normal::solver::{Method, Stop};
 use contact_normal::threads::Threads;

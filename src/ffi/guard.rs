@@ -11,7 +11,7 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
+/// Segments `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
 pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> contact_normal_status {
     silence_our_panics();
     let _environment = DefaultEnvironment::enter();

@@ -6,7 +6,7 @@ use super::report::contact_normal_progress;
 use super::scene::count;
 use super::status::Refusal;
 use super::structs::{self, Versioned};
-use crate::multigrid::SmootherKind;
+use crate::methods::multigrid::SmootherKind;
 use crate::solver::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 
 /// `method`: the fastest way known that is safe.

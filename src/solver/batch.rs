@@ -4,11 +4,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::{Guess, InitialGuess, Options, Report, Solver, Stop};
-use crate::active_set::State;
+use crate::contact::State;
 use crate::error::{invalid, Result};
+use crate::methods::projected_cg::Projected;
 use crate::operator::zeros;
 use crate::scene::Scene;
-use crate::solver::projected_method::Projected;
 use crate::threads::Threads;
 
 /// One problem of a batch.

@@ -17,7 +17,7 @@
 //! (measured: docs/accuracy.md) that of the corrected area.
 
 use super::report::{DiscretisationError, Halving, LedgerRow, Limit};
-use crate::active_set::{Outline, State};
+use crate::contact::{Outline, State};
 
 /// What a coarser grid finds for the same surface, sampled at its elements.
 #[derive(Clone, Copy, Debug)]

@@ -10,13 +10,13 @@
 //! L is empty at first: where the limit is never reached nothing else is done, and the solution has the bits of one without it. Each
 //! further solve starts from the pressures of the one before.
 
-use super::monitor::{Monitor, Rule};
 use super::report::Stop;
 use super::start::Start;
 use super::{Options, Solver};
-use crate::active_set::{ExchangeGuard, State};
+use crate::contact::{ExchangeGuard, State};
 use crate::error::Result;
 use crate::memory::reserve;
+use crate::progress::{Monitor, Rule};
 use crate::scene::{Load, PressureLimit};
 
 /// Changes of L at most.

@@ -5,37 +5,33 @@
 
 mod accuracy;
 mod batch;
-mod descent_method;
-mod estimates;
-mod full_multigrid;
+pub(crate) mod estimates;
 mod limited;
-mod monitor;
-mod multigrid_method;
-mod norm_method;
 mod options;
-mod projected_method;
 mod report;
-mod start;
+pub(crate) mod start;
 
 use std::time::Instant;
 
+pub use crate::progress::{Progress, ProgressCallback};
 pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
-pub use monitor::{Progress, ProgressCallback};
 pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
-use crate::active_set::State;
+use crate::contact::State;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::multigrid::{CycleShape, Multigrid};
+use crate::methods::descent as descent_method;
+use crate::methods::multigrid::{nested as full_multigrid, step as multigrid_method};
+use crate::methods::multigrid::{CycleShape, Multigrid};
+use crate::methods::norm::step::{self as norm_method, Displace};
+use crate::methods::projected_cg::Projected;
 use crate::operator::zeros;
+use crate::progress::{Monitor, Rule};
 use crate::scene::{Bodies, Layer, Load, Period, Scene};
 use crate::threads::Threads;
-use monitor::{Monitor, Rule};
-use norm_method::Displace;
-use projected_method::Projected;
 use start::Start;
 
 /// Pressures and contact area to start from.

@@ -1,7 +1,7 @@
 //! How a scene is solved. The defaults suit everybody.
 
 use crate::error::{invalid, require, Result};
-use crate::multigrid::{CycleShape, SmootherKind};
+use crate::methods::multigrid::{CycleShape, SmootherKind};
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! What a solve found, what it cost, and what it knew when.
 
-use crate::active_set::{Certificate, State, Survey};
+use crate::contact::{Certificate, State, Survey};
 use crate::scene::Load;
 
 /// Why a solve ended.

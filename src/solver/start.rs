@@ -1,10 +1,10 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
-use super::monitor::Monitor;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Solver};
-use crate::active_set::{norm_of_distance, residual_norm};
+use crate::contact::{norm_of_distance, residual_norm};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
+use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 
 /// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
@@ -12,7 +12,7 @@ const WORSE_THAN_NONE: f64 = 1e3;
 
 /// What the finest grid's state holds at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Start {
+pub enum Start {
     /// No pressures.
     Nothing,
     /// The caller's.

@@ -1,6 +1,6 @@
 //! The certificate, recomputed from the returned arrays with a product of our own.
 
-use contact_normal::active_set::State;
+use contact_normal::contact::State;
 use contact_normal::error::Result;
 use contact_normal::influence::Influence;
 use contact_normal::operator::{dense, Toeplitz};

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::HalfSpace;
-use contact_normal::multigrid::{transfer, CycleShape, SmootherKind};
+use contact_normal::methods::multigrid::{transfer, CycleShape, SmootherKind};
 use faer::linalg::solvers::Solve;
 use faer::Mat;
 

@@ -1,10 +1,17 @@
 //! Projected, preconditioned conjugate gradients: the fastest way known to solve the whole problem on one grid, under nested
 //! iteration over the grids.
 
+mod coarse_grids;
+mod coarser_solutions;
 mod iteration;
+mod level;
 mod preconditioner;
-mod runs;
+mod predictor;
+mod scaling;
+mod segments;
+mod step;
 mod window;
 
 pub use iteration::{Cycle, End, Iteration, Stopping};
+pub use step::Projected;
 pub use window::Window;

@@ -13,13 +13,13 @@ use faer::linalg::cholesky::llt::{factor, solve};
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par};
 
-use super::super::monitor::Monitor;
-use crate::active_set::State;
+use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
+use crate::methods::projected_cg::End;
 use crate::operator::{dense, zeros};
-use crate::projected_cg::End;
+use crate::progress::Monitor;
 use crate::scene::Load;
 
 /// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.

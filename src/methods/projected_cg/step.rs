@@ -1,38 +1,30 @@
 //! The production method: nested iteration (section 4.3 of the paper) with projected conjugate gradients on every grid.
 //!
-//! On each coarser grid a few iterations ([`coarse`]); on the finest one as many as the tolerance asks for, on the window around the
-//! contact area and in single precision directions ([`level`]); then u = A p on the full grid, in double precision: the
+//! On each coarser grid a few iterations (`coarse_grids`); on the finest one as many as the tolerance asks for, on the window around the
+//! contact area and in single precision directions (`level`); then u = A p on the full grid, in double precision: the
 //! certificate. If it does not hold, the iteration goes on from there.
 //!
-//! Few elements in contact are solved for directly instead ([`direct`]); a step in time starts from what the last ones found
-//! ([`history`]).
-
-mod coarse;
-mod direct;
-mod history;
-mod level;
-mod samples;
-mod units;
+//! Few elements in contact are solved for directly instead (`direct`); a step in time starts from what the last ones found
+//! (`predictor`).
 
 use std::sync::Arc;
 
-use super::estimates::{self, Sample};
-use super::monitor::{Monitor, Rule};
-use super::options::Precision;
-use super::report::Stop;
-use super::start::Start;
-use crate::active_set::{admit, State, Survey};
+use super::coarse_grids::CoarseGrids;
+use super::coarser_solutions::{PREDICTS, SHOWS_ORDER};
+use super::level::Level;
+use super::predictor::Predictor;
+use super::{End, Stopping};
+use crate::contact::{admit, Freshness, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
+use crate::methods::direct::Direct;
 use crate::operator::{reserve, Toeplitz, Workspace};
-use crate::projected_cg::{End, Stopping};
+use crate::progress::{Monitor, Rule};
+use crate::solver::estimates::{self, Sample};
+use crate::solver::start::Start;
+use crate::solver::{Precision, Stop};
 use crate::threads::Threads;
-use coarse::CoarseGrids;
-use direct::Direct;
-use history::History;
-use level::{Displacement, Level};
-use samples::{PREDICTS, SHOWS_ORDER};
 
 /// The iteration aims at this part of the tolerance: what is owed and the rounding of its single precision products shall not fail
 /// the certificate, and on a full contact of flat bodies, where A is worst conditioned, p be within ten tolerances (tests/random_problems.rs). Work over 40 cases at 0.5, 0.75, 0.9: 1, 0.98, 0.96.
@@ -58,7 +50,7 @@ pub struct Projected {
     coarse: Option<CoarseGrids>,
     /// None on large grids.
     direct: Option<Direct>,
-    history: History,
+    history: Predictor,
     /// With criterion UPDATE: p before the last round.
     before: Vec<f64>,
     precision: Precision,
@@ -76,7 +68,7 @@ impl Projected {
             operator,
             coarse: None,
             direct: Direct::new(influence, grid)?,
-            history: History::default(),
+            history: Predictor::default(),
             before: Vec::new(),
             precision,
             threads: threads.clone(),
@@ -123,7 +115,7 @@ impl Projected {
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
         let mut rule = *rule;
-        let mut displacement = Displacement::Known;
+        let mut displacement = Freshness::Exact;
         let mut good_start = from != Start::Nothing;
         if good_start && !(rule.fixed && rule.by_update) {
             let certified = self.judge(state, &rule, monitor);
@@ -137,11 +129,11 @@ impl Projected {
         }
         if !good_start {
             displacement = self.start(state, &rule, monitor)?;
-            if displacement == Displacement::Near && self.noise() > NOISE * rule.tolerance {
+            if displacement == Freshness::Near && self.noise() > NOISE * rule.tolerance {
                 self.finest.correct(state)?;
                 self.displace(&state.p, &mut state.u);
                 monitor.count_products(1, 1.0);
-                displacement = Displacement::Known;
+                displacement = Freshness::Exact;
             }
             if error_ratio > 0.0 {
                 rule.tolerance = rule.tolerance.max(error_ratio * self.predicted_error(state, monitor)?);
@@ -177,8 +169,8 @@ impl Projected {
             // A small last update proves nothing while u was of single precision, or pressures were owed: then all that
             // is done from a fresh u must come to no more than a small update.
             let settled = !rule.by_update
-                || displacement == Displacement::Known && rule.holds(state, rms_change(state, &self.before));
-            displacement = Displacement::Known;
+                || displacement == Freshness::Exact && rule.holds(state, rms_change(state, &self.before));
+            displacement = Freshness::Exact;
             if certified.holds && settled {
                 return Ok(Stop::Converged);
             }
@@ -199,7 +191,7 @@ impl Projected {
     }
 
     /// From nothing: what the coarser grids find. Returns what u is then.
-    fn start(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Displacement> {
+    fn start(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Freshness> {
         let self_influence = self.finest.self_influence();
         self.coarse_grids()?.start(state, self_influence, rule, monitor)
     }

@@ -5,7 +5,9 @@ pub mod analysis;
 mod coarsest;
 mod cycle;
 mod hierarchy;
+pub mod nested;
 pub mod smoother;
+pub mod step;
 pub mod transfer;
 
 pub use cycle::{CycleShape, Multigrid};

@@ -1,13 +1,13 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first.
 
-use super::descent_method;
-use super::monitor::{Monitor, Rule};
-use super::multigrid_method;
-use super::norm_method::{self, Displace};
-use super::report::Stop;
-use crate::active_set::State;
+use super::step as multigrid_method;
+use crate::contact::State;
 use crate::error::Result;
-use crate::multigrid::{transfer, Multigrid};
+use crate::methods::descent as descent_method;
+use crate::methods::multigrid::{transfer, Multigrid};
+use crate::methods::norm::step::{self as norm_method, Displace};
+use crate::progress::{Monitor, Rule};
+use crate::solver::Stop;
 
 /// Cycles at most on the coarser grids: they only prepare the next finer one.
 const COARSE_CYCLES: u64 = 30;

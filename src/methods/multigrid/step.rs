@@ -1,12 +1,12 @@
 //! The multigrid-based algorithm (section 4.1 of the paper): one V-cycle per active-set step.
 
-use super::monitor::{Monitor, Rule};
-use super::report::Stop;
-use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, State};
+use super::Multigrid;
+use crate::contact::{admit, certify, norm_of_distance, residual_norm, truncate, State};
 use crate::error::Result;
-use crate::multigrid::Multigrid;
 use crate::operator::reserve;
+use crate::progress::{Monitor, Rule};
 use crate::scene::Load;
+use crate::solver::Stop;
 
 /// Cycles without a new smallest residual after which the method is given up.
 const PATIENCE: u32 = 50;

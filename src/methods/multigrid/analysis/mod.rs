@@ -53,8 +53,8 @@
 //! has tables and measurements.
 //!
 //! ```
-//! use contact_normal::multigrid::analysis::Analysis;
-//! use contact_normal::multigrid::{CycleShape, SmootherKind};
+//! use contact_normal::methods::multigrid::analysis::Analysis;
+//! use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 //!
 //! // Square elements, 32 x 32 across the contact area, two grids, V(1,1) with Gauss-Seidel and omega = 0.8.
 //! let analysis = Analysis::new(1.0, 1.0, [32, 32], 2)?;

@@ -7,6 +7,7 @@
 
 mod conjugate_gradients;
 mod minimal_residual;
+pub mod step;
 
 pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
 pub use minimal_residual::minimal_residual;

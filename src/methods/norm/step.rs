@@ -1,12 +1,12 @@
 //! NORM (section 3 of the paper): an active set around an inner solve by conjugate gradients.
 
-use super::monitor::{Monitor, Rule};
-use super::report::Stop;
-use crate::active_set::{admit, certify, norm_of_distance, residual_norm, truncate, ExchangeGuard, State};
+use super::{conjugate_gradients, minimal_residual, Inner, InnerStop};
+use crate::contact::{admit, certify, norm_of_distance, residual_norm, truncate, ExchangeGuard, State};
 use crate::error::Result;
-use crate::norm::{self, conjugate_gradients, minimal_residual, Inner, InnerStop};
 use crate::operator::reserve;
+use crate::progress::{Monitor, Rule};
 use crate::scene::Load;
+use crate::solver::Stop;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
@@ -16,7 +16,7 @@ const FLOOR: f64 = 1e-12;
 /// Memory for solves, kept from one to the next.
 #[derive(Default)]
 pub struct Workspace {
-    inner: norm::Workspace,
+    inner: super::Workspace,
     p: Vec<f64>,
     u: Vec<f64>,
     contact: Vec<bool>,
@@ -174,7 +174,7 @@ fn inner_solve(
     state: &mut State,
     by: &mut Displace<'_>,
     rule: &Rule,
-    workspace: &mut norm::Workspace,
+    workspace: &mut super::Workspace,
     monitor: &mut Monitor<'_>,
 ) -> Result<Inner> {
     if state.contact_count() == 0 {

@@ -3,7 +3,7 @@
 
 use super::conjugate_gradients::ROUND_OFF;
 use super::{Inner, InnerStop, Workspace};
-use crate::active_set::{norm_of_distance, State};
+use crate::contact::{norm_of_distance, State};
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::scene::Load;

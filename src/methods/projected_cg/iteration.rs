@@ -29,8 +29,8 @@
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::preconditioner::Preconditioner;
-use super::runs::Runs;
-use crate::active_set::State;
+use super::segments::Segments;
+use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -66,7 +66,7 @@ pub struct Iteration<T: Real> {
     t: Vec<T>,
     q: Vec<T>,
     z: Vec<T>,
-    runs: Runs,
+    runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
     /// Whether an element of a row enters.
@@ -146,7 +146,7 @@ impl<T: Real> Iteration<T> {
             t: directions()?,
             q: directions()?,
             z: directions()?,
-            runs: Runs::new(grid, threads)?,
+            runs: Segments::new(grid, threads)?,
             debts,
             entering: vec![false; grid.my],
             threads: threads.clone(),

@@ -1,5 +1,6 @@
 //! The active set: which elements are in contact, steps 4.1 and 4.2 of the paper, and how well the conditions hold.
 
+pub mod admissible;
 mod certificate;
 mod exchange;
 mod guard;
@@ -11,4 +12,4 @@ pub use certificate::{certify, norm_of_distance, residual_norm, Certificate, Sur
 pub use exchange::{admit, starting_contact, truncate};
 pub use guard::ExchangeGuard;
 pub use outline::Outline;
-pub use state::State;
+pub use state::{Freshness, State};

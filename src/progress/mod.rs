@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use super::estimates::{self, Sample};
-use super::report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
-use crate::active_set::{norm_of_distance, residual_norm, Outline, State};
+use crate::contact::{norm_of_distance, residual_norm, Outline, State};
 use crate::grid::Grid;
+use crate::solver::estimates::{self, Sample};
+use crate::solver::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
 /// What a progress callback is told after each cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]

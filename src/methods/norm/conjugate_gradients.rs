@@ -6,9 +6,9 @@
 //!                       directions keep mean zero over C, and the approach is the mean of h + A p over C
 //! ```
 
-use crate::active_set::{norm_of_distance, State};
+use crate::contact::{norm_of_distance, State};
 use crate::error::{Error, Result};
-use crate::norm::Workspace;
+use crate::methods::norm::Workspace;
 use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is

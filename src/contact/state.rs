@@ -10,6 +10,17 @@ use super::exchange::starting_contact;
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
 
+/// What the u of a state is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freshness {
+    /// A p.
+    Exact,
+    /// Near A p.
+    Near,
+    /// Anything.
+    Stale,
+}
+
 /// Pressures, displacements and contact area on one grid, with the undeformed distance that they belong to.
 pub struct State {
     /// The grid.

@@ -5,21 +5,19 @@
 //! `(p, A p)/2 + (p, h - approach)` (Fischer 1998 projects on earlier solutions so); as all u are known, they cost no product.
 //! With a prescribed force s_1 follows from the force, and d carries none.
 
-use crate::active_set::State;
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::operator::zeros;
 use crate::scene::Load;
 
-use super::level::Displacement;
-
 /// The solution before the last; empty before there is one.
 #[derive(Default)]
-pub struct History {
+pub struct Predictor {
     p: Vec<f64>,
     u: Vec<f64>,
 }
 
-impl History {
+impl Predictor {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         (self.p.len() + self.u.len()) * size_of::<f64>()
@@ -27,14 +25,14 @@ impl History {
 
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
     /// iteration truncates it, and owes u the change.
-    pub fn predict(&mut self, state: &mut State) -> Result<Displacement> {
+    pub fn predict(&mut self, state: &mut State) -> Result<Freshness> {
         state.scale_to_approach();
         if self.p.is_empty() {
             let n = state.p.len();
             (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
             self.p.copy_from_slice(&state.p);
             self.u.copy_from_slice(&state.u);
-            return Ok(Displacement::Known);
+            return Ok(Freshness::Exact);
         }
 
         // d = (p_1 - p_0) - share p_1, conjugate to p_1, or without a force of its own
@@ -58,7 +56,7 @@ impl History {
         let step = work / energy;
         let step = if energy > 0.0 && step.is_finite() { step } else { 0.0 };
 
-        let mut displacement = Displacement::Known;
+        let mut displacement = Freshness::Exact;
         for i in 0..state.p.len() {
             let (p, u) = (state.p[i], state.u[i]);
             state.p[i] = p + step * ((1.0 - share) * p - self.p[i]);
@@ -67,7 +65,7 @@ impl History {
             (self.p[i], self.u[i]) = (p, u);
             if state.contact[i] && state.h[i].is_infinite() {
                 (state.p[i], state.contact[i]) = (0.0, false);
-                displacement = Displacement::Unknown;
+                displacement = Freshness::Stale;
             }
         }
         Ok(displacement)

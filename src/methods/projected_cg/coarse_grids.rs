@@ -3,16 +3,16 @@
 
 use std::f64::consts::PI;
 
-use super::super::monitor::{Monitor, Rule};
-use super::super::options::Precision;
-use super::level::{Displacement, Level};
-use crate::active_set::State;
+use super::level::Level;
+use super::{End, Stopping};
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::multigrid::{coarsen, transfer};
+use crate::methods::multigrid::{coarsen, transfer};
 use crate::operator::zeros;
-use crate::projected_cg::{End, Stopping};
+use crate::progress::{Monitor, Rule};
+use crate::solver::Precision;
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -77,14 +77,14 @@ impl CoarseGrids {
         self_influence: f64,
         rule: &Rule,
         monitor: &mut Monitor<'_>,
-    ) -> Result<Displacement> {
+    ) -> Result<Freshness> {
         let count = self.grids.len();
         if count == 0 {
             // A guess that was worth nothing is gone.
             fine.p.fill(0.0);
             fine.u.fill(0.0);
             fine.start(self_influence);
-            return Ok(Displacement::Unknown);
+            return Ok(Freshness::Stale);
         }
         let highest = fine.out_of_reach(self_influence);
         let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
@@ -97,13 +97,13 @@ impl CoarseGrids {
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
         coarsest.state.balance_force();
-        let mut displacement = Displacement::Unknown;
+        let mut displacement = Freshness::Stale;
         for l in (0..count).rev() {
             if !monitor.is_cancelled() {
                 monitor.enter_grid();
                 self.iterate(l, displacement, rule, monitor)?;
                 monitor.close_grid(&self.grids[l].state);
-                displacement = Displacement::Near;
+                displacement = Freshness::Near;
             }
             let (to, from) = self.pair(l, fine);
             prolong(&from.state, to, highest);
@@ -128,7 +128,7 @@ impl CoarseGrids {
     }
 
     /// Some iterations on grid `l`.
-    fn iterate(&mut self, l: usize, displacement: Displacement, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
+    fn iterate(&mut self, l: usize, displacement: Freshness, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
         let stop = Stopping { tolerance: rule.tolerance, by_update: false, fixed: false, iterations };
         let Coarse { level, state, .. } = &mut self.grids[l];

@@ -3,19 +3,18 @@
 //! The means of h that nested iteration and multigrid put on coarser grids would not do: a mean over an element differs from the value at
 //! its centre by `(d^2/24) laplace h`, as much as the discretisation changes.
 
-use super::coarse::{Coarse, CoarseGrids};
-use super::level::Displacement;
-use crate::active_set::State;
+use super::coarse_grids::{Coarse, CoarseGrids};
+use super::Stopping;
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
-use crate::projected_cg::Stopping;
+use crate::progress::Monitor;
 use crate::scene::Load;
 use crate::solver::estimates::Sample;
-use crate::solver::monitor::Monitor;
 
 /// The coarser grids to look at, by how often they are coarsened, coarsest first, and the elements in contact and the chord (see
-/// [`Outline::chord`](crate::active_set::Outline::chord)) that each needs: enough for its own errors to be regular.
+/// [`Outline::chord`](crate::contact::Outline::chord)) that each needs: enough for its own errors to be regular.
 const NEAR: [(usize, f64, f64); 4] = [(4, 200.0, 8.0), (3, 200.0, 0.0), (2, 50.0, 0.0), (1, 10.0, 0.0)];
 /// That of the grid that shows the order, by how often it is coarsened more.
 const FAR: [usize; 2] = [2, 1];
@@ -77,7 +76,7 @@ impl CoarseGrids {
         let tolerance = TOLERANCE / count as f64;
         let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
         let mut silent = Monitor::new(None, Vec::new(), false);
-        level.run(state, Displacement::Unknown, &stop, finest, &mut silent)?;
+        level.run(state, Freshness::Stale, &stop, finest, &mut silent)?;
         monitor.count_work(silent.work_units);
         state.balance_force();
         let (mut highest, mut squares, mut differences) = (0.0_f64, 0.0, 0.0);

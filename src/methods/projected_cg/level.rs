@@ -2,28 +2,17 @@
 
 use std::sync::Arc;
 
-use super::super::monitor::Monitor;
-use super::super::options::Precision;
-use super::units::Units;
-use crate::active_set::State;
+use super::scaling::Scaling;
+use super::{Cycle, End, Iteration, Stopping, Window};
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::fft::Real;
 use crate::operator::{zeros, Toeplitz};
-use crate::projected_cg::{Cycle, End, Iteration, Stopping, Window};
+use crate::progress::Monitor;
+use crate::solver::Precision;
 use crate::threads::Threads;
-
-/// What the u of a state is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Displacement {
-    /// A p.
-    Known,
-    /// Near A p.
-    Near,
-    /// Anything.
-    Unknown,
-}
 
 /// The iteration in the precision asked for.
 enum Inner {
@@ -96,7 +85,7 @@ struct Windowed {
     window: Window,
     inner: Inner,
     /// Of the last iteration.
-    units: Units,
+    units: Scaling,
     /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
     part: Option<State>,
 }
@@ -159,20 +148,20 @@ impl Level {
     pub fn run(
         &mut self,
         state: &mut State,
-        displacement: Displacement,
+        displacement: Freshness,
         stop: &Stopping,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
-        if displacement != Displacement::Known {
+        if displacement != Freshness::Exact {
             state.balance_force();
         }
         self.on_window(state, displacement, |inner, grid, units, state| {
             let work = grid.len() as f64 / finest as f64;
-            if displacement == Displacement::Near {
+            if displacement == Freshness::Near {
                 inner.correct(state);
             }
-            if displacement != Displacement::Known {
+            if displacement != Freshness::Exact {
                 inner.displace(state);
                 monitor.count_products(1, work);
             }
@@ -187,15 +176,15 @@ impl Level {
     /// Improves p where u is near A p, without a product; u is not known afterwards.
     pub fn correct(&mut self, state: &mut State) -> Result<()> {
         state.balance_force();
-        self.on_window(state, Displacement::Near, |inner, _, _, state| inner.correct(state))
+        self.on_window(state, Freshness::Near, |inner, _, _, state| inner.correct(state))
     }
 
     /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
     fn on_window<R>(
         &mut self,
         state: &mut State,
-        displacement: Displacement,
-        work: impl FnOnce(&mut Inner, &Grid, &Units, &mut State) -> R,
+        displacement: Freshness,
+        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State) -> R,
     ) -> Result<R> {
         let Windowed { window, inner, units, part } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
@@ -203,15 +192,15 @@ impl Level {
         window.extract(&state.grid, &state.h, &mut part.h);
         window.extract(&state.grid, &state.p, &mut part.p);
         window.extract(&state.grid, &state.contact, &mut part.contact);
-        if displacement != Displacement::Unknown {
+        if displacement != Freshness::Stale {
             window.extract(&state.grid, &state.u, &mut part.u);
         }
         (part.load, part.approach) = (state.load, state.approach);
-        if *units != Units::SAME {
+        if *units != Scaling::SAME {
             units.convert(part);
         }
         let result = work(inner, &grid, units, part);
-        if *units != Units::SAME {
+        if *units != Scaling::SAME {
             units.convert_back(part);
         }
         window.insert(&state.grid, &part.p, &mut state.p, 0.0);
@@ -236,10 +225,10 @@ impl Level {
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
         let units = match self.precision {
-            Precision::Double => Units::SAME,
-            Precision::Auto | Precision::Mixed => Units::for_state(state, self.influence.at(0, 0)),
+            Precision::Double => Scaling::SAME,
+            Precision::Auto | Precision::Mixed => Scaling::for_state(state, self.influence.at(0, 0)),
         };
-        let part = if window.is_full(&self.grid) && units == Units::SAME {
+        let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None
         } else {
             Some(|| State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach))

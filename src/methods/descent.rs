@@ -13,13 +13,13 @@
 //!
 //! The last of these always lowers the energy; the one before it moves many elements at once.
 
-use super::monitor::{Monitor, Rule};
-use super::norm_method::Displace;
-use super::report::Stop;
-use crate::active_set::{norm_of_distance, State, Survey};
+use super::norm::step::Displace;
+use crate::contact::{norm_of_distance, State, Survey};
 use crate::error::{Error, Result};
 use crate::operator::reserve;
+use crate::progress::{Monitor, Rule};
 use crate::scene::Load;
+use crate::solver::Stop;
 
 /// Cycles without a new least residual after which round-off is reached.
 const PATIENCE: u32 = 100;

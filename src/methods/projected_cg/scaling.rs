@@ -1,7 +1,7 @@
-//! Units for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
+//! Scaling for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
 //! powers of two, so that they change no digit.
 
-use crate::active_set::State;
+use crate::contact::State;
 use crate::scene::Load;
 
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
@@ -10,19 +10,19 @@ const AS_IT_IS: i32 = 48;
 
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Units {
+pub struct Scaling {
     /// Of influence coefficients.
     pub influence: f64,
     /// Of lengths.
     pub length: f64,
 }
 
-impl Units {
+impl Scaling {
     /// The scene's own.
-    pub const SAME: Units = Units { influence: 1.0, length: 1.0 };
+    pub const SAME: Scaling = Scaling { influence: 1.0, length: 1.0 };
 
-    /// Units that suit a state, where an element's influence on itself is `self_influence`.
-    pub fn for_state(state: &State, self_influence: f64) -> Units {
+    /// Scaling that suit a state, where an element's influence on itself is `self_influence`.
+    pub fn for_state(state: &State, self_influence: f64) -> Scaling {
         let alone = match state.load {
             Load::Approach(_) => 0.0,
             Load::Force(force) => force / state.grid.element_area() * self_influence,
@@ -32,7 +32,7 @@ impl Units {
         let length = touching.fold(alone, |largest: f64, (h, _)| largest.max((h - approach).abs()));
         let pressure = length / self_influence;
         let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);
-        Units { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
+        Scaling { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
     }
 
     /// Of pressures: u = A p holds in both units.

@@ -19,7 +19,7 @@ const MOST_SUMS: usize = 5;
 const LANES: usize = 4;
 
 /// The runs of all rows.
-pub struct Runs {
+pub struct Segments {
     mx: usize,
     /// Elements of a block.
     block: usize,
@@ -38,16 +38,16 @@ pub struct Runs {
     pieces: Vec<()>,
 }
 
-impl Runs {
+impl Segments {
     /// No contact. Memory for any contact area is reserved, and touched when it is needed.
-    pub fn new(grid: &Grid, threads: &Threads) -> Result<Runs> {
+    pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
         let most = grid.my * grid.mx.div_ceil(2);
         let rows = grid.my.div_ceil(BLOCKS);
         let blocks = grid.my.div_ceil(rows);
         let (mut runs, mut runs_before) = (Vec::new(), Vec::new());
         reserve(&mut runs, most, "the contact area")?;
         reserve(&mut runs_before, most, "the contact area")?;
-        Ok(Runs {
+        Ok(Segments {
             mx: grid.mx,
             block: rows * grid.mx,
             runs,
@@ -165,7 +165,7 @@ pub struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// Runs of elements in contact: among those of the grid, and among those of the block.
+    /// Segments of elements in contact: among those of the grid, and among those of the block.
     pub fn runs(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         self.runs.iter().map(|&(start, end)| {
             let run = start as usize..end as usize;

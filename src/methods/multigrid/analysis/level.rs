@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::symbol::{Symbol, Value};
-use crate::multigrid::SmootherKind;
+use crate::methods::multigrid::SmootherKind;
 use crate::operator::fft::Complex;
 
 /// The symbols at the frequencies `t = pi (2 j + 1)/n`, `j = 0..n`, in each direction.

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::active_set::State;
+use crate::contact::State;
 use crate::grid::Grid;
 use crate::operator::fft::good_length;
 

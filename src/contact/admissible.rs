@@ -1,0 +1,65 @@
+//! Admissible sets: the pressures that a scene allows. Steps (4.1) and (4.2) are projections on them, written once for all.
+//!
+//! ```text
+//! half-line   0 <= p              (NonNegative)
+//! box         0 <= p <= p_max     (Limited: effect pressure_limit)
+//! ```
+//!
+//! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). With a half-line the last does
+//! not exist: [`AdmissibleSet::LIMITED`] is a constant, and what asks for a limit is not compiled.
+
+/// The pressures that each element may have.
+pub trait AdmissibleSet: Copy + Send + Sync {
+    /// Whether there are limits.
+    const LIMITED: bool;
+
+    /// The greatest pressure of element i; `+infinity` where there is none.
+    fn limit(&self, i: usize) -> f64;
+
+    /// The admissible pressure nearest to `p`.
+    fn project(&self, i: usize, p: f64) -> f64 {
+        let p = p.max(0.0);
+        if Self::LIMITED {
+            p.min(self.limit(i))
+        } else {
+            p
+        }
+    }
+
+    /// Step (4.1): whether a free element with pressure `p` leaves C for the exterior area or for its limit.
+    fn leaves(&self, i: usize, p: f64) -> bool {
+        p < 0.0 || Self::LIMITED && p > self.limit(i)
+    }
+}
+
+/// `p >= 0`.
+#[derive(Clone, Copy, Debug)]
+pub struct NonNegative;
+
+impl AdmissibleSet for NonNegative {
+    const LIMITED: bool = false;
+
+    fn limit(&self, _: usize) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// `0 <= p <= p_max`, one p_max for all elements or one each.
+#[derive(Clone, Copy, Debug)]
+pub enum Limited<'a> {
+    /// The same for all.
+    Uniform(f64),
+    /// One each, `[my][mx]`.
+    PerElement(&'a [f64]),
+}
+
+impl AdmissibleSet for Limited<'_> {
+    const LIMITED: bool = true;
+
+    fn limit(&self, i: usize) -> f64 {
+        match self {
+            Limited::Uniform(limit) => *limit,
+            Limited::PerElement(limits) => limits[i],
+        }
+    }
+}
