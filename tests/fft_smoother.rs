@@ -6,6 +6,7 @@ mod case;
 #[path = "../examples/smoothers/rough.rs"]
 mod rough;
 
+use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
@@ -200,7 +201,8 @@ fn no_cycle_raises_the_energy() {
     for (fill, relaxation) in [(0.1, 1.0), (0.3, 0.3), (0.3, 1.9), (0.6, 1.0), (1.0, 1.0)] {
         let contact = spots(&grid, fill, &mut random);
         let shape = CycleShape { smoother: SmootherKind::Fft, relaxation, ..CycleShape::default() };
-        let mut multigrid = Multigrid::new(&grid, &influence, shape, &Threads::One).unwrap();
+        let mut multigrid =
+            Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), shape).unwrap();
         let d: Vec<f64> = contact.iter().map(|&c| if c { random.next() - 0.2 } else { 0.0 }).collect();
         let (mut v, mut u, mut before) = (vec![0.0; grid.len()], vec![0.0; grid.len()], 0.0_f64);
         for _ in 0..12 {

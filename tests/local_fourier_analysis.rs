@@ -7,6 +7,7 @@ mod antiperiodic;
 mod measured;
 
 use antiperiodic::{window, Antiperiodic};
+use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
 use contact_normal::methods::multigrid::analysis::{Analysis, Symbol};
@@ -120,7 +121,8 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
     const SIGMA: f64 = 16.0;
     let grid = Grid::new(M, M, 1.0, 0.6).unwrap();
     let influence = half_space(&grid);
-    let mut multigrid = Multigrid::new(&grid, &influence, CycleShape::default(), &Threads::One).unwrap();
+    let mut multigrid =
+        Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default()).unwrap();
     let analysis = Analysis::new(1.0, 0.6, [16, 16], 2).unwrap();
     let [tx, ty] = analysis.frequencies();
     let (n, at) = (tx.len(), |i: i64| i.rem_euclid(32) as usize);
@@ -218,7 +220,9 @@ fn jacobi_diverges_by_the_factor_of_the_analysis() {
     for omega in [1.0, 0.5] {
         let two = Analysis::new(1.0, 1.0, [n, n], 2).unwrap();
         let predicted = two.amplification(Jacobi, omega).into_iter().fold(0.0, f64::max);
-        let mut multigrid = Multigrid::new(&grid, &influence, CycleShape::default(), &Threads::One).unwrap();
+        let mut multigrid =
+            Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default())
+                .unwrap();
         let (mut p, mut r, mut growth) = (vec![1.0; n * n], vec![0.0; n * n], 0.0);
         let mut smoother = Smoother::new(Jacobi, &influence, &grid, &Threads::One).unwrap();
         for _ in 0..20 {

@@ -1,5 +1,6 @@
 //! Convergence factors of actual cycles on a given contact area, from a random error.
 
+use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Influence;
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
@@ -20,7 +21,8 @@ pub fn factor(
     shape: CycleShape,
     (cycles, of): (usize, usize),
 ) -> f64 {
-    let mut multigrid = Multigrid::new(grid, influence, shape, &Threads::One).expect("a valid grid");
+    let mut multigrid = Multigrid::new(&Problem::new(*grid, influence.clone(), &Threads::One).expect("memory"), shape)
+        .expect("a valid grid");
     let mut seed = 1;
     let mut p: Vec<f64> = contact.iter().map(|&inside| if inside { random(&mut seed) } else { 0.0 }).collect();
     let mut residual = vec![0.0; p.len()];

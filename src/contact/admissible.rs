@@ -5,6 +5,8 @@
 //! box         0 <= p <= p_max     (Limited: effect pressure_limit)
 //! ```
 //!
+//! The third is what a caller gives who keeps the contact area (active_set FIXED): any pressure, on the elements given ([`Fixed`]).
+//!
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). With a half-line the last does
 //! not exist: [`AdmissibleSet::LIMITED`] is a constant, and what asks for a limit is not compiled.
 
@@ -12,6 +14,9 @@
 pub trait AdmissibleSet: Copy + Send + Sync {
     /// Whether there are limits.
     const LIMITED: bool;
+
+    /// Whether the contact area is given: nobody enters or leaves it, and pressures may be negative.
+    const FIXED: bool = false;
 
     /// The greatest pressure of element i; `+infinity` where there is none.
     fn limit(&self, i: usize) -> f64;
@@ -28,7 +33,12 @@ pub trait AdmissibleSet: Copy + Send + Sync {
 
     /// Step (4.1): whether a free element with pressure `p` leaves C for the exterior area or for its limit.
     fn leaves(&self, i: usize, p: f64) -> bool {
-        p < 0.0 || Self::LIMITED && p > self.limit(i)
+        !Self::FIXED && (p < 0.0 || Self::LIMITED && p > self.limit(i))
+    }
+
+    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`.
+    fn enters(&self, at_limit: bool, e: f64) -> bool {
+        !Self::FIXED && if at_limit { e > 0.0 } else { e < 0.0 }
     }
 }
 
@@ -41,6 +51,23 @@ impl AdmissibleSet for NonNegative {
 
     fn limit(&self, _: usize) -> f64 {
         f64::INFINITY
+    }
+}
+
+/// Any pressure on a contact area that is given.
+#[derive(Clone, Copy, Debug)]
+pub struct Fixed;
+
+impl AdmissibleSet for Fixed {
+    const LIMITED: bool = false;
+    const FIXED: bool = true;
+
+    fn limit(&self, _: usize) -> f64 {
+        f64::INFINITY
+    }
+
+    fn project(&self, _: usize, p: f64) -> f64 {
+        p
     }
 }
 

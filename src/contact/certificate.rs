@@ -1,5 +1,7 @@
 //! How well the contact conditions hold: everything here is computed from p, h and a fresh u = A p.
 
+use std::ops::Range;
+
 use super::State;
 
 /// The measures of a solution. Status OK means that they hold to the tolerance.
@@ -15,6 +17,9 @@ pub struct Certificate {
     pub min_pressure: f64,
 }
 
+/// Distances this many units of round-off of their terms are nothing but round-off: bodies that fit exactly.
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
 /// What one pass over a state whose u is A p tells.
 #[derive(Clone, Copy, Debug)]
 pub struct Survey {
@@ -22,66 +27,104 @@ pub struct Survey {
     pub residual: f64,
     /// 2-norm over C of `h - approach`: what residuals are compared with.
     pub distance: f64,
-    /// Largest `-e` over the exterior area, 0 when the bodies penetrate nowhere.
+    /// rms of the same over C and the elements at their limit: what violations are compared with.
+    pub scale: f64,
+    /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
     pub penetration: f64,
-    /// Elements in contact.
+    /// Elements in contact, free or at their limit.
     pub contact_count: usize,
     /// Sum of p.
     pub pressures: f64,
+    /// Sum of p^2.
+    pub squares: f64,
     /// Smallest and largest p.
     pub range: (f64, f64),
-    /// `sum of p |e|` and `sum of p |u|`.
+    /// `sum of p |e|` and `sum of p |u|`; of elements at their limit only e > 0 counts.
     pub work: (f64, f64),
 }
 
 impl Survey {
     /// Surveys a state.
     pub fn of(state: &State) -> Survey {
-        if !state.at_limit.is_empty() {
-            return Survey::of_limited(state);
-        }
-        let mut survey = Survey::nothing();
-        let mx = state.grid.mx;
-        for start in (0..state.grid.len()).step_by(mx) {
-            let row = start..start + mx;
-            let (h, u) = (&state.h[row.clone()], &state.u[row.clone()]);
-            let (p, contact) = (&state.p[row.clone()], &state.contact[row]);
-            // Most rows have no element that penetrates, and many none in contact: both the compiler can vectorise.
-            let (mut penetrates, mut loaded) = (false, false);
-            for i in 0..mx {
-                penetrates |= !contact[i] & (h[i] - state.approach + u[i] < 0.0);
-                loaded |= contact[i] | (p[i] != 0.0);
-            }
-            if penetrates {
-                for i in (0..mx).filter(|&i| !contact[i]) {
-                    survey.penetration = survey.penetration.max(state.approach - h[i] - u[i]);
-                }
-            }
-            if loaded {
-                survey.add_row(state.approach, h, u, p, contact);
-            } else {
-                survey.range = (survey.range.0.min(0.0), survey.range.1.max(0.0));
-            }
-        }
-        (survey.residual, survey.distance) = (survey.residual.sqrt(), survey.distance.sqrt());
-        survey
-    }
-
-    pub(super) fn nothing() -> Survey {
-        Survey {
+        let mut survey = Survey {
             residual: 0.0,
             distance: 0.0,
+            scale: 0.0,
             penetration: 0.0,
             contact_count: 0,
             pressures: 0.0,
+            squares: 0.0,
             range: (f64::INFINITY, f64::NEG_INFINITY),
             work: (0.0, 0.0),
+        };
+        let mx = state.grid.mx;
+        let at_limit = state.at_limit.contains(&true);
+        for start in (0..state.grid.len()).step_by(mx) {
+            survey.add_rows(state, start..start + mx);
         }
+        let mut touching = survey.distance;
+        if at_limit {
+            touching += survey.add_limited(state);
+        }
+        survey.scale = (touching / survey.contact_count.max(1) as f64).sqrt();
+        survey.finish(state);
+        survey
+    }
+
+    /// Norms from sums. What is a difference of terms that are equal but for round-off is 0.
+    fn finish(&mut self, state: &State) {
+        (self.residual, self.distance) = (self.residual.sqrt(), self.distance.sqrt());
+        let offset = ROUND_OFF * state.approach.abs();
+        let noise = offset * (self.contact_count as f64).sqrt() + state.round_off * self.squares.sqrt();
+        if noise.is_finite() && self.distance <= noise && self.residual <= noise {
+            self.residual = 0.0;
+            let largest = offset + state.round_off * self.range.1;
+            if self.penetration <= largest {
+                self.penetration = 0.0;
+            }
+            self.work.0 = 0.0;
+        }
+    }
+
+    /// A row of elements; those at their limit count as exterior until [`add_limited`](Self::add_limited) corrects that.
+    fn add_rows(&mut self, state: &State, row: Range<usize>) {
+        let (h, u) = (&state.h[row.clone()], &state.u[row.clone()]);
+        let (p, contact) = (&state.p[row.clone()], &state.contact[row.clone()]);
+        // Most rows have no element that penetrates, and many none in contact: both the compiler can vectorise.
+        let (mut penetrates, mut loaded) = (false, false);
+        for i in 0..h.len() {
+            penetrates |= !contact[i] & (h[i] - state.approach + u[i] < 0.0);
+            loaded |= contact[i] | (p[i] != 0.0);
+        }
+        if penetrates {
+            let free = |i: &usize| !contact[*i] && !state.at_limit.get(row.start + i).is_some_and(|at_limit| *at_limit);
+            for i in (0..h.len()).filter(free) {
+                self.penetration = self.penetration.max(state.approach - h[i] - u[i]);
+            }
+        }
+        if loaded {
+            self.add_row(state.approach, h, u, p, contact);
+        } else {
+            self.range = (self.range.0.min(0.0), self.range.1.max(0.0));
+        }
+    }
+
+    /// Elements at their limit: their e must not be positive. Returns their sum of `(h - approach)^2`.
+    fn add_limited(&mut self, state: &State) -> f64 {
+        let mut touching = 0.0;
+        for i in (0..state.p.len()).filter(|&i| state.at_limit[i]) {
+            let (p, e) = (state.p[i], state.deformed_distance(i));
+            self.contact_count += 1;
+            self.penetration = self.penetration.max(e);
+            self.work.0 += p * (e.max(0.0) - e.abs());
+            touching += (state.h[i] - state.approach).powi(2);
+        }
+        touching
     }
 
     fn add_row(&mut self, approach: f64, h: &[f64], u: &[f64], p: &[f64], contact: &[bool]) {
         let (mut rr, mut hh, mut count) = (0.0, 0.0, 0);
-        let (mut pressures, mut gaps, mut energy) = (0.0, 0.0, 0.0);
+        let (mut pressures, mut squares, mut gaps, mut energy) = (0.0, 0.0, 0.0, 0.0);
         for i in 0..h.len() {
             self.range = (self.range.0.min(p[i]), self.range.1.max(p[i]));
             if !contact[i] && p[i] == 0.0 {
@@ -95,6 +138,7 @@ impl Survey {
                 count += 1;
             }
             pressures += p[i];
+            squares += p[i] * p[i];
             gaps += p[i] * e.abs();
             energy += p[i] * u[i].abs();
         }
@@ -102,6 +146,7 @@ impl Survey {
         self.distance += hh;
         self.contact_count += count;
         self.pressures += pressures;
+        self.squares += squares;
         self.work = (self.work.0 + gaps, self.work.1 + energy);
     }
 
@@ -133,9 +178,4 @@ fn over_contact(state: &State, value: impl Fn(usize) -> f64) -> f64 {
         sum += value(i) * value(i);
     }
     sum.sqrt()
-}
-
-/// Measures a state whose u is A p.
-pub fn certify(state: &State) -> Certificate {
-    Survey::of(state).certificate()
 }

@@ -1,7 +1,8 @@
-//! Steps 1, 4.1 and 4.2 of section 4.1: who enters the contact area and who leaves it.
+//! Steps 1, (4.1) and (4.2) of section 4.1: who enters the contact area and who leaves it.
 
 use crate::grid::Grid;
 
+use super::admissible::AdmissibleSet;
 use super::State;
 
 /// Step 1: `C^0 = {h <= approach}`. Returns the number of elements.
@@ -10,25 +11,40 @@ pub fn starting_contact(h: &[f64], approach: f64, contact: &mut [bool]) -> usize
     contact.iter().filter(|&&inside| inside).count()
 }
 
-/// Step 4.1: elements in contact with `p < 0` go to the exterior area, with `p = 0`. Returns how many.
-pub fn truncate(state: &mut State) -> usize {
+/// Step (4.1): elements of C that would pull go to the exterior area, with `p = 0`, and those above their limit to that. Returns how
+/// many.
+pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
+    if S::FIXED {
+        return 0;
+    }
     let mut changed = 0;
-    for (p, inside) in state.p.iter_mut().zip(&mut state.contact).filter(|(_, inside)| **inside) {
-        if *p < 0.0 {
-            *p = 0.0;
-            *inside = false;
+    for i in 0..state.p.len() {
+        if state.contact[i] && set.leaves(i, state.p[i]) {
+            if S::LIMITED && state.p[i] > 0.0 {
+                state.at_limit[i] = true;
+            }
+            state.p[i] = set.project(i, state.p[i]);
+            state.contact[i] = false;
             changed += 1;
         }
     }
     changed
 }
 
-/// Step 4.2: exterior elements with `e <= 0` go to the contact area. Returns how many. Needs u = A p of the truncated p.
-pub fn admit(state: &mut State) -> usize {
+/// Step (4.2): exterior elements with `e < 0`, and elements at their limit with `e > 0`, go to the contact area. Returns how many.
+/// Needs u = A p of the truncated p.
+pub fn admit<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
+    if S::FIXED {
+        return 0;
+    }
     let mut changed = 0;
     for i in 0..state.p.len() {
-        if !state.contact[i] && state.deformed_distance(i) <= 0.0 {
+        let at_limit = S::LIMITED && state.at_limit[i];
+        if !state.contact[i] && set.enters(at_limit, state.deformed_distance(i)) {
             state.contact[i] = true;
+            if at_limit {
+                state.at_limit[i] = false;
+            }
             changed += 1;
         }
     }

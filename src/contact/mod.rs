@@ -1,15 +1,17 @@
 //! The active set: which elements are in contact, steps 4.1 and 4.2 of the paper, and how well the conditions hold.
 
-pub mod admissible;
+mod admissible;
 mod certificate;
 mod exchange;
 mod guard;
-mod limited;
 mod outline;
+mod problem;
 mod state;
 
-pub use certificate::{certify, norm_of_distance, residual_norm, Certificate, Survey};
+pub use admissible::{AdmissibleSet, Fixed, Limited, NonNegative};
+pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};
 pub use exchange::{admit, starting_contact, truncate};
 pub use guard::ExchangeGuard;
 pub use outline::Outline;
+pub use problem::Problem;
 pub use state::{Freshness, State};

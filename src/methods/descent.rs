@@ -11,22 +11,20 @@
 //!     p + alpha' t             alpha' < alpha: as far as p stays >= 0
 //! ```
 //!
+//! With limits, p = p_max ends a step as p = 0 does, and an element there is free if e > 0.
+//!
 //! The last of these always lowers the energy; the one before it moves many elements at once.
 
-use super::norm::step::Displace;
-use crate::contact::{norm_of_distance, State, Survey};
+use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
-use crate::operator::reserve;
-use crate::progress::{Monitor, Rule};
+use crate::memory::reserve;
+use crate::methods::{Change, Habits, Step};
+use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
-use crate::solver::Stop;
 
-/// Cycles without a new least residual after which round-off is reached.
-const PATIENCE: u32 = 100;
-
-/// Memory for solves, kept from one to the next.
+/// The method, and its memory, kept from one solve to the next. A must be symmetric.
 #[derive(Default)]
-pub struct Workspace {
+pub struct Descent {
     free: Vec<bool>,
     free_before: Vec<bool>,
     residual: Vec<f64>,
@@ -36,126 +34,154 @@ pub struct Workspace {
     /// The change of p by a truncated step, and its product.
     change: Vec<f64>,
     product: Vec<f64>,
+    /// (r, r) of the last direction; 0: the next is conjugate to none.
+    last_rr: f64,
+    began: bool,
 }
 
-/// Solves from the state's pressures, if there are any; A must be symmetric.
-pub fn solve(
-    state: &mut State,
-    mut by: Displace<'_>,
-    rule: &Rule,
-    workspace: &mut Workspace,
-    monitor: &mut Monitor<'_>,
-) -> Result<Stop> {
-    let Workspace { free, free_before, residual, t, q, change, product } = workspace;
-    for values in [&mut *residual, t, q, change, product] {
-        values.clear();
-        reserve(values, state.p.len(), "the workspace of projected descent")?;
-        values.resize(state.p.len(), 0.0);
+impl<S: AdmissibleSet> Step<S> for Descent {
+    fn name(&self) -> &'static str {
+        "projected descent"
     }
-    for elements in [&mut *free, free_before] {
-        reserve(elements, state.p.len(), "the workspace of projected descent")?;
-    }
-    free_before.clear();
-    refresh(state, &mut by, monitor);
-    let mut u_is_product = true;
-    let (mut least, mut since_least) = (f64::INFINITY, 0);
-    // (r, r) of the last direction; 0: the next is conjugate to none.
-    let mut last_rr = 0.0;
-    let mut update = f64::INFINITY;
-    loop {
-        let ends = monitor.is_cancelled() || monitor.cycles >= rule.max_cycles || since_least > PATIENCE;
-        if !u_is_product && (ends || holds(state, rule, update)) {
-            refresh(state, &mut by, monitor);
-            (u_is_product, last_rr) = (true, 0.0);
-        }
-        if u_is_product && holds(state, rule, update) {
-            return Ok(Stop::Converged);
-        }
-        if ends {
-            return Ok(if since_least > PATIENCE { Stop::Stagnated } else { Stop::interrupted(monitor) });
-        }
 
-        find_free(state, free, residual);
-        if free != free_before {
-            last_rr = 0.0;
-            free_before.clone_from(free);
+    fn habits(&self) -> Habits {
+        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 100, progress: 1.0 }
+    }
+
+    fn begin(&mut self, state: &State) -> Result<()> {
+        let Descent { free, free_before, residual, t, q, change, product, .. } = self;
+        for values in [residual, t, q, change, product] {
+            values.clear();
+            reserve(values, state.p.len(), "the workspace of projected descent")?;
+            values.resize(state.p.len(), 0.0);
         }
-        let rr = dot(residual, residual);
-        let beta = if last_rr > 0.0 { rr / last_rr } else { 0.0 };
-        t.iter_mut().zip(&*residual).for_each(|(t, r)| *t = r + beta * *t);
-        (by.product)(t, q);
-        monitor.count_products(1, by.work);
-        let (rt, tq) = (dot(residual, t), dot(t, q));
+        for elements in [free, &mut *free_before] {
+            reserve(elements, state.p.len(), "the workspace of projected descent")?;
+        }
+        free_before.clear();
+        (self.last_rr, self.began) = (0.0, false);
+        Ok(())
+    }
+
+    fn step(
+        &mut self,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        _: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Change> {
+        if !std::mem::replace(&mut self.began, true) {
+            take_over(problem, state, set);
+        }
+        if state.u_is == Freshness::Exact {
+            self.last_rr = 0.0;
+        }
+        let rr = self.direct(state, set);
+        problem.displace(&self.t, &mut self.q);
+        let (rt, tq) = (dot(&self.residual, &self.t), dot(&self.t, &self.q));
         if rr > 0.0 && !(tq > 0.0) {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence coefficients: p'Ap is {tq} for some pressures p; it must be positive"
             )));
         }
         let alpha = if rr > 0.0 { rt / tq } else { 0.0 };
-
-        let pairs = t.iter().zip(&state.p).filter(|(t, _)| **t < 0.0);
-        let limit = pairs.map(|(t, p)| -p / t).fold(f64::INFINITY, f64::min);
+        let limit = longest(state, set, &self.t);
         let full = limit >= alpha;
-        last_rr = if full { rr } else { 0.0 };
+        self.last_rr = if full { rr } else { 0.0 };
         let mut length = alpha.min(limit);
         if !full {
-            truncated_step(state, t, alpha, change);
-            (by.product)(change, product);
-            monitor.count_products(1, by.work);
             let feasible = length * (0.5 * length * tq - rt);
-            // A change without force does not see the approach.
-            let gain = |i: usize| change[i] * (state.deformed_distance(i) + 0.5 * product[i]);
-            if (0..t.len()).map(gain).sum::<f64>() < feasible {
-                std::mem::swap(t, change);
-                std::mem::swap(q, product);
+            if self.try_truncated(problem, state, set, alpha) < feasible {
+                std::mem::swap(&mut self.t, &mut self.change);
+                std::mem::swap(&mut self.q, &mut self.product);
                 length = 1.0;
             }
         }
-        let changes = take_step(state, t, q, length);
-        u_is_product = false;
-        monitor.active_set_steps += 1;
-
-        let relative = rr.sqrt() / norm_of_distance(state);
-        since_least += 1;
-        if relative < least {
-            (least, since_least) = (relative, 0);
-        }
-        update = length * (dot(t, t) / state.contact_count().max(1) as f64).sqrt();
-        monitor.cycle_done(&state.grid, changes, update, relative);
+        let changes = take_step(state, set, &self.t, &self.q, length);
+        state.u_is = Freshness::Near;
+        monitor.count.active_set_steps += 1;
+        let distance = crate::contact::norm_of_distance(state);
+        let update = length * (dot(&self.t, &self.t) / state.contact_count().max(1) as f64).sqrt();
+        monitor.cycle_done(&state.grid, changes, update, rr.sqrt() / distance);
+        Ok(Change { update, changes: 0, gives_up: rr == 0.0 })
     }
 }
 
-/// p >= 0 that carries a prescribed force, C where p > 0, u = A p.
-fn refresh(state: &mut State, by: &mut Displace<'_>, monitor: &mut Monitor<'_>) {
-    state.p.iter_mut().for_each(|p| *p = if p.is_finite() { p.max(0.0) } else { 0.0 });
-    state.balance_force();
-    find_contact(state);
-    (by.product)(&state.p, &mut state.u);
-    monitor.count_products(1, by.work);
-    state.fit_approach();
+impl Descent {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        5 * self.t.len() * size_of::<f64>()
+    }
+
+    /// The free elements, r and t; returns (r, r).
+    fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S) -> f64 {
+        find_free(state, set, &mut self.free, &mut self.residual);
+        if self.free != self.free_before {
+            self.last_rr = 0.0;
+            self.free_before.clone_from(&self.free);
+        }
+        let rr = dot(&self.residual, &self.residual);
+        let beta = if self.last_rr > 0.0 { rr / self.last_rr } else { 0.0 };
+        self.t.iter_mut().zip(&self.residual).for_each(|(t, r)| *t = r + beta * *t);
+        rr
+    }
+
+    /// The step cut off at the bounds, in `change`, and what it does to the energy.
+    fn try_truncated<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &State, set: S, alpha: f64) -> f64 {
+        truncated_step(state, set, &self.t, alpha, &mut self.change);
+        problem.displace(&self.change, &mut self.product);
+        // A change without force does not see the approach.
+        let gain = |i: usize| self.change[i] * (state.deformed_distance(i) + 0.5 * self.product[i]);
+        (0..self.t.len()).map(gain).sum()
+    }
 }
 
-/// C = {p > 0}; returns how many elements changed sides.
-fn find_contact(state: &mut State) -> u64 {
+/// Admissible pressures that carry a prescribed force, C where they are positive, u = A p.
+fn take_over<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+    let project = |(i, p): (usize, &mut f64)| *p = if p.is_finite() { set.project(i, *p) } else { 0.0 };
+    state.p.iter_mut().enumerate().for_each(project);
+    state.carry_force(set);
+    find_contact(state, set);
+    problem.refresh(state, set);
+}
+
+/// Up to where t may be followed before an element reaches a bound.
+fn longest<S: AdmissibleSet>(state: &State, set: S, t: &[f64]) -> f64 {
+    let mut limit = f64::INFINITY;
+    for (i, (t, p)) in t.iter().zip(&state.p).enumerate() {
+        if *t < 0.0 {
+            limit = limit.min(-p / t);
+        } else if S::LIMITED && *t > 0.0 {
+            limit = limit.min((set.limit(i) - p) / t);
+        }
+    }
+    limit
+}
+
+/// C = {0 < p < limit}; returns how many elements changed sides.
+fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
     let mut changes = 0;
-    for (p, inside) in state.p.iter().zip(&mut state.contact) {
-        changes += u64::from(*inside != (*p > 0.0));
-        *inside = *p > 0.0;
+    for i in 0..state.p.len() {
+        let at_limit = S::LIMITED && state.p[i] >= set.limit(i);
+        if S::LIMITED {
+            state.at_limit[i] = at_limit;
+        }
+        let inside = state.p[i] > 0.0 && !at_limit;
+        changes += u64::from(state.contact[i] != inside);
+        state.contact[i] = inside;
     }
     changes
 }
 
-/// Whether the criterion holds and nothing penetrates, to the tolerance.
-fn holds(state: &State, rule: &Rule, update: f64) -> bool {
-    let survey = Survey::of(state);
-    let scale = survey.distance / (survey.contact_count.max(1) as f64).sqrt();
-    rule.holds(state, update) && survey.penetration <= rule.tolerance * scale
-}
-
-/// The free elements and r; r = 0 on the others.
-fn find_free(state: &State, free: &mut Vec<bool>, residual: &mut [f64]) {
+/// The free elements and r; r = 0 on the others. An element at a bound is free where its r leads away from that.
+fn find_free<S: AdmissibleSet>(state: &State, set: S, free: &mut Vec<bool>, residual: &mut [f64]) {
+    let at_limit = |i: usize| S::LIMITED && state.p[i] >= set.limit(i);
     free.clear();
-    free.extend((0..state.p.len()).map(|i| state.p[i] > 0.0 || state.deformed_distance(i) < 0.0));
+    free.extend((0..state.p.len()).map(|i| match (at_limit(i), state.deformed_distance(i)) {
+        (true, e) => e > 0.0,
+        (false, e) => state.p[i] > 0.0 || e < 0.0,
+    }));
     loop {
         let (mut mean, mut count) = (0.0, 0.0);
         if let Load::Force(_) = state.load {
@@ -168,8 +194,9 @@ fn find_free(state: &State, free: &mut Vec<bool>, residual: &mut [f64]) {
         let mut dropped = false;
         for i in 0..free.len() {
             residual[i] = if free[i] { -state.deformed_distance(i) - mean } else { 0.0 };
-            // What would pull is not free, and the mean another one.
-            if free[i] && state.p[i] == 0.0 && residual[i] <= 0.0 {
+            // Drop elements that would leave their bound the wrong way, then recompute the mean.
+            let blocked = state.p[i] == 0.0 && residual[i] <= 0.0 || at_limit(i) && residual[i] >= 0.0;
+            if free[i] && blocked {
                 (free[i], residual[i], dropped) = (false, 0.0, true);
             }
         }
@@ -179,94 +206,38 @@ fn find_free(state: &State, free: &mut Vec<bool>, residual: &mut [f64]) {
     }
 }
 
-/// The change from p to max(p + alpha t, 0), scaled to carry a prescribed force.
-fn truncated_step(state: &State, t: &[f64], alpha: f64, change: &mut [f64]) {
-    let moved = |i: usize| (state.p[i] + alpha * t[i]).max(0.0);
+/// The change from p to p + alpha t, projected and then scaled to carry a prescribed force.
+fn truncated_step<S: AdmissibleSet>(state: &State, set: S, t: &[f64], alpha: f64, change: &mut [f64]) {
+    let moved = |i: usize| set.project(i, state.p[i] + alpha * t[i]);
     let factor = match state.load {
         Load::Approach(_) => 1.0,
         Load::Force(force) => force / state.grid.element_area() / (0..t.len()).map(moved).sum::<f64>(),
     };
     let factor = if factor.is_finite() { factor } else { 1.0 };
-    change.iter_mut().enumerate().for_each(|(i, change)| *change = factor * moved(i) - state.p[i]);
+    // Where scaling would cross a limit there is no such step: none is made, and the feasible one is taken.
+    let crosses = S::LIMITED && factor > 1.0 && (0..t.len()).any(|i| factor * moved(i) > set.limit(i));
+    for (i, change) in change.iter_mut().enumerate() {
+        *change = if crosses { 0.0 } else { factor * moved(i) - state.p[i] };
+    }
 }
 
 /// p = p + length t, u = u + length A t, and the contact area with them. Returns how many elements changed sides.
-fn take_step(state: &mut State, t: &[f64], q: &[f64], length: f64) -> u64 {
+fn take_step<S: AdmissibleSet>(state: &mut State, set: S, t: &[f64], q: &[f64], length: f64) -> u64 {
     for i in 0..t.len() {
-        // What ends the step is at 0, whatever the rounding.
+        // What ends the step is at its bound, whatever the rounding.
         let blocked = t[i] < 0.0 && state.p[i] <= -length * t[i];
         state.p[i] = if blocked { 0.0 } else { state.p[i] + length * t[i] };
+        if S::LIMITED {
+            let reaches = t[i] > 0.0 && state.p[i] >= (1.0 - f64::EPSILON) * set.limit(i);
+            state.p[i] = if reaches { set.limit(i) } else { state.p[i].min(set.limit(i)) };
+        }
         state.u[i] += length * q[i];
     }
-    let changes = find_contact(state);
+    let changes = find_contact(state, set);
     state.fit_approach();
     changes
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::grid::Grid;
-    use crate::influence::{HalfSpace, Influence};
-    use crate::operator::dense;
-
-    /// A wavy punch, that makes elements leave and enter.
-    fn state(load: Load, wave: f64) -> (Influence, State) {
-        let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
-        let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
-        let h = (0..grid.len()).map(h).collect();
-        let influence = Influence::HalfSpace(HalfSpace::new(0.1, 0.1, 1.0));
-        (influence, State::new(grid, h, load, 0.0).expect("a state"))
-    }
-
-    #[test]
-    fn every_cycle_lowers_the_energy_until_the_conditions_hold() {
-        let waves = (0..20).map(|k| 0.1 + 0.15 * f64::from(k));
-        for (load, wave) in waves.flat_map(|wave| [(Load::Approach(0.015), wave), (Load::Force(0.02), wave)]) {
-            let (influence, mut state) = state(load, wave);
-            let grid = state.grid;
-            let mut last = f64::INFINITY;
-            let mut workspace = Workspace::default();
-            for cycle in 0.. {
-                assert!(cycle < 200, "{load:?}: no end");
-                let mut product = |p: &[f64], u: &mut [f64]| dense::apply(&influence, &grid, p, u);
-                let by = Displace { product: &mut product, work: 1.0, symmetric: true };
-                let rule = Rule { tolerance: 1e-9, by_update: false, fixed: false, max_cycles: 1 };
-                let mut monitor = Monitor::new(None, Vec::new(), false);
-                let stop = solve(&mut state, by, &rule, &mut workspace, &mut monitor).expect("a solve");
-                let distance = |i: usize| state.h[i] - if let Load::Approach(a) = load { a } else { 0.0 };
-                let energy: f64 = (0..grid.len()).map(|i| state.p[i] * (0.5 * state.u[i] + distance(i))).sum();
-                assert!(state.p.iter().all(|p| *p >= 0.0));
-                if stop == Stop::Converged {
-                    break;
-                }
-                // Some round-off of sums of 154 terms where the decrease is below that.
-                assert!(energy < last + 1e-13 * last.abs(), "{load:?}, cycle {cycle}: {energy:e} after {last:e}");
-                last = energy;
-            }
-            let survey = Survey::of(&state);
-            assert!(survey.residual <= 1e-9 * survey.distance && survey.penetration <= 1e-9, "{survey:?}");
-            assert!(state.contact_count() > 10 && state.contact_count() < 154, "{}", state.contact_count());
-        }
-    }
-
-    #[test]
-    fn it_takes_over_from_any_pressures() {
-        for start in [0.0, -1.0, 1e6, f64::NAN] {
-            let (influence, mut state) = state(Load::Force(0.05), 2.1);
-            let grid = state.grid;
-            state.p.fill(start);
-            let mut product = |p: &[f64], u: &mut [f64]| dense::apply(&influence, &grid, p, u);
-            let by = Displace { product: &mut product, work: 1.0, symmetric: true };
-            let rule = Rule { tolerance: 1e-9, by_update: false, fixed: false, max_cycles: 1000 };
-            let mut monitor = Monitor::new(None, Vec::new(), false);
-            let stop = solve(&mut state, by, &rule, &mut Workspace::default(), &mut monitor).expect("a solve");
-            assert_eq!(stop, Stop::Converged, "from {start}");
-            assert!((state.force() - 0.05).abs() <= 1e-15);
-        }
-    }
 }

@@ -6,20 +6,21 @@
 //! 4.1  elements with p < 0 leave C, and again, until none does
 //! ```
 //!
-//! Below some fifty elements that is faster than an iteration; who enters C the certificate tells.
+//! Below some fifty elements that is faster than an iteration; who enters C the loop tells. Where there are more, or the matrix is not
+//! positive definite, or a pressure would exceed its limit, another method takes over.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::{factor, solve};
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par};
 
-use crate::contact::State;
+use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::methods::projected_cg::End;
+use crate::methods::{Change, Habits, Step};
 use crate::operator::{dense, zeros};
-use crate::progress::Monitor;
+use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 
 /// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
@@ -65,36 +66,6 @@ impl Direct {
         (self.table.len() + self.matrix.capacity()) * size_of::<f64>()
     }
 
-    /// p on C, those that leave it being found on the way; u is not A p then. None if there are too many elements, or the matrix is
-    /// not positive definite.
-    pub fn run(&mut self, state: &mut State, cycles: u64, monitor: &mut Monitor<'_>) -> Option<End> {
-        for _ in 0..cycles {
-            self.elements.clear();
-            self.elements.extend((0..self.grid.len()).filter(|&i| state.contact[i]).take(MOST_IN_CONTACT + 1));
-            if self.elements.len() > MOST_IN_CONTACT || self.elements.is_empty() || !self.solve(state) {
-                return None;
-            }
-            let (mut left, mut change) = (0, 0.0);
-            for (&i, &p) in self.elements.iter().zip(&self.right) {
-                change += (p - state.p[i]) * (p - state.p[i]);
-                state.p[i] = p.max(0.0);
-                if p < 0.0 {
-                    state.contact[i] = false;
-                    left += 1;
-                }
-            }
-            monitor.active_set_steps += 1;
-            let update = (change / self.elements.len() as f64).sqrt();
-            if !monitor.cycle_done(&self.grid, left, update, 0.0) {
-                return Some(End::Cancelled);
-            }
-            if left == 0 {
-                return Some(End::Met);
-            }
-        }
-        Some(End::Limit)
-    }
-
     /// The first of the right-hand sides becomes p. False if it cannot.
     fn solve(&mut self, state: &mut State) -> bool {
         let (mx, n) = (self.grid.mx, self.elements.len());
@@ -124,5 +95,59 @@ impl Direct {
             y.iter_mut().zip(x).for_each(|(y, x)| *y = state.approach * *x - *y);
         }
         self.right[..n].iter().all(|p| p.is_finite())
+    }
+}
+
+impl<S: AdmissibleSet> Step<S> for Direct {
+    fn name(&self) -> &'static str {
+        "the direct solve"
+    }
+
+    fn habits(&self) -> Habits {
+        // Elements that enter and leave in turn may cycle.
+        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
+    }
+
+    fn begin(&mut self, _: &State) -> Result<()> {
+        Ok(())
+    }
+
+    /// p on C, those that leave it being found on the way.
+    fn step(
+        &mut self,
+        _: &mut Problem,
+        state: &mut State,
+        set: S,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Change> {
+        let gives_up = Change { gives_up: true, ..Change::default() };
+        loop {
+            self.elements.clear();
+            self.elements.extend((0..self.grid.len()).filter(|&i| state.contact[i]).take(MOST_IN_CONTACT + 1));
+            let held = S::FIXED || S::LIMITED && state.at_limit.contains(&true);
+            if held || self.elements.len() > MOST_IN_CONTACT || self.elements.is_empty() || !self.solve(state) {
+                return Ok(gives_up);
+            }
+            if S::LIMITED && self.elements.iter().zip(&self.right).any(|(&i, &p)| p > set.limit(i)) {
+                return Ok(gives_up);
+            }
+            let (mut left, mut change) = (0, 0.0);
+            for (&i, &p) in self.elements.iter().zip(&self.right) {
+                change += (p - state.p[i]) * (p - state.p[i]);
+                state.p[i] = p.max(0.0);
+                if p < 0.0 {
+                    state.contact[i] = false;
+                    left += 1;
+                }
+            }
+            state.u_is = Freshness::Stale;
+            monitor.count.active_set_steps += 1;
+            let update = (change / self.elements.len() as f64).sqrt();
+            let goes_on = monitor.cycle_done(&self.grid, left, update, 0.0);
+            if left == 0 || !goes_on || monitor.count.cycles >= goal.max_cycles {
+                return Ok(Change { update, ..Change::default() });
+            }
+        }
     }
 }

@@ -10,3 +10,15 @@ mod toeplitz;
 
 pub(crate) use crate::memory::{reserve, zeros};
 pub use toeplitz::{Toeplitz, Workspace};
+
+/// Arithmetic of the inner work; results are always computed in double precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Whichever is faster.
+    #[default]
+    Auto,
+    /// Double precision throughout.
+    Double,
+    /// Single precision inside, where it helps.
+    Mixed,
+}

@@ -1,11 +1,15 @@
-//! Counts what a solve does, asks the caller whether to go on, and keeps the ledger.
+//! What loops have to reach, why they end, what they count, and who may cancel them.
+
+mod criterion;
+mod ledger;
 
 use std::time::Instant;
 
-use crate::contact::{norm_of_distance, residual_norm, Outline, State};
+pub use criterion::{Criterion, Goal, Stop, UPDATE_RESIDUAL};
+pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
+
+use crate::contact::State;
 use crate::grid::Grid;
-use crate::solver::estimates::{self, Sample};
-use crate::solver::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
 /// What a progress callback is told after each cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,15 +35,11 @@ pub struct Progress {
 /// Told the progress after each cycle; says whether to cancel.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
-/// The counters of one solve.
-pub struct Monitor<'a> {
-    began: Instant,
-    callback: Option<ProgressCallback<'a>>,
-    cancelled: bool,
+/// What is counted. All but the work units start anew on each grid.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counters {
     /// Cycles on the current grid.
     pub cycles: u64,
-    /// Work units on all grids.
-    pub work_units: f64,
     /// Products on the current grid.
     pub matrix_products: u64,
     /// Elements that changed sides on the current grid.
@@ -48,80 +48,76 @@ pub struct Monitor<'a> {
     pub active_set_steps: u64,
     /// rms over C of the last change of p.
     pub update: f64,
-    ledger: Vec<LedgerRow>,
-    estimates: bool,
-    /// Of the contact area of the last row.
-    outline: Outline,
-    limit: Limit,
-    halving: Halving,
+    /// Relative residual over C, as far as the last cycle knew it.
+    pub residual: f64,
+    /// Products on all grids, in products on the finest.
+    pub work_units: f64,
+}
+
+/// Counts what a solve does, asks the caller whether to go on, and keeps the ledger.
+pub struct Monitor<'a> {
+    began: Instant,
+    callback: Option<ProgressCallback<'a>>,
+    cancelled: bool,
+    /// What was counted so far.
+    pub count: Counters,
+    /// What was known on each grid.
+    pub ledger: Ledger,
 }
 
 impl<'a> Monitor<'a> {
-    /// The clock starts. `ledger` lends its memory; `estimates`: whether errors are to be estimated.
-    pub fn new(callback: Option<ProgressCallback<'a>>, mut ledger: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
-        ledger.clear();
-        Monitor {
-            began: Instant::now(),
-            callback,
-            cancelled: false,
-            cycles: 0,
-            work_units: 0.0,
-            matrix_products: 0,
-            active_set_changes: 0,
-            active_set_steps: 0,
-            update: 0.0,
-            ledger,
-            estimates,
-            outline: Outline::default(),
-            limit: Limit::default(),
-            halving: Halving::default(),
-        }
+    /// The clock starts. `rows` lends its memory; `estimates`: whether errors are to be estimated.
+    pub fn new(callback: Option<ProgressCallback<'a>>, mut rows: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
+        rows.clear();
+        let ledger = Ledger { rows, estimates, ..Ledger::default() };
+        Monitor { began: Instant::now(), callback, cancelled: false, count: Counters::default(), ledger }
+    }
+
+    /// Of work that nobody watches.
+    pub fn silent() -> Monitor<'a> {
+        Monitor::new(None, Vec::new(), false)
+    }
+
+    /// Seconds since the solve began.
+    pub fn seconds(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
     }
 
     /// A new grid: its own counts start.
     pub fn enter_grid(&mut self) {
-        self.cycles = 0;
-        self.active_set_changes = 0;
-        self.active_set_steps = 0;
-        self.update = 0.0;
-        self.matrix_products = 0;
+        self.count = Counters { work_units: self.count.work_units, ..Counters::default() };
     }
 
     /// Counts products on other grids than the current one: work only.
     pub fn count_work(&mut self, work: f64) {
-        self.work_units += work;
+        self.count.work_units += work;
     }
 
     /// Counts products on the current grid: their number and the work of one.
     pub fn count_products(&mut self, products: u64, work: f64) {
-        self.work_units += products as f64 * work;
-        self.matrix_products += products;
+        self.count.work_units += products as f64 * work;
+        self.count.matrix_products += products;
     }
 
     /// Counts a cycle; false when the caller cancels.
     pub fn cycle_done(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
-        self.cycles += 1;
-        self.active_set_changes += changes;
-        self.update = update;
+        self.count.cycles += 1;
+        self.count.active_set_changes += changes;
+        (self.count.update, self.count.residual) = (update, residual);
         if let Some(callback) = &mut self.callback {
             let progress = Progress {
                 mx: grid.mx,
                 my: grid.my,
-                cycles: self.cycles,
+                cycles: self.count.cycles,
                 active_set_changes: changes,
                 seconds: self.began.elapsed().as_secs_f64(),
-                work_units: self.work_units,
+                work_units: self.count.work_units,
                 update,
                 residual,
             };
-            self.cancelled = callback(&progress);
+            self.cancelled |= callback(&progress);
         }
         !self.cancelled
-    }
-
-    /// The ledger so far.
-    pub fn ledger(&self) -> &[LedgerRow] {
-        &self.ledger
     }
 
     /// Whether the caller cancelled.
@@ -129,91 +125,26 @@ impl<'a> Monitor<'a> {
         self.cancelled
     }
 
-    /// Writes the ledger row of the current grid.
-    pub fn close_grid(&mut self, state: &State) {
-        let mut measures = Measures::of(state);
-        if self.estimates {
-            self.outline = Outline::of(state);
-            measures.corrected_area = self.outline.corrected_area(state, measures.contact_count);
-        }
-        self.ledger.push(LedgerRow {
-            mx: state.grid.mx,
-            my: state.grid.my,
-            cycles: self.cycles,
-            seconds: self.began.elapsed().as_secs_f64(),
-            work_units: self.work_units,
-            measures,
-            error: DiscretisationError::default(),
-        });
-    }
-
-    /// The outline of the contact area of the grid that was closed last, if errors are estimated.
-    pub fn outline(&self) -> &Outline {
-        &self.outline
-    }
-
-    /// The ledger with its errors, once they are known.
-    pub fn estimate(&mut self, state: &State, samples: &[Sample]) {
-        let solve_seconds = self.began.elapsed().as_secs_f64();
-        (self.limit, self.halving) =
-            estimates::estimate(&mut self.ledger, state, &self.outline, samples, solve_seconds);
-    }
-
-    /// The report of the whole solve, whose last ledger row is the finest grid's, and the ledger.
-    pub fn finish(self) -> (Report, Vec<LedgerRow>) {
-        let last = self.ledger.last().copied();
-        let report = Report {
-            cycles: self.cycles,
-            active_set_changes: self.active_set_changes,
-            active_set_steps: self.active_set_steps,
-            update: self.update,
-            matrix_products: self.matrix_products,
-            work_units: self.work_units,
-            measures: last.map(|row| row.measures).unwrap_or_default(),
-            error: last.map(|row| row.error).unwrap_or_default(),
-            limit: self.limit,
-            halving: self.halving,
-            solve_seconds: self.began.elapsed().as_secs_f64(),
-            ..Report::default()
-        };
-        (report, self.ledger)
-    }
-}
-
-/// What ends the iteration on one grid.
-#[derive(Clone, Copy, Debug)]
-pub struct Rule {
-    /// Of the criterion.
-    pub tolerance: f64,
-    /// Whether the last change of p is judged, or the residual.
-    pub by_update: bool,
-    /// Whether the contact area is given.
-    pub fixed: bool,
-    /// Cycles at most.
-    pub max_cycles: u64,
-}
-
-impl Rule {
-    /// Whether the criterion holds for a state whose u is A p.
-    pub fn holds(&self, state: &State, update: f64) -> bool {
-        if self.by_update {
-            let count = state.contact_count() as f64;
-            let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / count.max(1.0)).sqrt();
-            // not `>` so that a NaN does not pass
-            return update <= self.tolerance * rms;
-        }
-        let residual = residual_norm(state);
-        residual.is_finite() && residual <= self.tolerance * norm_of_distance(state)
-    }
-}
-
-impl Stop {
     /// The stop of a loop that ran out of cycles or was cancelled.
-    pub(crate) fn interrupted(monitor: &Monitor<'_>) -> Stop {
-        if monitor.is_cancelled() {
+    pub fn interrupted(&self) -> Stop {
+        if self.cancelled {
             Stop::Cancelled
         } else {
             Stop::IterationLimit
         }
+    }
+
+    /// Writes the ledger row of the current grid.
+    pub fn close_grid(&mut self, state: &State) {
+        let measures = self.ledger.measure(state);
+        self.ledger.rows.push(LedgerRow {
+            mx: state.grid.mx,
+            my: state.grid.my,
+            cycles: self.count.cycles,
+            seconds: self.seconds(),
+            work_units: self.count.work_units,
+            measures,
+            error: DiscretisationError::default(),
+        });
     }
 }

@@ -6,8 +6,7 @@ use std::time::Instant;
 
 pub use plan::Accuracy;
 
-use super::report::{Report, Stop};
-use super::{ActiveSet, InitialGuess, Options, Progress, ProgressCallback, Solver};
+use super::{ActiveSet, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
@@ -87,7 +86,7 @@ pub fn solve_to_accuracy(
             Err(Error::OutOfMemory(message)) if before => break (Stop::IterationLimit, message),
             Err(error) => return Err(error),
         };
-        let (grid, report, relative) = (solved.solver.grid, solved.report, solved.relative);
+        let (grid, report, relative) = (solved.solver.problem.grid, solved.report, solved.relative);
         best = Some(solved);
 
         let judged = grid.mx.max(grid.my) >= ENOUGH_ACROSS;
@@ -128,7 +127,7 @@ impl Outcome {
         // Without contact there is nothing to be off.
         let reached = relative.or((stop == Stop::Converged).then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
-        let grid = solver.grid;
+        let grid = solver.problem.grid;
         let reason = format!("{why}; the best reached is {number} on {} x {} elements", grid.mx, grid.my);
         log::info!("{stop:?}: {reason}");
         Outcome { stop, reason, solver: Some(solver), report, reached, seconds }

@@ -6,8 +6,6 @@ use std::sync::{Mutex, PoisonError};
 use super::{Guess, InitialGuess, Options, Report, Solver, Stop};
 use crate::contact::State;
 use crate::error::{invalid, Result};
-use crate::methods::projected_cg::Projected;
-use crate::operator::zeros;
 use crate::scene::Scene;
 use crate::threads::Threads;
 
@@ -61,14 +59,14 @@ impl Solver {
 
     /// Calls `work(i, worker)` for each `i < count` on whichever worker is free.
     pub(crate) fn distribute(&mut self, count: usize, work: impl Fn(usize, &mut Solver) + Sync + Send) -> Result<()> {
-        let workers = self.threads.count().min(count);
+        let workers = self.problem.threads.count().min(count);
         let mut crew = std::mem::take(&mut self.workers);
         if crew.len() < workers {
             crew.resize_with(workers, || None);
         }
         let (next, refusal) = (AtomicUsize::new(0), Mutex::new(None));
         let foreman = &*self;
-        self.threads.for_each(&mut crew[..workers], |_, worker| {
+        self.problem.threads.for_each(&mut crew[..workers], |_, worker| {
             if worker.is_none() {
                 // Where this fails the other workers do its share.
                 match foreman.worker() {
@@ -94,32 +92,6 @@ impl Solver {
 
     /// A solver like this one, of one thread. It accepts the same options.
     fn worker(&self) -> Result<Solver> {
-        let h = zeros(self.grid.len(), "undeformed distances")?;
-        Ok(Solver {
-            grid: self.grid,
-            bodies: self.bodies,
-            has_own_influence: self.has_own_influence,
-            has_row_tables: self.has_row_tables,
-            period: self.period,
-            has_layer: self.has_layer,
-            has_patches: self.has_patches,
-            without_multigrid: self.without_multigrid,
-            symmetric: self.symmetric,
-            largest_influence: self.largest_influence,
-            shape: self.shape,
-            precision: self.precision,
-            thread_count: self.thread_count,
-            threads: Threads::One,
-            projected: Projected::new(&self.grid, self.projected.influence(), self.precision, &Threads::One)?,
-            multigrid: None,
-            states: vec![State::new(self.grid, h, self.states[0].load, 0.0)?],
-            workspace: Default::default(),
-            limited: Default::default(),
-            ledger: Vec::new(),
-            workers: Vec::new(),
-            solved_before: false,
-            u_is_product: false,
-            setup_seconds: 0.0,
-        })
+        Solver::of(self.problem.grid, self.problem.coefficients.clone(), self.set_up.clone(), &Threads::One)
     }
 }

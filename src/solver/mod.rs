@@ -1,38 +1,38 @@
-//! How a scene is solved: the options, the methods, the report.
+//! How a scene is solved: the options, THE loop (`iterate`), the methods and their order, the report.
 //!
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod accuracy;
 mod batch;
-pub(crate) mod estimates;
-mod limited;
+mod best;
+mod estimates;
+mod iterate;
+mod methods;
+mod nested;
 mod options;
+mod range;
 mod report;
-pub(crate) mod start;
+mod take_over;
 
 use std::time::Instant;
 
-pub use crate::progress::{Progress, ProgressCallback};
+pub use crate::operator::Precision;
+pub use crate::progress::{Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop};
 pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
-pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
-pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
+pub use options::{ActiveSet, InitialGuess, Method, Options};
+pub use report::{Halving, Limit, Report};
 
-use crate::contact::State;
+use crate::contact::{self, AdmissibleSet, Fixed, Limited, NonNegative, State};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::Influence;
-use crate::methods::descent as descent_method;
-use crate::methods::multigrid::{nested as full_multigrid, step as multigrid_method};
-use crate::methods::multigrid::{CycleShape, Multigrid};
-use crate::methods::norm::step::{self as norm_method, Displace};
-use crate::methods::projected_cg::Projected;
-use crate::operator::zeros;
-use crate::progress::{Monitor, Rule};
-use crate::scene::{Bodies, Layer, Load, Period, Scene};
+use crate::memory::{reserve, zeros};
+use crate::progress::Monitor;
+use crate::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
 use crate::threads::Threads;
-use start::Start;
+use methods::Methods;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -45,12 +45,31 @@ pub struct Guess<'a> {
 
 /// Operators and grids for many solves on one grid and one pair of bodies. One thread at a time.
 ///
+/// It holds the last complete result, or none: after a solve that was refused before it began the result is that of the solve before,
+/// after one that failed on the way there is none.
+///
 /// A solve from nothing or from a given guess has the same result, to the last bit, whatever was solved before. After a first
 /// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for one
 /// thing: PROJECTED_CG (and AUTO) work on a window around the contact area, whose operator is set up anew when its size
 /// changes.
 pub struct Solver {
-    grid: Grid,
+    problem: contact::Problem,
+    set_up: SetUp,
+    methods: Methods,
+    state: State,
+    /// Whether `state` is a complete result.
+    has_result: bool,
+    /// One limit per element of the scene being solved; empty if there is none.
+    limits: Vec<f64>,
+    ledger: Vec<LedgerRow>,
+    /// For batches: solvers of one thread, made when first needed.
+    workers: Vec<Option<Solver>>,
+    setup_seconds: f64,
+}
+
+/// What a solver was set up with.
+#[derive(Clone)]
+struct SetUp {
     bodies: Bodies,
     has_own_influence: bool,
     has_row_tables: bool,
@@ -59,28 +78,10 @@ pub struct Solver {
     has_patches: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
-    symmetric: bool,
     /// The largest coefficient, whatever its sign.
     largest_influence: f64,
-    shape: CycleShape,
-    precision: Precision,
-    /// As asked for in the options.
-    thread_count: usize,
-    threads: Threads,
-    projected: Projected,
-    /// Made when a method first asks for it.
-    multigrid: Option<Multigrid>,
-    /// The finest grid's, then one per coarser grid of `multigrid`.
-    states: Vec<State>,
-    workspace: full_multigrid::Workspace,
-    limited: limited::Workspace,
-    ledger: Vec<LedgerRow>,
-    /// For batches: solvers of one thread, made when first needed.
-    workers: Vec<Option<Solver>>,
-    solved_before: bool,
-    /// Whether u of the finest state is a fresh A p of its p.
-    u_is_product: bool,
-    setup_seconds: f64,
+    /// Smoother, sweeps, precision, and the threads asked for.
+    options: Options,
 }
 
 /// Solves one scene.
@@ -96,12 +97,8 @@ impl Solver {
         let began = Instant::now();
         scene.check()?;
         options.check()?;
-        let threads = Threads::new(options.threads)?;
         let influence = scene.influence();
-        let projected = Projected::new(&scene.grid, &influence, options.precision, &threads)?;
-        let h = zeros(scene.grid.len(), "undeformed distances")?;
-        Ok(Solver {
-            grid: scene.grid,
+        let set_up = SetUp {
             bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
             has_row_tables: scene.row_tables.is_some(),
@@ -109,22 +106,28 @@ impl Solver {
             has_layer: scene.layer.is_some(),
             has_patches: scene.patches.is_some(),
             without_multigrid: without_multigrid(scene),
-            symmetric: influence.is_symmetric(&scene.grid),
             largest_influence: influence.largest(&scene.grid),
-            shape: options.cycle_shape(),
-            precision: options.precision,
-            thread_count: options.threads,
-            threads,
-            projected,
-            multigrid: None,
-            states: vec![State::new(scene.grid, h, scene.load, 0.0)?],
-            workspace: full_multigrid::Workspace::default(),
-            limited: limited::Workspace::default(),
+            options: *options,
+        };
+        let mut solver = Solver::of(scene.grid, influence, set_up, &Threads::new(options.threads)?)?;
+        solver.setup_seconds = began.elapsed().as_secs_f64();
+        Ok(solver)
+    }
+
+    fn of(grid: Grid, influence: Influence, set_up: SetUp, threads: &Threads) -> Result<Solver> {
+        let mut problem = contact::Problem::new(grid, influence, threads)?;
+        problem.given = set_up.has_own_influence || set_up.has_row_tables;
+        let h = zeros(grid.len(), "undeformed distances")?;
+        Ok(Solver {
+            methods: Methods::new(&problem, &set_up.options)?,
+            state: State::new(grid, h, Load::Approach(0.0), 0.0)?,
+            problem,
+            set_up,
+            has_result: false,
+            limits: Vec::new(),
             ledger: Vec::new(),
             workers: Vec::new(),
-            solved_before: false,
-            u_is_product: false,
-            setup_seconds: began.elapsed().as_secs_f64(),
+            setup_seconds: 0.0,
         })
     }
 
@@ -137,19 +140,115 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
-        self.check_range(scene, guess.filter(|_| options.active_set == ActiveSet::Fixed))?;
+        take_over::check_guess(&scene.grid, options, guess)?;
+        range::check(scene, &self.problem, self.set_up.largest_influence, guess.filter(|_| is_fixed(options)))?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = self.start_and_run(scene, options, guess, &mut monitor);
-        let (mut report, ledger) = monitor.finish();
-        self.ledger = ledger;
-        let stop = outcome?;
+        let outcome = match scene.pressure_limit {
+            _ if is_fixed(options) => self.run(scene, Fixed, options, guess, &mut monitor),
+            None => self.run(scene, NonNegative, options, guess, &mut monitor),
+            Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
+        };
+        let (stop, tolerance) = outcome?;
+        let mut report = Report::of(&monitor, tolerance);
+        if options.estimates && stop != Stop::Cancelled {
+            self.estimate(scene, options, &mut monitor, &mut report)?;
+        }
+        report.solve_seconds = monitor.seconds();
+        self.ledger = monitor.ledger.rows;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
+        self.say(options, stop, &report);
+        Ok((stop, report))
+    }
+
+    /// With limits, of which a copy is made: a callback may write into the caller's.
+    fn run_limited(
+        &mut self,
+        scene: &Scene<'_>,
+        limit: PressureLimit<'_>,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, f64)> {
+        let n = self.state.p.len();
+        if self.state.at_limit.is_empty() {
+            self.state.at_limit = zeros(n, "elements at their limit")?;
+        }
+        let mut limits = std::mem::take(&mut self.limits);
+        let set = match limit {
+            PressureLimit::Uniform(limit) => Limited::Uniform(limit),
+            PressureLimit::PerElement(given) => {
+                limits.clear();
+                reserve(&mut limits, n, "pressure limits")?;
+                limits.extend_from_slice(given);
+                Limited::PerElement(&limits)
+            }
+        };
+        let outcome = self.run(scene, set, options, guess, monitor);
+        self.limits = limits;
+        outcome
+    }
+
+    /// Solves on an admissible set. Returns the tolerance that was aimed at, too.
+    fn run<S: AdmissibleSet>(
+        &mut self,
+        scene: &Scene<'_>,
+        set: S,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, f64)> {
+        let Solver { problem, state, methods, set_up, has_result, .. } = self;
+        let mut goal = options.goal();
+        let multigrid = set_up.without_multigrid.is_none();
+        let stages = methods::stages(options.method, problem.symmetric, S::FIXED, multigrid)?;
+        // What was solved before is gone from here on, unless this solve comes to an end.
+        let solved = std::mem::replace(has_result, false);
+        if options.initial_guess != InitialGuess::Previous || !solved {
+            methods.projected_cg.forget_windows();
+        }
+        if !solved {
+            methods.projected_cg.forget_solutions();
+        }
+        let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
+        let stop = if take_over::is_without_contact(state, S::FIXED) {
+            Stop::Converged
+        } else {
+            methods.solve(problem, state, set, from, stages, (&mut goal, options.error_ratio), monitor)?
+        };
+        let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
+        *has_result = true;
+        monitor.close_grid(state);
+        Ok((stop, goal.tolerance))
+    }
+
+    /// The errors of the report and the ledger, from what coarser grids find. With limits the samples would be other problems.
+    fn estimate(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        monitor: &mut Monitor<'_>,
+        report: &mut Report,
+    ) -> Result<()> {
+        if !self.problem.symmetric || is_fixed(options) || scene.pressure_limit.is_some() {
+            return Ok(());
+        }
+        let chord = monitor.ledger.outline.chord(self.state.contact_count());
+        let (samples, count) = self.methods.projected_cg.samples(&self.problem, &self.state, chord, monitor)?;
+        let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
+        let estimated = estimates::estimate(&mut ledger.rows, &self.state, &ledger.outline, &samples[..count], seconds);
+        (report.limit, report.halving) = estimated;
+        report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
+        report.work_units = monitor.count.work_units;
+        Ok(())
+    }
+
+    fn say(&self, options: &Options, stop: Stop, report: &Report) {
         log::info!(
             "{:?} on {} x {}: {stop:?} after {} cycles and {:.1} work units, residual {:e}",
             options.method,
-            self.grid.mx,
-            self.grid.my,
+            self.problem.grid.mx,
+            self.problem.grid.my,
             report.cycles,
             report.work_units,
             report.measures.certificate.residual
@@ -157,58 +256,21 @@ impl Solver {
         if log::log_enabled!(log::Level::Info) {
             report.advice().iter().for_each(|advice| log::info!("{advice}"));
         }
-        Ok((stop, report))
-    }
-
-    fn start_and_run(
-        &mut self,
-        scene: &Scene<'_>,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Stop> {
-        let rule = Rule {
-            tolerance: options.tolerance,
-            by_update: options.criterion == Criterion::Update,
-            fixed: options.active_set == ActiveSet::Fixed,
-            max_cycles: options.max_cycles as u64,
-        };
-        let start = self.start(scene, options, guess, monitor)?;
-        let mut stop = if self.without_contact(scene.load, rule.fixed) {
-            Stop::Converged
-        } else {
-            self.run(options, &rule, start, monitor)?
-        };
-        if let Some(limit) = scene.pressure_limit {
-            stop = self.limit_pressures(limit, stop, options, &rule, monitor)?;
-        }
-        let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
-        self.solved_before = true;
-        self.u_is_product = stop == Stop::Converged;
-        monitor.close_grid(&self.states[0]);
-        // With a limit of the pressures the samples would be other problems.
-        let comparable = self.symmetric && !rule.fixed && scene.pressure_limit.is_none();
-        if options.estimates && comparable && !monitor.is_cancelled() {
-            let state = &self.states[0];
-            let (samples, count) = self.projected.samples(state, monitor)?;
-            monitor.estimate(state, &samples[..count]);
-        }
-        Ok(stop)
     }
 
     /// The result: pressures, displacements, contact area and approach.
     pub fn state(&self) -> &State {
-        &self.states[0]
+        &self.state
     }
 
     /// The grid that it was set up for.
     pub fn grid(&self) -> &Grid {
-        &self.grid
+        &self.problem.grid
     }
 
-    /// Whether there is a result yet.
+    /// Whether there is a result: of the last solve, unless that failed.
     pub fn has_solved(&self) -> bool {
-        self.solved_before
+        self.has_result
     }
 
     /// What the last solve knew when: one row per grid, coarsest first.
@@ -218,41 +280,50 @@ impl Solver {
 
     /// The influence coefficients in use.
     pub fn influence(&self) -> &Influence {
-        self.projected.influence()
+        &self.problem.coefficients
     }
 
     /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
     pub fn has_own_influence(&self) -> bool {
-        self.has_own_influence
+        self.set_up.has_own_influence
     }
 
     /// The same of tables per loaded row.
     pub fn has_row_tables(&self) -> bool {
-        self.has_row_tables
+        self.set_up.has_row_tables
     }
 
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
         scene.check_distance_and_load()?;
         self.check_options(options)?;
-        if scene.grid != self.grid {
-            return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
+        if scene.grid != self.problem.grid {
+            return invalid(format!(
+                "the grid is {:?}; this solver was set up for {:?}",
+                scene.grid, self.problem.grid
+            ));
         }
         // Own coefficients know no bodies.
-        if !self.has_own_influence && !self.has_row_tables && scene.bodies != self.bodies {
-            return invalid(format!("the bodies are {:?}; this solver was set up for {:?}", scene.bodies, self.bodies));
+        if !self.set_up.has_own_influence && !self.set_up.has_row_tables && scene.bodies != self.set_up.bodies {
+            return invalid(format!(
+                "the bodies are {:?}; this solver was set up for {:?}",
+                scene.bodies, self.set_up.bodies
+            ));
         }
-        if scene.influence.is_some() && !self.has_own_influence {
+        if scene.influence.is_some() && !self.set_up.has_own_influence {
             return invalid("influence is given, but this solver was set up without".into());
         }
-        if scene.row_tables.is_some() && !self.has_row_tables {
+        if scene.row_tables.is_some() && !self.set_up.has_row_tables {
             return invalid("row_tables is given, but this solver was set up without".into());
         }
-        if scene.period != self.period {
-            return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));
+        if scene.period != self.set_up.period {
+            return invalid(format!(
+                "period is {:?}; this solver was set up for {:?}",
+                scene.period, self.set_up.period
+            ));
         }
         let named = [
-            ("a layer", scene.layer.is_some(), self.has_layer),
-            ("patches", scene.patches.is_some(), self.has_patches),
+            ("a layer", scene.layer.is_some(), self.set_up.has_layer),
+            ("patches", scene.patches.is_some(), self.set_up.has_patches),
         ];
         for (effect, is_named, was_named) in named {
             if is_named != was_named {
@@ -268,7 +339,7 @@ impl Solver {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
             return Err(Error::Unsupported(message.into()));
         }
-        match (options.method, self.without_multigrid) {
+        match (options.method, self.set_up.without_multigrid) {
             (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
             (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
             _ => Ok(()),
@@ -277,7 +348,8 @@ impl Solver {
 
     fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
-        if options.cycle_shape() != self.shape || options.threads != self.thread_count {
+        if options.cycle_shape() != self.set_up.options.cycle_shape() || options.threads != self.set_up.options.threads
+        {
             return invalid(
                 "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
             );
@@ -285,174 +357,18 @@ impl Solver {
         Ok(())
     }
 
-    /// Refuses units in which pressures, displacements or their squares leave the range of double precision. `fixed`: a contact
-    /// area that is given.
-    fn check_range(&self, scene: &Scene<'_>, fixed: Option<Guess<'_>>) -> Result<()> {
-        let influence = self.projected.influence().at(0, 0);
-        let (pressure, displacement) = match (scene.load, fixed) {
-            (Load::Approach(approach), Some(fixed)) => {
-                let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
-                let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
-                let depth = on_contact.fold(0.0, |depth: f64, (h, _)| depth.max((h - approach).abs()));
-                (depth / influence, depth)
-            }
-            (Load::Approach(approach), None) => {
-                let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
-                let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
-                (depth / influence, depth)
-            }
-            (Load::Force(force), _) => {
-                let pressure = force / scene.grid.element_area();
-                (pressure, pressure * influence)
-            }
-        };
-        // With a prescribed force the approach is a mean of distances, whatever they are measured from.
-        let farthest = match (scene.load, fixed) {
-            (Load::Approach(_), _) => 0.0,
-            (Load::Force(_), Some(fixed)) => {
-                let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
-                let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
-                on_contact.fold(0.0, |farthest: f64, (h, _)| farthest.max(h.abs()))
-            }
-            (Load::Force(_), None) => scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min).abs(),
-        };
-        if pressure != 0.0 && farthest >= 1e140 {
-            return invalid(format!(
-                "the undeformed distances of the contact area are of order {farthest:e}; with a prescribed force they must lie \
-                 below 1e140: choose other units"
-            ));
-        }
-        let in_range = |value: f64| (1e-140..1e140).contains(&value);
-        let loaded = pressure != 0.0 || displacement != 0.0;
-        let largest = self.largest_influence;
-        let coefficients = in_range(influence) && in_range(largest) && in_range(largest * pressure);
-        if loaded && !(in_range(pressure) && in_range(displacement) && coefficients) {
-            return invalid(format!(
-                "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
-                 coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"
-            ));
-        }
-        Ok(())
-    }
-
-    /// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.
-    fn without_contact(&mut self, load: Load, fixed: bool) -> bool {
-        let state = &mut self.states[0];
-        let lowest = state.h.iter().copied().fold(f64::INFINITY, f64::min);
-        let nothing = match load {
-            Load::Approach(approach) => !fixed && lowest > approach,
-            Load::Force(force) => force == 0.0,
-        };
-        if nothing {
-            state.p.fill(0.0);
-            state.u.fill(0.0);
-            state.contact.fill(false);
-            if let Load::Force(_) = load {
-                state.approach = if lowest.is_finite() { lowest } else { 0.0 };
-            }
-        }
-        nothing
-    }
-
-    fn run(&mut self, options: &Options, rule: &Rule, start: Start, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        if options.initial_guess != InitialGuess::Previous {
-            self.projected.forget_windows();
-        }
-        match options.method {
-            Method::Norm => self.norm(rule, monitor),
-            Method::Multigrid => self.multigrid(rule, monitor),
-            Method::FullMultigrid => self.full_multigrid(options, rule, start, monitor),
-            Method::ProjectedCg if !self.symmetric => Err(Error::Unsupported(
-                "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
-            )),
-            Method::ProjectedCg => {
-                self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)
-            }
-            Method::Auto => {
-                let stop = if self.symmetric {
-                    self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)?
-                } else if self.without_multigrid.is_some() {
-                    return self.norm(rule, monitor);
-                } else {
-                    self.full_multigrid(options, rule, start, monitor)?
-                };
-                if stop != Stop::Stagnated {
-                    return Ok(stop);
-                }
-                if self.symmetric && !rule.fixed {
-                    log::info!("the fast method stagnated on this scene; projected descent takes over");
-                    self.descent(rule, monitor)
-                } else {
-                    log::info!("the fast method stagnated on this scene; NORM takes over");
-                    self.norm(rule, monitor)
-                }
-            }
-        }
-    }
-
-    fn descent(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        let (projected, state) = (&mut self.projected, &mut self.states[0]);
-        let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
-        let by = Displace { product: &mut displace, work: 1.0, symmetric: true };
-        descent_method::solve(state, by, rule, &mut self.workspace.descent, monitor)
-    }
-
-    fn norm(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        let (projected, state) = (&mut self.projected, &mut self.states[0]);
-        let mut displace = |p: &[f64], u: &mut [f64]| projected.displace(p, u);
-        let by = Displace { product: &mut displace, work: 1.0, symmetric: self.symmetric };
-        norm_method::solve(state, by, rule, &mut self.workspace.norm, monitor)
-    }
-
-    fn multigrid(&mut self, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Stop> {
-        self.set_up_multigrid()?;
-        let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
-        let workspace = &mut self.workspace.cycles;
-        Ok(multigrid_method::solve(multigrid, 0, &mut self.states[0], rule, workspace, monitor))
-    }
-
-    fn full_multigrid(
-        &mut self,
-        options: &Options,
-        rule: &Rule,
-        start: Start,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Stop> {
-        if start != Start::Nothing || rule.fixed {
-            return self.multigrid(rule, monitor);
-        }
-        self.set_up_multigrid()?;
-        let Some(multigrid) = &mut self.multigrid else { return Ok(Stop::Stagnated) };
-        full_multigrid::solve(multigrid, &mut self.states, rule, options.error_ratio, &mut self.workspace, monitor)
-    }
-
-    fn set_up_multigrid(&mut self) -> Result<()> {
-        self.workspace.cycles.reserve(self.grid.len())?;
-        if self.multigrid.is_none() {
-            let began = Instant::now();
-            let multigrid = Multigrid::new(&self.grid, self.projected.influence(), self.shape, &self.threads)?;
-            for level in &multigrid.hierarchy.levels[1..] {
-                let h = zeros(level.grid.len(), "undeformed distances")?;
-                let load = self.states[0].load;
-                self.states.push(State::new(level.grid, h, load, 0.0)?);
-            }
-            self.multigrid = Some(multigrid);
-            self.setup_seconds += began.elapsed().as_secs_f64();
-        }
-        Ok(())
-    }
-
     fn bytes(&self) -> usize {
-        let states: usize = self.states.iter().map(State::bytes).sum();
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
-        self.projected.bytes()
-            + self.multigrid.as_ref().map_or(0, Multigrid::bytes)
-            + states
-            + workers
-            + self.limited.bytes()
+        let coefficients = self.problem.coefficients.bytes();
+        let limits = self.limits.len() * size_of::<f64>();
+        self.problem.bytes() + coefficients + self.methods.bytes() + self.state.bytes() + limits + workers
     }
+}
+
+fn is_fixed(options: &Options) -> bool {
+    options.active_set == ActiveSet::Fixed
 }
 
 /// The effects that MULTIGRID and FULL_MULTIGRID do not solve.

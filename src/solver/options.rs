@@ -2,6 +2,8 @@
 
 use crate::error::{invalid, require, Result};
 use crate::methods::multigrid::{CycleShape, SmootherKind};
+use crate::operator::Precision;
+use crate::progress::{Criterion, Goal};
 
 /// The method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,28 +41,6 @@ pub enum InitialGuess {
     Given,
     /// What this solver found last.
     Previous,
-}
-
-/// What has to become small.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Criterion {
-    /// `||h - approach + A p||_2 <= tolerance * ||h - approach||_2`, over C.
-    #[default]
-    Residual,
-    /// NORM's own: rms over C of the last change of p at most `tolerance` times the rms over C of p.
-    Update,
-}
-
-/// Arithmetic of the inner work; results are always computed in double precision.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// Whichever is faster.
-    #[default]
-    Auto,
-    /// Double precision throughout.
-    Double,
-    /// Single precision inside, where it helps.
-    Mixed,
 }
 
 /// How a scene is solved.
@@ -122,8 +102,8 @@ impl Default for Options {
     }
 }
 
-/// The coarsest grid is solved by elimination, `coarsest^2` unknowns.
-const LARGEST_COARSEST: usize = 64;
+/// The coarsest grid is solved by elimination, in each cycle: of 16^2 unknowns in some milliseconds, of 64^2 in 20 seconds.
+const LARGEST_COARSEST: usize = 16;
 /// More sweeps than this are a mistake.
 const MOST_SWEEPS: usize = 100;
 /// More threads than this are a mistake, and starting them might take the machine down.
@@ -156,6 +136,11 @@ impl Options {
             return invalid(format!("threads is {}; at most {MOST_THREADS} are allowed", self.threads));
         }
         Ok(())
+    }
+
+    /// What a solve has to reach.
+    pub fn goal(&self) -> Goal {
+        Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
     }
 
     /// The V-cycle that these options ask for.

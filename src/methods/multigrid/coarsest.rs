@@ -17,6 +17,8 @@ pub struct Coarsest {
     permutation: Vec<usize>,
     inverse: Vec<usize>,
     scratch: MemBuffer,
+    /// Since they were last asked for.
+    multiplications: f64,
 }
 
 impl Coarsest {
@@ -29,7 +31,13 @@ impl Coarsest {
             permutation: Vec::new(),
             inverse: Vec::new(),
             scratch: MemBuffer::new(StackReq::EMPTY),
+            multiplications: 0.0,
         }
+    }
+
+    /// Multiplications of eliminations since the last call: `n^3/3` each.
+    pub fn take_multiplications(&mut self) -> f64 {
+        std::mem::take(&mut self.multiplications)
     }
 
     /// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
@@ -41,6 +49,7 @@ impl Coarsest {
         if n == 0 {
             return;
         }
+        self.multiplications += (n as f64).powi(3) / 3.0;
         dense::fill_matrix(grid, &self.elements, |x, y| influence.at(x, y), &mut self.matrix);
         self.right.clear();
         self.right.extend(self.elements.iter().map(|&i| b[i]));

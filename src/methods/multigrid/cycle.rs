@@ -7,11 +7,10 @@
 use super::coarsest::Coarsest;
 use super::smoother::{Smoother, SmootherKind};
 use super::{transfer, Hierarchy};
+use crate::contact::Problem;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
 use crate::operator::zeros;
-use crate::threads::Threads;
 
 /// The shape of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,15 +55,15 @@ pub struct Multigrid {
 }
 
 impl Multigrid {
-    /// Sets up cycles of one shape on `grid`.
-    pub fn new(grid: &Grid, influence: &Influence, shape: CycleShape, threads: &Threads) -> Result<Multigrid> {
-        let hierarchy = Hierarchy::new(grid, influence, shape.coarsest, threads)?;
+    /// Sets up cycles of one shape on the grid of `problem`.
+    pub fn new(problem: &Problem, shape: CycleShape) -> Result<Multigrid> {
+        let hierarchy = Hierarchy::new(problem, shape.coarsest)?;
         let mut unknowns = Vec::new();
         for level in &hierarchy.levels {
             let n = level.grid.len();
             let array = || zeros(n, "the multigrid levels");
             unknowns.push(Unknowns {
-                smoother: Smoother::new(shape.smoother, &level.influence, &level.grid, threads)?,
+                smoother: Smoother::new(shape.smoother, &level.influence, &level.grid, &problem.threads)?,
                 correction: array()?,
                 defect: array()?,
                 residual: array()?,
@@ -89,6 +88,12 @@ impl Multigrid {
     pub fn displace(&mut self, l: usize, p: &[f64], u: &mut [f64]) {
         self.hierarchy.levels[l].operator.apply(p, u, &mut self.hierarchy.workspace);
         self.products[l] += 1;
+    }
+
+    /// The work of eliminations on the coarsest grid since the last call, in products on the finest.
+    pub fn take_eliminations(&mut self) -> f64 {
+        let finest = &self.hierarchy.levels[0].grid;
+        self.coarsest.take_multiplications() / multiplications_of_product(finest)
     }
 
     /// One cycle that starts on level `l`: the correction `v` with `A v` near `defect` on the contact area, zero
@@ -215,4 +220,10 @@ impl Multigrid {
         let elements: usize = self.hierarchy.levels.iter().map(|level| level.grid.len()).sum();
         self.hierarchy.bytes() + elements * (3 * std::mem::size_of::<f64>() + 1)
     }
+}
+
+/// Multiplications of a product by FFT: transforms of 4 n real values there and back, each of `n log2 n` of them.
+fn multiplications_of_product(grid: &Grid) -> f64 {
+    let n = 4.0 * grid.len() as f64;
+    2.0 * n * n.log2()
 }

@@ -5,11 +5,13 @@
 //! once it has no more than `coarsest` elements, or while its elements are over twice as long as those of the other
 //! direction (slender elements are joined along their short side first).
 
+use std::sync::Arc;
+
+use crate::contact::Problem;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::{Toeplitz, Workspace};
-use crate::threads::Threads;
 
 /// One grid and its operator.
 pub struct Level {
@@ -18,7 +20,7 @@ pub struct Level {
     /// Its coefficients.
     pub influence: Influence,
     /// `u = A p` on it.
-    pub operator: Toeplitz<f64>,
+    pub operator: Arc<Toeplitz<f64>>,
 }
 
 /// The grids, finest first.
@@ -30,12 +32,15 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// Coarsens until no direction has more than `coarsest` elements.
-    pub fn new(grid: &Grid, influence: &Influence, coarsest: usize, threads: &Threads) -> Result<Hierarchy> {
+    /// Coarsens the grid of `problem` until no direction has more than `coarsest` elements.
+    pub fn new(problem: &Problem, coarsest: usize) -> Result<Hierarchy> {
         let mut levels = Vec::new();
-        let (mut grid, mut influence) = (*grid, influence.clone());
+        let (mut grid, mut influence) = (problem.grid, problem.coefficients.clone());
         loop {
-            let operator = Toeplitz::new(&influence, &grid, threads)?;
+            let operator = match levels.is_empty() {
+                true => problem.operator.clone(),
+                false => Arc::new(Toeplitz::new(&influence, &grid, &problem.threads.suited_to(grid.len()))?),
+            };
             levels.push(Level { grid, influence: influence.clone(), operator });
             let Some(coarse) = coarsen(&grid, coarsest) else { break };
             influence = influence.coarsen(&grid, &coarse)?;
@@ -53,10 +58,9 @@ impl Hierarchy {
         self.levels[l].grid.len() as f64 / self.levels[0].grid.len() as f64
     }
 
-    /// Bytes held by the operators, and by the coefficients of the coarser grids.
+    /// Bytes held by the coarser grids' operators and coefficients; the finest grid's are the problem's.
     pub fn bytes(&self) -> usize {
-        let coefficients: usize = self.levels[1..].iter().map(|level| level.influence.bytes()).sum();
-        coefficients + self.levels.iter().map(|level| level.operator.bytes()).sum::<usize>()
+        self.levels[1..].iter().map(|level| level.influence.bytes() + level.operator.bytes()).sum()
     }
 }
 

@@ -5,11 +5,11 @@ pub mod analysis;
 mod coarsest;
 mod cycle;
 mod hierarchy;
-pub mod nested;
 pub mod smoother;
-pub mod step;
+mod step;
 pub mod transfer;
 
 pub use cycle::{CycleShape, Multigrid};
 pub use hierarchy::{coarsen, Hierarchy, Level};
 pub use smoother::SmootherKind;
+pub use step::{Cycles, Workspace};

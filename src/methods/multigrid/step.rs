@@ -1,61 +1,64 @@
-//! The multigrid-based algorithm (section 4.1 of the paper): one V-cycle per active-set step.
+//! The multigrid-based algorithm (section 4.1 of the paper) as a step: one V-cycle.
+//!
+//! Step 2 restricts the system to C, step 3 is the cycle; steps (4.1) and (4.2), and who decides to go on, are the loop's.
 
 use super::Multigrid;
-use crate::contact::{admit, certify, norm_of_distance, residual_norm, truncate, State};
+use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
-use crate::operator::reserve;
-use crate::progress::{Monitor, Rule};
+use crate::memory::reserve;
+use crate::methods::{Change, Habits, Step};
+use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
-use crate::solver::Stop;
 
-/// Cycles without a new smallest residual after which the method is given up.
-const PATIENCE: u32 = 50;
-/// Cycles in which the criterion holds but elements still change sides, after which the certificate decides.
-const CHATTER: u32 = 5;
-
-/// Memory for solves, kept from one to the next.
+/// Memory for cycles, kept from one solve to the next.
 #[derive(Default)]
 pub struct Workspace {
     residual: Vec<f64>,
-    best: Best,
     unit: UnitApproach,
 }
 
-impl Workspace {
-    /// Room for all that a solve on n elements needs.
-    pub fn reserve(&mut self, n: usize) -> Result<()> {
-        let Workspace { residual, best, unit } = self;
-        for values in [residual, &mut best.p, &mut unit.response, &mut unit.product, &mut unit.ones] {
-            reserve(values, n, "multigrid's workspace")?;
-        }
-        reserve(&mut best.contact, n, "multigrid's workspace")?;
-        reserve(&mut unit.contact, n, "multigrid's workspace")
-    }
+/// V-cycles on level `level` of the grids.
+pub struct Cycles<'a> {
+    /// The grids.
+    pub multigrid: &'a mut Multigrid,
+    /// The level of the state; 0 is the finest.
+    pub level: usize,
+    /// Memory.
+    pub workspace: &'a mut Workspace,
 }
 
-/// Steps 2 to 6 on level `l`, from a state whose contact area is chosen (step 1) and whose u is A p.
-pub fn solve(
-    multigrid: &mut Multigrid,
-    l: usize,
-    state: &mut State,
-    rule: &Rule,
-    workspace: &mut Workspace,
-    monitor: &mut Monitor<'_>,
-) -> Stop {
-    let Workspace { residual, best, unit } = workspace;
-    residual.resize(state.p.len(), 0.0);
-    best.begin(state);
-    unit.begin();
-    let mut chatter = 0;
-    loop {
-        if monitor.cycles >= rule.max_cycles {
-            best.restore(state, multigrid, l);
-            return Stop::IterationLimit;
+impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
+    fn name(&self) -> &'static str {
+        "MULTIGRID"
+    }
+
+    fn habits(&self) -> Habits {
+        Habits { exchanged_by_loop: true, step_is_cycle: true, chatter: 5, patience: 50, progress: 1.0 }
+    }
+
+    fn begin(&mut self, state: &State) -> Result<()> {
+        let Workspace { residual, unit } = &mut self.workspace;
+        for values in [residual, &mut unit.response, &mut unit.product, &mut unit.ones] {
+            reserve(values, state.p.len(), "multigrid's workspace")?;
         }
+        reserve(&mut unit.contact, state.p.len(), "multigrid's workspace")?;
+        unit.forget();
+        Ok(())
+    }
+
+    fn step(
+        &mut self,
+        _: &mut Problem,
+        state: &mut State,
+        _: S,
+        _: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Change> {
+        let (multigrid, l) = (&mut *self.multigrid, self.level);
+        let Workspace { residual, unit } = &mut *self.workspace;
         // 2. p = 0 in E, and the system restricted to C.
-        for (i, r) in residual.iter_mut().enumerate() {
-            *r = if state.contact[i] { -state.deformed_distance(i) } else { 0.0 };
-        }
+        residual.clear();
+        residual.extend((0..state.p.len()).map(|i| if state.contact[i] { -state.deformed_distance(i) } else { 0.0 }));
         // 3. One multigrid cycle.
         if let Load::Force(force) = state.load {
             if unit.contact != state.contact {
@@ -75,22 +78,8 @@ pub fn solve(
             *p += change;
             update += change * change;
         }
-        let update = (update / state.contact_count().max(1) as f64).sqrt();
-        // 4.1 Elements with p < 0 leave, then u = A p: in this order, or the loop cycles for ever.
-        let mut changed = if rule.fixed { 0 } else { truncate(state) };
-        let recursive = changed == 0 && unit.displace(multigrid.correction_product(l), &mut state.u);
-        if !recursive {
-            refresh(state, multigrid, l);
-        }
-        state.fit_approach();
-        // Only a fresh product certifies.
-        if recursive && rule.holds(state, update) {
-            refresh(state, multigrid, l);
-            state.fit_approach();
-        }
-        // 4.2 Elements with e <= 0 enter.
-        changed += if rule.fixed { 0 } else { admit(state) };
-
+        let recursive = unit.displace(multigrid.correction_product(l), &mut state.u);
+        state.u_is = if recursive { Freshness::Near } else { Freshness::Stale };
         for level in 0..multigrid.depth() {
             let (products, work) = (multigrid.take_products(level), multigrid.hierarchy.work(level));
             if level == l {
@@ -99,32 +88,10 @@ pub fn solve(
                 monitor.count_work(products as f64 * work);
             }
         }
-        monitor.active_set_steps += 1;
-        let (r, h) = (residual_norm(state), norm_of_distance(state));
-        let stuck = best.without_progress(state, r / h);
-        if !monitor.cycle_done(&state.grid, changed as u64, update, r / h) {
-            best.restore(state, multigrid, l);
-            return Stop::Cancelled;
-        }
-        // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if rule.holds(state, update) {
-            chatter += u32::from(changed > 0);
-            let scale = h / (state.contact_count().max(1) as f64).sqrt();
-            if changed == 0 || (chatter > CHATTER && certify(state).penetration <= rule.tolerance * scale) {
-                return Stop::Converged;
-            }
-        }
-        if stuck {
-            best.restore(state, multigrid, l);
-            return Stop::Stagnated;
-        }
+        monitor.count_work(multigrid.take_eliminations());
+        let update = (update / state.contact_count().max(1) as f64).sqrt();
+        Ok(Change { update, ..Change::default() })
     }
-}
-
-/// u = A p, of pressures that carry the prescribed force.
-fn refresh(state: &mut State, multigrid: &mut Multigrid, l: usize) {
-    state.balance_force();
-    multigrid.displace(l, &state.p, &mut state.u);
 }
 
 /// With a prescribed force: what one cycle makes of a unit approach, `response = B 1` with B the cycle. The change of
@@ -144,7 +111,7 @@ struct UnitApproach {
 }
 
 impl UnitApproach {
-    fn begin(&mut self) {
+    fn forget(&mut self) {
         self.contact.clear();
         self.response.clear();
         self.product.clear();
@@ -165,46 +132,9 @@ impl UnitApproach {
     fn displace(&self, product: Option<&[f64]>, u: &mut [f64]) -> bool {
         let Some(product) = product else { return false };
         u.iter_mut().zip(product).for_each(|(u, value)| *u += value);
-        if self.amount.is_finite() {
+        if !self.response.is_empty() && self.amount.is_finite() {
             u.iter_mut().zip(&self.product).for_each(|(u, value)| *u += self.amount * value);
         }
         true
-    }
-}
-
-/// The best iterate so far.
-#[derive(Default)]
-struct Best {
-    residual: f64,
-    since: u32,
-    p: Vec<f64>,
-    contact: Vec<bool>,
-}
-
-impl Best {
-    fn begin(&mut self, state: &State) {
-        (self.residual, self.since) = (f64::INFINITY, 0);
-        self.p.clone_from(&state.p);
-        self.contact.clone_from(&state.contact);
-    }
-
-    /// Notes an iterate; true when there has been no better one for too long, or this one is no longer a number.
-    fn without_progress(&mut self, state: &State, residual: f64) -> bool {
-        if residual < self.residual {
-            self.residual = residual;
-            self.since = 0;
-            self.p.copy_from_slice(&state.p);
-            self.contact.copy_from_slice(&state.contact);
-        } else {
-            self.since += 1;
-        }
-        self.since > PATIENCE || !residual.is_finite()
-    }
-
-    fn restore(&self, state: &mut State, multigrid: &mut Multigrid, l: usize) {
-        state.p.copy_from_slice(&self.p);
-        state.contact.copy_from_slice(&self.contact);
-        multigrid.displace(l, &state.p, &mut state.u);
-        state.fit_approach();
     }
 }

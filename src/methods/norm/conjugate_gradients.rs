@@ -6,9 +6,9 @@
 //!                       directions keep mean zero over C, and the approach is the mean of h + A p over C
 //! ```
 
+use super::Workspace;
 use crate::contact::{norm_of_distance, State};
 use crate::error::{Error, Result};
-use crate::methods::norm::Workspace;
 use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
@@ -22,6 +22,8 @@ pub struct InnerStop {
     pub residual: f64,
     /// Or: rms of the last change of p at most this part of the rms of p (NORM's own criterion); 0: not used.
     pub update: f64,
+    /// With `update`: the residual has to be at most this as well.
+    pub believed: f64,
     /// Iterations at most.
     pub iterations: usize,
 }
@@ -101,7 +103,8 @@ pub fn conjugate_gradients(
         project(r);
         let before = std::mem::replace(&mut rr, dot(r, r));
         inner.update = step.abs() * (dot(direction, direction) / count).sqrt();
-        let met = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt() && stop.update > 0.0;
+        let small = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt();
+        let met = stop.update > 0.0 && small && rr.sqrt() <= stop.believed;
         if !go_on(inner.update, rr.sqrt()) || met {
             inner.met = met;
             return Ok(inner);

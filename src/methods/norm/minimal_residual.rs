@@ -133,7 +133,8 @@ pub fn minimal_residual(
         if cancelled || y.is_empty() {
             return Ok(inner);
         }
-        if stop.update > 0.0 && inner.update <= stop.update * size {
+        let last = right[k].abs();
+        if stop.update > 0.0 && inner.update <= stop.update * size && last <= stop.believed {
             inner.met = true;
             return Ok(inner);
         }

@@ -7,10 +7,11 @@
 
 mod conjugate_gradients;
 mod minimal_residual;
-pub mod step;
+mod step;
 
 pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
 pub use minimal_residual::minimal_residual;
+pub use step::Norm;
 
 use crate::error::Result;
 use crate::memory::reserve;
@@ -25,6 +26,11 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        (self.residual.len() + self.direction.len() + self.product.len()) * size_of::<f64>()
+    }
+
     /// Room for all that conjugate gradients on n elements need.
     pub(crate) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.residual, &mut self.direction, &mut self.product] {

@@ -1,203 +1,252 @@
-//! NORM (section 3 of the paper): an active set around an inner solve by conjugate gradients.
+//! NORM as a step: an inner solve on C, from p = 0 as in the paper, or from the pressures that the solve starts with.
 
 use super::{conjugate_gradients, minimal_residual, Inner, InnerStop};
-use crate::contact::{admit, certify, norm_of_distance, residual_norm, truncate, ExchangeGuard, State};
+use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
+use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Problem, State, Survey};
 use crate::error::Result;
-use crate::operator::reserve;
-use crate::progress::{Monitor, Rule};
+use crate::memory::reserve;
+use crate::methods::{Change, Habits, Step};
+use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
-use crate::solver::Stop;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
 /// Where an inner solve ends at round-off, violations of this size are round-off too.
 const FLOOR: f64 = 1e-12;
 
-/// Memory for solves, kept from one to the next.
+/// The method, and its memory, kept from one solve to the next.
 #[derive(Default)]
-pub struct Workspace {
+pub struct Norm {
     inner: super::Workspace,
+    guard: ExchangeGuard,
+    /// Restarts of this inner solve, and the true residual before the last.
+    restarts: u32,
+    last_residual: f64,
+    /// The part of the tolerance that the inner solve aims at: less where its result leaves the complementarity above the tolerance.
+    aim: f64,
+    /// What to do with the result of the last inner solve.
+    next: Next,
+    /// The state before a trial.
+    before: Kept,
+}
+
+/// What the next step begins with.
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Next {
+    /// An inner solve from the pressures there are.
+    #[default]
+    GoOn,
+    /// Step 3: the contact conditions of an inner solve that ended.
+    Exchange,
+    /// The state before the trial, and one element of it.
+    ExchangeOne,
+}
+
+#[derive(Default)]
+struct Kept {
     p: Vec<f64>,
     u: Vec<f64>,
     contact: Vec<bool>,
+    at_limit: Vec<bool>,
+    approach: f64,
 }
 
-impl Workspace {
-    /// Room for all that a solve on n elements needs.
-    fn reserve(&mut self, n: usize) -> Result<()> {
+impl Norm {
+    /// The memory of inner solves.
+    pub fn inner(&mut self) -> &mut super::Workspace {
+        &mut self.inner
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        (self.before.p.len() + self.before.u.len()) * size_of::<f64>() + self.inner.bytes()
+    }
+
+    /// 2. The equations on the contact area. From p = 0, or from what there is if `warm`.
+    fn solve<S: AdmissibleSet>(
+        &mut self,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Inner> {
+        if state.contact_count() == 0 {
+            return Ok(Inner { met: true, ..Inner::default() });
+        }
+        let h = norm_of_distance(state);
+        let stop = InnerStop {
+            residual: if goal.by_update() { 0.0 } else { self.aim * goal.tolerance * h },
+            update: if goal.by_update() { goal.tolerance } else { 0.0 },
+            believed: self.aim * goal.residual() * h,
+            iterations: goal.max_cycles.saturating_sub(monitor.count.cycles) as usize,
+        };
+        let grid = state.grid;
+        let symmetric = problem.symmetric;
+        let product = |p: &[f64], u: &mut [f64]| problem.displace(p, u);
+        let go_on = |update: f64, residual: f64| monitor.cycle_done(&grid, 0, update, residual / h);
+        let inner = if symmetric {
+            conjugate_gradients(state, stop, &mut self.inner, product, go_on)?
+        } else {
+            minimal_residual(state, stop, &mut self.inner, product, go_on)?
+        };
+        monitor.count.update = inner.update;
+        // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
+        problem.refresh(state, set);
+        Ok(inner)
+    }
+
+    /// What is to follow an inner solve that leaves `violators`. The recursive residual certifies nothing: if the true one is not met, it
+    /// goes on from there. False if nothing is left to do.
+    fn judge<S: AdmissibleSet>(&mut self, state: &State, set: S, goal: &Goal, inner: &Inner, violators: u64) -> bool {
+        let residual = residual_norm(state);
+        let residual_holds = residual <= goal.residual() * norm_of_distance(state);
+        let holds = match violators {
+            0 => goal.holds(&Survey::of(state), inner.update, set),
+            _ => residual_holds,
+        };
+        let gains = residual < 0.5 * self.last_residual || residual_holds || goal.by_update();
+        if !holds && gains && self.restarts < RESTARTS {
+            self.aim *= if residual_holds { 0.5 } else { 1.0 };
+            (self.restarts, self.last_residual, self.next) = (self.restarts + 1, residual, Next::GoOn);
+            return true;
+        }
+        (self.restarts, self.last_residual, self.aim) = (0, f64::INFINITY, 1.0);
+        self.next = Next::Exchange;
+        violators > 0
+    }
+
+    /// 3. Elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
+    /// solve is to follow; if not, the state is a trial: perhaps the violations are within the tolerance.
+    fn exchange<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &mut State, set: S) -> bool {
+        if self.guard.allows_all(violators(state, set)) {
+            admit(state, set);
+            truncate(state, set);
+            return true;
+        }
+        self.before.keep(state);
+        truncate(state, set);
+        problem.refresh(state, set);
+        self.next = Next::ExchangeOne;
+        false
+    }
+
+    /// One element changes sides: the last of those that should.
+    fn exchange_one<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        self.before.give_back(state);
+        if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, set, i)) {
+            let at_limit = S::LIMITED && state.at_limit[i];
+            if S::LIMITED {
+                state.at_limit[i] = state.contact[i] && state.p[i] > 0.0;
+            }
+            state.p[i] = if at_limit { state.p[i] } else { set.project(i, state.p[i]) };
+            state.contact[i] = !state.contact[i];
+        }
+    }
+}
+
+/// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
+fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+    let held = S::LIMITED && state.at_limit.contains(&true);
+    for i in 0..state.p.len() {
+        state.p[i] = if held && state.at_limit[i] { set.limit(i) } else { 0.0 };
+        state.u[i] = 0.0;
+    }
+    state.u_is = Freshness::Exact;
+    if held || matches!(state.load, Load::Force(_)) {
+        problem.refresh(state, set);
+    }
+}
+
+fn violators<S: AdmissibleSet>(state: &State, set: S) -> usize {
+    (0..state.p.len()).filter(|&i| violates(state, set, i)).count()
+}
+
+fn violates<S: AdmissibleSet>(state: &State, set: S, i: usize) -> bool {
+    match state.contact[i] {
+        true => set.leaves(i, state.p[i]),
+        false => set.enters(S::LIMITED && state.at_limit[i], state.deformed_distance(i)),
+    }
+}
+
+impl<S: AdmissibleSet> Step<S> for Norm {
+    fn name(&self) -> &'static str {
+        "NORM"
+    }
+
+    fn habits(&self) -> Habits {
+        // The guard keeps it finite.
+        Habits { exchanged_by_loop: false, step_is_cycle: false, chatter: 0, patience: u32::MAX, progress: 1.0 }
+    }
+
+    fn begin(&mut self, state: &State) -> Result<()> {
+        (self.guard, self.next) = (ExchangeGuard::default(), Next::GoOn);
+        (self.restarts, self.last_residual, self.aim) = (0, f64::INFINITY, 1.0);
+        self.inner.reserve(state.p.len())?;
+        self.before.reserve(state)
+    }
+
+    fn step(
+        &mut self,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Change> {
+        match self.next {
+            Next::GoOn => {
+                if state.p.iter().all(|p| *p == 0.0) {
+                    start_from_zero(problem, state, set);
+                }
+            }
+            Next::Exchange => {
+                if !self.exchange(problem, state, set) {
+                    return Ok(Change::default());
+                }
+                start_from_zero(problem, state, set);
+            }
+            Next::ExchangeOne => {
+                let floor = Goal { tolerance: FLOOR.max(goal.tolerance), ..*goal };
+                if floor.holds(&Survey::of(state), 0.0, set) {
+                    return Ok(Change { gives_up: true, ..Change::default() });
+                }
+                self.exchange_one(state, set);
+                start_from_zero(problem, state, set);
+            }
+        }
+        let inner = self.solve(problem, state, set, goal, monitor)?;
+        monitor.count.active_set_steps += 1;
+        let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
+        monitor.count.active_set_changes += changes;
+        let gives_up = !self.judge(state, set, goal, &inner, changes);
+        Ok(Change { update: inner.update, changes, gives_up })
+    }
+}
+
+impl Kept {
+    fn reserve(&mut self, state: &State) -> Result<()> {
         const NORM: &str = "NORM's workspace";
+        let n = state.p.len();
         reserve(&mut self.p, n, NORM)?;
         reserve(&mut self.u, n, NORM)?;
         reserve(&mut self.contact, n, NORM)?;
-        self.inner.reserve(n)
+        reserve(&mut self.at_limit, state.at_limit.len(), NORM)
     }
-}
 
-/// The operator as NORM sees it.
-pub struct Displace<'a> {
-    /// `product(p, u)`: u = A p.
-    pub product: &'a mut dyn FnMut(&[f64], &mut [f64]),
-    /// Work units of one product.
-    pub work: f64,
-    /// Whether A is symmetric: conjugate gradients, or else GMRES.
-    pub symmetric: bool,
-}
-
-impl Displace<'_> {
-    fn displace(&mut self, state: &mut State, monitor: &mut Monitor<'_>) {
-        (self.product)(&state.p, &mut state.u);
-        monitor.count_products(1, self.work);
-        state.fit_approach();
+    fn keep(&mut self, state: &State) {
+        self.p.clone_from(&state.p);
+        self.u.clone_from(&state.u);
+        self.contact.clone_from(&state.contact);
+        self.at_limit.clone_from(&state.at_limit);
+        self.approach = state.approach;
     }
-}
 
-/// Solves from the state's contact area (step 1). If the state holds pressures (and u = A p), the first inner solve starts
-/// from them; every further one starts from p = 0, as in the paper.
-pub fn solve(
-    state: &mut State,
-    mut by: Displace<'_>,
-    rule: &Rule,
-    workspace: &mut Workspace,
-    monitor: &mut Monitor<'_>,
-) -> Result<Stop> {
-    workspace.reserve(state.p.len())?;
-    let mut guard = ExchangeGuard::default();
-    let mut warm = state.p.iter().any(|p| *p != 0.0);
-    // Restarts of this inner solve, and the true residual before the last.
-    let (mut restarts, mut last_residual) = (0, f64::INFINITY);
-    loop {
-        // 2. The equations on the contact area.
-        if !warm {
-            state.p.fill(0.0);
-            state.u.fill(0.0);
-            if let Load::Force(_) = state.load {
-                state.balance_force();
-                by.displace(state, monitor);
-            }
-        }
-        let inner = inner_solve(state, &mut by, rule, &mut workspace.inner, monitor)?;
-        // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
-        state.balance_force();
-        by.displace(state, monitor);
-        monitor.active_set_steps += 1;
-        if monitor.is_cancelled() || (monitor.cycles >= rule.max_cycles && !inner.met) {
-            give_up(state, &mut by, rule, monitor);
-            return Ok(Stop::interrupted(monitor));
-        }
-
-        // The recursive residual certifies nothing: if the true one is not met, go on from here.
-        let holds = rule.holds(state, inner.update);
-        let residual = residual_norm(state);
-        let gains = residual < 0.5 * last_residual || rule.by_update;
-        if !holds && gains && restarts < RESTARTS {
-            (restarts, last_residual) = (restarts + 1, residual);
-            warm = true;
-            continue;
-        }
-        (restarts, last_residual) = (0, f64::INFINITY);
-        // At the floor of round-off the contact area is found all the same, as well as it can be.
-        let done = if holds { Stop::Converged } else { Stop::Stagnated };
-        let tolerance = if holds { rule.tolerance } else { rule.tolerance.max(FLOOR) };
-        if rule.fixed {
-            return Ok(done);
-        }
-
-        // 3. The contact conditions.
-        let violates = |state: &State, i: usize| {
-            if state.contact[i] {
-                state.p[i] < 0.0
-            } else {
-                state.deformed_distance(i) <= 0.0
-            }
-        };
-        let violators = (0..state.p.len()).filter(|&i| violates(state, i)).count();
-        // 4. Done if all hold.
-        if violators == 0 {
-            return Ok(done);
-        }
-        monitor.active_set_changes += violators as u64;
-        if guard.allows_all(violators) {
-            admit(state);
-            truncate(state);
-        } else if settled(state, &mut by, tolerance, workspace, monitor) {
-            return Ok(done);
-        } else if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, i)) {
-            state.contact[i] = !state.contact[i];
-            state.p[i] = 0.0;
-        }
-        if monitor.cycles >= rule.max_cycles {
-            give_up(state, &mut by, rule, monitor);
-            return Ok(Stop::IterationLimit);
-        }
-        warm = false;
+    fn give_back(&self, state: &mut State) {
+        state.p.copy_from_slice(&self.p);
+        state.u.copy_from_slice(&self.u);
+        state.contact.copy_from_slice(&self.contact);
+        state.at_limit.copy_from_slice(&self.at_limit);
+        state.approach = self.approach;
     }
-}
-
-/// What is returned has no tension, carries the prescribed force, and has u = A p.
-fn give_up(state: &mut State, by: &mut Displace<'_>, rule: &Rule, monitor: &mut Monitor<'_>) {
-    if !rule.fixed {
-        truncate(state);
-    }
-    state.balance_force();
-    by.displace(state, monitor);
-}
-
-/// Whether the violations are within the tolerance: p truncated satisfies the equations, and nothing penetrates. If so the
-/// truncated state stays; if not, the state is as it was.
-fn settled(
-    state: &mut State,
-    by: &mut Displace<'_>,
-    tolerance: f64,
-    before: &mut Workspace,
-    monitor: &mut Monitor<'_>,
-) -> bool {
-    before.p.clone_from(&state.p);
-    before.u.clone_from(&state.u);
-    before.contact.clone_from(&state.contact);
-    let approach = state.approach;
-    truncate(state);
-    state.balance_force();
-    by.displace(state, monitor);
-    let h = norm_of_distance(state);
-    let scale = h / (state.contact_count().max(1) as f64).sqrt();
-    if residual_norm(state) <= tolerance * h && certify(state).penetration <= tolerance * scale {
-        return true;
-    }
-    state.p.copy_from_slice(&before.p);
-    state.u.copy_from_slice(&before.u);
-    state.contact.copy_from_slice(&before.contact);
-    state.approach = approach;
-    false
-}
-
-fn inner_solve(
-    state: &mut State,
-    by: &mut Displace<'_>,
-    rule: &Rule,
-    workspace: &mut super::Workspace,
-    monitor: &mut Monitor<'_>,
-) -> Result<Inner> {
-    if state.contact_count() == 0 {
-        return Ok(Inner { met: true, ..Inner::default() });
-    }
-    let h = norm_of_distance(state);
-    let stop = InnerStop {
-        residual: if rule.by_update { 0.0 } else { rule.tolerance * h },
-        update: if rule.by_update { rule.tolerance } else { 0.0 },
-        iterations: (rule.max_cycles - monitor.cycles.min(rule.max_cycles)) as usize,
-    };
-    let (grid, mut products) = (state.grid, 0);
-    let product = |p: &[f64], u: &mut [f64]| {
-        products += 1;
-        (by.product)(p, u);
-    };
-    let go_on = |update: f64, residual: f64| monitor.cycle_done(&grid, 0, update, residual / h);
-    let inner = if by.symmetric {
-        conjugate_gradients(state, stop, workspace, product, go_on)?
-    } else {
-        minimal_residual(state, stop, workspace, product, go_on)?
-    };
-    monitor.count_products(products, by.work);
-    monitor.update = inner.update;
-    Ok(inner)
 }

@@ -5,14 +5,14 @@ use std::f64::consts::PI;
 
 use super::level::Level;
 use super::{End, Stopping};
-use crate::contact::{Freshness, State};
+use crate::contact::{AdmissibleSet, Freshness, NonNegative, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::methods::multigrid::{coarsen, transfer};
 use crate::operator::zeros;
-use crate::progress::{Monitor, Rule};
-use crate::solver::Precision;
+use crate::operator::Precision;
+use crate::progress::{Goal, Monitor};
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -71,13 +71,15 @@ impl CoarseGrids {
     }
 
     /// Solves on the coarser grids; `fine` gets what they found. Returns what its u is.
-    pub fn start(
+    pub fn start<S: AdmissibleSet>(
         &mut self,
         fine: &mut State,
+        set: S,
         self_influence: f64,
-        rule: &Rule,
+        goal: &Goal,
         monitor: &mut Monitor<'_>,
     ) -> Result<Freshness> {
+        let _ = set;
         let count = self.grids.len();
         if count == 0 {
             // A guess that was worth nothing is gone.
@@ -101,7 +103,7 @@ impl CoarseGrids {
         for l in (0..count).rev() {
             if !monitor.is_cancelled() {
                 monitor.enter_grid();
-                self.iterate(l, displacement, rule, monitor)?;
+                self.iterate(l, displacement, goal, monitor)?;
                 monitor.close_grid(&self.grids[l].state);
                 displacement = Freshness::Near;
             }
@@ -128,11 +130,11 @@ impl CoarseGrids {
     }
 
     /// Some iterations on grid `l`.
-    fn iterate(&mut self, l: usize, displacement: Freshness, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
+    fn iterate(&mut self, l: usize, displacement: Freshness, goal: &Goal, monitor: &mut Monitor<'_>) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
-        let stop = Stopping { tolerance: rule.tolerance, by_update: false, fixed: false, iterations };
+        let stop = Stopping { tolerance: goal.tolerance, by_update: false, fixed: false, iterations };
         let Coarse { level, state, .. } = &mut self.grids[l];
-        let end = level.run(state, displacement, &stop, self.finest, monitor)?;
+        let end = level.run(state, displacement, &stop, NonNegative, self.finest, monitor)?;
         level.take_displacements(state);
         Ok(end)
     }

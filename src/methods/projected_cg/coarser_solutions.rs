@@ -5,13 +5,25 @@
 
 use super::coarse_grids::{Coarse, CoarseGrids};
 use super::Stopping;
-use crate::contact::{Freshness, State};
+use crate::contact::{Freshness, NonNegative, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
 use crate::progress::Monitor;
 use crate::scene::Load;
-use crate::solver::estimates::Sample;
+
+/// What a coarser grid finds for the same surface, sampled at its elements.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Size of its elements over that of the finest.
+    pub size: f64,
+    /// The force, or the approach if the force is prescribed.
+    pub found: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// rms of its pressures minus the means of those of the finest grid, over the rms of those.
+    pub distance: f64,
+}
 
 /// The coarser grids to look at, by how often they are coarsened, coarsest first, and the elements in contact and the chord (see
 /// [`Outline::chord`](crate::contact::Outline::chord)) that each needs: enough for its own errors to be regular.
@@ -75,9 +87,9 @@ impl CoarseGrids {
         }
         let tolerance = TOLERANCE / count as f64;
         let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
-        let mut silent = Monitor::new(None, Vec::new(), false);
-        level.run(state, Freshness::Stale, &stop, finest, &mut silent)?;
-        monitor.count_work(silent.work_units);
+        let mut silent = Monitor::silent();
+        level.run(state, Freshness::Stale, &stop, NonNegative, finest, &mut silent)?;
+        monitor.count_work(silent.count.work_units);
         state.balance_force();
         let (mut highest, mut squares, mut differences) = (0.0_f64, 0.0, 0.0);
         for (p, mean) in state.p.iter().zip(means.iter()) {

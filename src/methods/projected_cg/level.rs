@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use super::scaling::Scaling;
 use super::{Cycle, End, Iteration, Stopping, Window};
-use crate::contact::{Freshness, State};
+use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::operator::fft::Real;
+use crate::operator::Precision;
 use crate::operator::{zeros, Toeplitz};
 use crate::progress::Monitor;
-use crate::solver::Precision;
 use crate::threads::Threads;
 
 /// The iteration in the precision asked for.
@@ -128,11 +128,6 @@ impl Level {
         self.influence.at(0, 0)
     }
 
-    /// The coefficients of this grid.
-    pub fn influence(&self) -> &Influence {
-        &self.influence
-    }
-
     /// The next window is chosen by itself, so that a result does not depend, in the last bits, on the solve before.
     pub fn forget_window(&mut self) {
         self.choose_anew = true;
@@ -145,11 +140,12 @@ impl Level {
     }
 
     /// Iterates on the window around the contact area. Outside it u is not known afterwards.
-    pub fn run(
+    pub fn run<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
         displacement: Freshness,
         stop: &Stopping,
+        _set: S,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
@@ -167,14 +163,14 @@ impl Level {
             }
             inner.run(state, stop, |cycle| {
                 monitor.count_products(cycle.products, work);
-                monitor.active_set_steps += 1;
+                monitor.count.active_set_steps += 1;
                 monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             })
         })
     }
 
     /// Improves p where u is near A p, without a product; u is not known afterwards.
-    pub fn correct(&mut self, state: &mut State) -> Result<()> {
+    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, _set: S) -> Result<()> {
         state.balance_force();
         self.on_window(state, Freshness::Near, |inner, _, _, state| inner.correct(state))
     }

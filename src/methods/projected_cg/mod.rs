@@ -12,6 +12,7 @@ mod segments;
 mod step;
 mod window;
 
+pub use coarser_solutions::Sample;
 pub use iteration::{Cycle, End, Iteration, Stopping};
-pub use step::Projected;
+pub use step::ProjectedCg;
 pub use window::Window;

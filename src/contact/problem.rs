@@ -1,0 +1,91 @@
+//! What every method works on: the grid, the influence coefficients, the operator. The solver owns it.
+
+use std::sync::Arc;
+
+use super::admissible::AdmissibleSet;
+use super::state::{Freshness, State};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Influence;
+use crate::operator::{Toeplitz, Workspace};
+use crate::threads::Threads;
+
+/// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
+/// to some of them.
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
+/// `e = h - approach + A p` on one grid, but for h, the load and the unknowns, which a [`State`] holds.
+pub struct Problem {
+    /// The grid.
+    pub grid: Grid,
+    /// Influence coefficients.
+    pub coefficients: Influence,
+    /// A, in double precision.
+    pub operator: Arc<Toeplitz<f64>>,
+    /// Whether A is symmetric.
+    pub symmetric: bool,
+    /// Whether the coefficients are the caller's: only they may be those of no elastic body.
+    pub given: bool,
+    /// Work units of one product.
+    pub work: f64,
+    /// The threads of the solve.
+    pub threads: Threads,
+    workspace: Workspace<f64>,
+    products: u64,
+}
+
+impl Problem {
+    /// Sets up the operator of the finest grid.
+    pub fn new(grid: Grid, coefficients: Influence, threads: &Threads) -> Result<Problem> {
+        let operator = Arc::new(Toeplitz::new(&coefficients, &grid, &threads.suited_to(grid.len()))?);
+        Problem::with_operator(grid, coefficients, operator, 1.0, threads)
+    }
+
+    /// On a grid, a product on which takes `work` of one on the finest.
+    pub fn with_operator(
+        grid: Grid,
+        coefficients: Influence,
+        operator: Arc<Toeplitz<f64>>,
+        work: f64,
+        threads: &Threads,
+    ) -> Result<Problem> {
+        let workspace = operator.workspace()?;
+        let symmetric = coefficients.is_symmetric(&grid);
+        let threads = threads.clone();
+        Ok(Problem { grid, coefficients, operator, symmetric, given: false, work, threads, workspace, products: 0 })
+    }
+
+    /// The influence of an element on itself.
+    pub fn self_influence(&self) -> f64 {
+        self.coefficients.at(0, 0)
+    }
+
+    /// See [`State::round_off`].
+    pub fn round_off(&self) -> f64 {
+        ROUND_OFF * self.self_influence()
+    }
+
+    /// `u = A p`.
+    pub fn displace(&mut self, p: &[f64], u: &mut [f64]) {
+        self.operator.apply(p, u, &mut self.workspace);
+        self.products += 1;
+    }
+
+    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
+    pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        state.carry_force(set);
+        self.displace(&state.p, &mut state.u);
+        state.u_is = Freshness::Exact;
+        state.fit_approach();
+    }
+
+    /// Products since the last call.
+    pub fn take_products(&mut self) -> u64 {
+        std::mem::take(&mut self.products)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.operator.bytes() + self.workspace.bytes()
+    }
+}

@@ -1,0 +1,133 @@
+//! The ledger: what a solve knew when, one row per grid.
+
+use crate::contact::{Certificate, Outline, State, Survey};
+use crate::scene::Load;
+
+/// The state of affairs on one grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measures {
+    /// How well the conditions hold.
+    pub certificate: Certificate,
+    /// The approach.
+    pub approach: f64,
+    /// `sum of p dx dy`.
+    pub force: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// Elements in contact.
+    pub contact_count: usize,
+    /// Those of them on the first or last row or column of the grid.
+    pub edge_count: usize,
+    /// Their area.
+    pub contact_area: f64,
+    /// The same, corrected for the elements along the outline; negative when errors are not estimated.
+    pub corrected_area: f64,
+}
+
+impl Measures {
+    /// Measures a state whose u is A p; without the corrected area.
+    pub fn of(state: &State) -> Measures {
+        let survey = Survey::of(state);
+        Measures {
+            certificate: survey.certificate(),
+            approach: state.approach,
+            force: survey.pressures * state.grid.element_area(),
+            max_pressure: survey.range.1.max(0.0),
+            contact_count: survey.contact_count,
+            edge_count: state.edge_count(),
+            contact_area: survey.contact_count as f64 * state.grid.element_area(),
+            corrected_area: -1.0,
+        }
+    }
+
+    /// What the load does not prescribe: the force or the approach.
+    pub fn found(&self, load: Load) -> f64 {
+        match load {
+            Load::Approach(_) => self.force,
+            Load::Force(_) => self.approach,
+        }
+    }
+}
+
+/// Estimated errors (module `estimates`). Negative: not known, because it was not asked for, or there are no coarser grids, or, with
+/// its bit in `untrusted`, because the values on the coarser grids do not converge as an estimate needs them to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscretisationError {
+    /// Of the force (of the approach, when the force is prescribed).
+    pub force: f64,
+    /// Of the largest pressure.
+    pub max_pressure: f64,
+    /// Of the contact area by counting elements.
+    pub contact_area: f64,
+    /// Of the corrected contact area.
+    pub corrected_area: f64,
+    /// Of the pressures: rms of the error over that of p.
+    pub pressure: f64,
+    /// Bits: see [`DiscretisationError::FORCE`] and the following.
+    pub untrusted: u32,
+}
+
+impl DiscretisationError {
+    /// In `untrusted`: the error of the force or the approach.
+    pub const FORCE: u32 = 1;
+    /// Of the largest pressure.
+    pub const MAX_PRESSURE: u32 = 2;
+    /// Of the pressures.
+    pub const PRESSURE: u32 = 4;
+}
+
+impl Default for DiscretisationError {
+    fn default() -> DiscretisationError {
+        let unknown = -1.0;
+        DiscretisationError {
+            force: unknown,
+            max_pressure: unknown,
+            contact_area: unknown,
+            corrected_area: unknown,
+            pressure: unknown,
+            untrusted: 0,
+        }
+    }
+}
+
+/// One row of the ledger: what was known on one grid, and what it had cost by then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LedgerRow {
+    /// Elements in x.
+    pub mx: usize,
+    /// Elements in y.
+    pub my: usize,
+    /// Cycles on this grid.
+    pub cycles: u64,
+    /// Seconds since the solve began.
+    pub seconds: f64,
+    /// Work units since then: products, each weighted by its elements over those of the finest grid.
+    pub work_units: f64,
+    /// What was known.
+    pub measures: Measures,
+    /// And how far it was off.
+    pub error: DiscretisationError,
+}
+
+/// The rows so far.
+#[derive(Default)]
+pub struct Ledger {
+    /// Coarsest grid first.
+    pub rows: Vec<LedgerRow>,
+    /// Whether errors are to be estimated: then rows have a corrected area.
+    pub estimates: bool,
+    /// Of the contact area of the last row, if errors are to be estimated.
+    pub outline: Outline,
+}
+
+impl Ledger {
+    /// What is known on the grid of `state`, whose u is A p.
+    pub(super) fn measure(&mut self, state: &State) -> Measures {
+        let mut measures = Measures::of(state);
+        if self.estimates {
+            self.outline = Outline::of(state);
+            measures.corrected_area = self.outline.corrected_area(state, measures.contact_count);
+        }
+        measures
+    }
+}

@@ -1,0 +1,270 @@
+//! Which methods solve a scene, in which order, each handing over to the next when it stalls; and how each starts from nothing.
+
+use super::best::Best;
+use super::estimates;
+use super::iterate::{iterate, violation};
+use super::nested::FullMultigrid;
+use super::options::{Method, Options};
+use crate::contact::{admit, AdmissibleSet, Problem, State, Survey};
+use crate::error::{Error, Result};
+use crate::methods::descent::Descent;
+use crate::methods::direct::Direct;
+use crate::methods::multigrid::CycleShape;
+use crate::methods::norm::Norm;
+use crate::methods::projected_cg::ProjectedCg;
+use crate::methods::{Start, Step};
+use crate::progress::{Goal, Monitor, Stop};
+
+/// A guess, or a stalled iterate, whose violation is larger is worth less than what the coarser grids find.
+const WORTHLESS: f64 = 0.3;
+
+/// The methods of a solver, set up when they are first asked for and kept.
+pub struct Methods {
+    pub projected_cg: ProjectedCg,
+    direct: Option<Direct>,
+    multigrid: Option<FullMultigrid>,
+    descent: Descent,
+    norm: Norm,
+    pub best: Best,
+    shape: CycleShape,
+}
+
+/// A method of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    Direct,
+    ProjectedCg,
+    VCycles,
+    FullMultigrid,
+    Descent,
+    Norm,
+}
+
+impl Methods {
+    /// Nothing is set up but what every solve needs.
+    pub fn new(problem: &Problem, options: &Options) -> Result<Methods> {
+        Ok(Methods {
+            projected_cg: ProjectedCg::new(problem, options.precision),
+            direct: Direct::new(&problem.coefficients, &problem.grid)?,
+            multigrid: None,
+            descent: Descent::default(),
+            norm: Norm::default(),
+            best: Best::default(),
+            shape: options.cycle_shape(),
+        })
+    }
+
+    /// Solves from what `state` holds, as `from` says. An `error_ratio` of the options may raise the tolerance of `goal`.
+    pub fn solve<S: AdmissibleSet>(
+        &mut self,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        from: Start,
+        stages: &[Stage],
+        (goal, error_ratio): (&mut Goal, f64),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        self.best.forget();
+        let mut stop = Stop::Stagnated;
+        for (k, &stage) in stages.iter().enumerate() {
+            let from_nothing = match k {
+                0 => match self.take_over(stage, state, set, from, goal)? {
+                    Some(from_nothing) => from_nothing,
+                    None => return Ok(Stop::Converged),
+                },
+                _ => self.hand_over(stage, problem, state, set, monitor),
+            };
+            if from_nothing {
+                self.start(stage, problem, state, set, goal, monitor)?;
+                if error_ratio > 0.0 {
+                    let predicted = self.predicted_error(stage, problem, state, monitor)?;
+                    goal.tolerance = goal.tolerance.max(error_ratio * predicted);
+                }
+            }
+            stop = self.run(stage, problem, state, set, goal, monitor)?;
+            if stop != Stop::Stagnated {
+                break;
+            }
+        }
+        if stop != Stop::Converged {
+            let indefinite = stop == Stop::Stagnated && problem.given && !(self.best.violation() <= 1.0);
+            self.best.restore(problem, state, set, monitor);
+            if indefinite {
+                return Err(Error::NotPositiveDefinite(
+                    "influence coefficients: no method converges with them; p'Ap must be positive for all pressures p"
+                        .into(),
+                ));
+            }
+        }
+        Ok(stop)
+    }
+
+    /// What the solve starts from: none if that is the answer already, or else whether it is worth nothing.
+    fn take_over<S: AdmissibleSet>(
+        &mut self,
+        stage: Stage,
+        state: &mut State,
+        set: S,
+        from: Start,
+        goal: &Goal,
+    ) -> Result<Option<bool>> {
+        if from == Start::Nothing {
+            return Ok(Some(true));
+        }
+        let survey = Survey::of(state);
+        if !goal.by_update() && goal.holds(&survey, 0.0, set) {
+            return Ok(None);
+        }
+        let violation = violation(&survey, set);
+        admit(state, set);
+        let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
+        if on_coarser_grids && !(violation <= WORTHLESS) {
+            return Ok(Some(true));
+        }
+        if on_coarser_grids && from == Start::Previous {
+            self.projected_cg.predict(state)?;
+        }
+        Ok(Some(false))
+    }
+
+    /// The next method goes on from the best iterate; true if that is worth less than a start of its own.
+    fn hand_over<S: AdmissibleSet>(
+        &mut self,
+        stage: Stage,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        monitor: &mut Monitor<'_>,
+    ) -> bool {
+        log::info!("no further progress on this scene: {stage:?} takes over");
+        // What the direct solve leaves, having done nothing, is the start of the next.
+        if stage == Stage::ProjectedCg {
+            return false;
+        }
+        self.best.restore(problem, state, set, monitor);
+        stage == Stage::FullMultigrid && !(self.best.violation() <= WORTHLESS)
+    }
+
+    /// A start from nothing.
+    fn start<S: AdmissibleSet>(
+        &mut self,
+        stage: Stage,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<()> {
+        state.unload();
+        match stage {
+            Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
+                self.projected_cg.start(problem, state, set, goal, monitor)
+            }
+            Stage::FullMultigrid if !S::FIXED => {
+                let multigrid = set_up_multigrid(&mut self.multigrid, problem, self.shape)?;
+                multigrid.start(problem, state, set, goal, &mut self.norm, monitor)
+            }
+            _ => {
+                state.start(problem.self_influence());
+                Ok(())
+            }
+        }
+    }
+
+    /// Relative discretisation error of the force (or the approach) that the coarser grids suggest before the finest is solved; 0 where
+    /// it is not known.
+    fn predicted_error(
+        &mut self,
+        stage: Stage,
+        problem: &Problem,
+        state: &State,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<f64> {
+        match stage {
+            Stage::Direct | Stage::ProjectedCg => {
+                let ([near, far], count) = self.projected_cg.early_samples(problem, state, monitor)?;
+                Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
+            }
+            Stage::FullMultigrid => Ok(estimates::predict_from_ledger(&monitor.ledger.rows, state.load)),
+            _ => Ok(0.0),
+        }
+    }
+
+    fn run<S: AdmissibleSet>(
+        &mut self,
+        stage: Stage,
+        problem: &mut Problem,
+        state: &mut State,
+        set: S,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        if matches!(stage, Stage::VCycles | Stage::FullMultigrid) {
+            set_up_multigrid(&mut self.multigrid, problem, self.shape)?;
+        }
+        let mut cycles = None;
+        let method: &mut dyn Step<S> = match stage {
+            Stage::Direct => match &mut self.direct {
+                Some(direct) => direct,
+                None => return Ok(Stop::Stagnated),
+            },
+            Stage::ProjectedCg => &mut self.projected_cg,
+            Stage::VCycles | Stage::FullMultigrid => match &mut self.multigrid {
+                Some(multigrid) => cycles.insert(multigrid.cycles(0)),
+                None => return Ok(Stop::Stagnated),
+            },
+            Stage::Descent => &mut self.descent,
+            Stage::Norm => &mut self.norm,
+        };
+        iterate(method, problem, state, set, goal, &mut self.best, monitor)
+    }
+
+    /// The coefficients are others now: what was made of them is dropped.
+    pub fn forget_coefficients(&mut self, problem: &Problem, options: &Options) -> Result<()> {
+        *self = Methods::new(problem, options)?;
+        Ok(())
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let multigrid = self.multigrid.as_ref().map_or(0, FullMultigrid::bytes);
+        let direct = self.direct.as_ref().map_or(0, Direct::bytes);
+        self.projected_cg.bytes() + direct + multigrid + self.descent.bytes() + self.norm.bytes() + self.best.bytes()
+    }
+}
+
+fn set_up_multigrid<'a>(
+    multigrid: &'a mut Option<FullMultigrid>,
+    problem: &Problem,
+    shape: CycleShape,
+) -> Result<&'a mut FullMultigrid> {
+    match multigrid {
+        Some(multigrid) => Ok(multigrid),
+        none => Ok(none.insert(FullMultigrid::new(problem, shape)?)),
+    }
+}
+
+/// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
+pub fn stages(method: Method, symmetric: bool, fixed: bool, multigrid: bool) -> Result<&'static [Stage]> {
+    use Stage::{Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
+    Ok(match method {
+        Method::Norm => &[Norm],
+        Method::Multigrid => &[VCycles],
+        Method::FullMultigrid => &[FullMultigrid],
+        Method::ProjectedCg if !symmetric => {
+            return Err(Error::Unsupported(
+                "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
+            ))
+        }
+        Method::ProjectedCg if fixed => &[ProjectedCg],
+        Method::ProjectedCg => &[Direct, ProjectedCg],
+        Method::Auto => match (symmetric, fixed, multigrid) {
+            (true, true, _) => &[ProjectedCg, Norm],
+            (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, Descent, Norm],
+            (true, false, false) => &[Direct, ProjectedCg, Descent, Norm],
+            (false, _, true) => &[FullMultigrid, Norm],
+            (false, _, false) => &[Norm],
+        },
+    })
+}

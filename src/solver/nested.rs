@@ -1,0 +1,140 @@
+//! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first, each by the loop.
+
+use super::best::Best;
+use super::iterate::iterate;
+use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
+use crate::error::Result;
+use crate::memory::zeros;
+use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
+use crate::methods::norm::Norm;
+use crate::progress::{Goal, Monitor};
+
+/// Cycles at most on the coarser grids: they only prepare the next finer one. On the coarsest NORM takes the place of cycles.
+const COARSE_CYCLES: u64 = 30;
+const COARSEST_ITERATIONS: u64 = 1000;
+
+/// The grids of multigrid, and the unknowns of the coarser ones.
+pub struct FullMultigrid {
+    multigrid: Multigrid,
+    workspace: Workspace,
+    /// The finest of them first.
+    coarser: Vec<(Problem, State)>,
+    best: Best,
+}
+
+impl FullMultigrid {
+    /// The grids below that of `problem`.
+    pub fn new(problem: &Problem, shape: CycleShape) -> Result<FullMultigrid> {
+        let multigrid = Multigrid::new(problem, shape)?;
+        let mut coarser = Vec::new();
+        for (l, level) in multigrid.hierarchy.levels.iter().enumerate().skip(1) {
+            let (operator, work) = (level.operator.clone(), multigrid.hierarchy.work(l));
+            let threads = &problem.threads;
+            let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
+            let h = zeros(level.grid.len(), "undeformed distances")?;
+            coarser.push((own, State::new(level.grid, h, crate::scene::Load::Approach(0.0), 0.0)?));
+        }
+        Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
+    }
+
+    /// V-cycles on level `level`.
+    pub fn cycles(&mut self, level: usize) -> Cycles<'_> {
+        Cycles { multigrid: &mut self.multigrid, level, workspace: &mut self.workspace }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let coarser: usize = self.coarser.iter().map(|(problem, state)| problem.bytes() + state.bytes()).sum();
+        self.multigrid.bytes() + coarser
+    }
+
+    /// A start from nothing for `fine`: each grid is solved from the pressures of the next coarser one.
+    pub fn start<S: AdmissibleSet>(
+        &mut self,
+        problem: &mut Problem,
+        fine: &mut State,
+        set: S,
+        goal: &Goal,
+        norm: &mut Norm,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<()> {
+        let count = self.coarser.len();
+        if count == 0 {
+            fine.start(problem.self_influence());
+            return Ok(());
+        }
+        let highest = fine.out_of_reach(problem.self_influence());
+        self.restrict(fine, highest);
+        for l in (0..count).rev() {
+            if !monitor.is_cancelled() {
+                monitor.enter_grid();
+                self.solve(l, goal, norm, monitor)?;
+                monitor.close_grid(&self.coarser[l].1);
+            }
+            let (finer, coarser) = self.coarser.split_at_mut(l);
+            let from = &coarser[0].1;
+            match finer.last_mut() {
+                Some((problem, state)) => {
+                    interpolate(from, state, highest);
+                    problem.refresh(state, NonNegative);
+                }
+                None => {
+                    interpolate(from, fine, highest);
+                    fine.project(set);
+                    problem.refresh(fine, set);
+                }
+            }
+        }
+        monitor.enter_grid();
+        monitor.count_products(problem.take_products(), problem.work);
+        Ok(())
+    }
+
+    /// The undeformed distance and the load of all coarser grids; p = 0.
+    fn restrict(&mut self, fine: &State, highest: f64) {
+        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
+        for l in 0..self.coarser.len() {
+            let (finer, coarser) = self.coarser.split_at_mut(l);
+            let (from, to) = (finer.last().map_or(fine, |(_, state)| state), &mut coarser[0].1);
+            transfer::restrict_distance(&from.grid, &to.grid, |i| within(from.h[i]), &mut to.h);
+            (to.load, to.approach) = (from.load, from.approach);
+            to.unload();
+        }
+    }
+
+    /// Coarser grid l: the coarsest by NORM from step 1, the others by V-cycles from what they hold. What a grid does not solve is no
+    /// answer, only a start that is worth less.
+    fn solve(&mut self, l: usize, goal: &Goal, norm: &mut Norm, monitor: &mut Monitor<'_>) -> Result<()> {
+        let FullMultigrid { multigrid, workspace, coarser, best } = self;
+        let coarsest = l + 1 == coarser.len();
+        let (problem, state) = &mut coarser[l];
+        best.forget();
+        let stop = if coarsest {
+            let goal = Goal { max_cycles: goal.max_cycles.max(COARSEST_ITERATIONS), ..*goal };
+            state.start(problem.self_influence());
+            iterate(norm, problem, state, NonNegative, &goal, best, monitor)?
+        } else {
+            let goal = Goal { max_cycles: goal.max_cycles.min(COARSE_CYCLES), ..*goal };
+            let mut cycles = Cycles { multigrid, level: l + 1, workspace };
+            iterate(&mut cycles, problem, state, NonNegative, &goal, best, monitor)?
+        };
+        if stop != crate::progress::Stop::Converged {
+            best.restore(problem, state, NonNegative, monitor);
+        }
+        Ok(())
+    }
+}
+
+/// p of the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements above `highest` are out of reach.
+fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
+    let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
+    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
+    fine.approach = coarse.approach;
+    for i in 0..fine.p.len() {
+        if fine.h[i].is_infinite() || fine.h[i] > highest {
+            fine.p[i] = 0.0;
+        }
+        fine.contact[i] = fine.p[i] > 0.0 || fine.deformed_distance(i) < 0.0;
+    }
+}

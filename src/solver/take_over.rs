@@ -1,0 +1,164 @@
+//! Where a solve starts from: nothing, the caller's guess, or the solution before.
+
+use super::{ActiveSet, Guess, InitialGuess, Options};
+use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+use crate::methods::Start;
+use crate::progress::Monitor;
+use crate::scene::{Load, Scene};
+
+/// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
+const WORSE_THAN_NONE: f64 = 1e3;
+
+/// Refuses a guess that is none, or that is missing. `solved`: whether there is a solution before.
+pub fn check_guess(grid: &Grid, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
+    let fixed = options.active_set == ActiveSet::Fixed;
+    let Some(guess) = guess else {
+        return match options.initial_guess {
+            _ if fixed => invalid("active_set is FIXED, but no contact area is given".into()),
+            InitialGuess::Given => invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
+            _ => Ok(()),
+        };
+    };
+    if !fixed && options.initial_guess != InitialGuess::Given {
+        return Ok(());
+    }
+    if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
+        return invalid(format!(
+            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
+            guess.pressure.len(),
+            guess.contact.len(),
+            grid.len()
+        ));
+    }
+    if fixed && !guess.contact.contains(&true) {
+        return invalid("active_set is FIXED, but the given contact area is empty".into());
+    }
+    match guess.pressure.iter().find(|p| !p.is_finite()) {
+        Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
+        None => Ok(()),
+    }
+}
+
+/// Takes over the undeformed distance, the load and the start: then u is A p, or there is nothing. `solved`: whether `state` holds the
+/// solution before.
+pub fn take_over<S: AdmissibleSet>(
+    problem: &mut Problem,
+    state: &mut State,
+    set: S,
+    scene: &Scene<'_>,
+    (options, guess, solved): (&Options, Option<Guess<'_>>, bool),
+    monitor: &mut Monitor<'_>,
+) -> Result<Start> {
+    let from = take_pressures(state, options, guess, solved);
+    state.h.copy_from_slice(scene.undeformed_distance);
+    state.load = scene.load;
+    state.round_off = problem.round_off();
+    if let Load::Approach(approach) = scene.load {
+        state.approach = approach;
+    }
+    if from == Start::Nothing {
+        state.unload();
+        return Ok(from);
+    }
+    clean(state, set);
+    if S::FIXED && state.contact_count() == 0 {
+        return invalid("active_set is FIXED, but undeformed_distance is infinite on the given contact area".into());
+    }
+    // Pressures of zero are no guess.
+    if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
+        state.unload();
+        return Ok(Start::Nothing);
+    }
+    balance(problem, state, set);
+    monitor.count_products(problem.take_products(), 1.0);
+    // A guess that is far worse than none costs time, or cannot be computed with.
+    let (residual, distance) = (residual_norm(state), norm_of_distance(state));
+    if residual.is_finite() && residual <= WORSE_THAN_NONE * distance || residual == 0.0 {
+        return Ok(from);
+    }
+    if !S::FIXED {
+        state.unload();
+        return Ok(Start::Nothing);
+    }
+    state.p.fill(0.0);
+    problem.refresh(state, set);
+    monitor.count_products(problem.take_products(), 1.0);
+    Ok(from)
+}
+
+/// The pressures and the contact area to start from.
+fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>, solved: bool) -> Start {
+    let fixed = options.active_set == ActiveSet::Fixed;
+    // What was at its limit was in contact.
+    for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
+        *inside |= std::mem::take(at_limit);
+    }
+    match (options.initial_guess, guess) {
+        (InitialGuess::Previous, Some(guess)) if fixed => {
+            if !solved {
+                state.p.fill(0.0);
+                state.u_is = Freshness::Stale;
+            }
+            state.contact.copy_from_slice(guess.contact);
+            Start::Previous
+        }
+        (InitialGuess::Previous, _) if solved => Start::Previous,
+        (InitialGuess::Given, Some(guess)) => {
+            state.p.copy_from_slice(guess.pressure);
+            state.contact.copy_from_slice(guess.contact);
+            state.u_is = Freshness::Stale;
+            Start::Given
+        }
+        (InitialGuess::None, Some(guess)) if fixed => {
+            state.p.fill(0.0);
+            state.contact.copy_from_slice(guess.contact);
+            state.u_is = Freshness::Stale;
+            Start::Given
+        }
+        _ => Start::Nothing,
+    }
+}
+
+/// Pressures that are admissible, on elements of C that have a surface.
+fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
+    for i in 0..state.p.len() {
+        state.contact[i] &= state.h[i].is_finite();
+        let p = if state.contact[i] { set.project(i, state.p[i]) } else { 0.0 };
+        if p != state.p[i] {
+            state.p[i] = p;
+            state.u_is = Freshness::Stale;
+        }
+    }
+    state.project(set);
+}
+
+/// p carries the prescribed force, and u = A p; without a product where u is that of pressures that are only to be scaled.
+fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+    if state.u_is != Freshness::Exact {
+        return problem.refresh(state, set);
+    }
+    match state.carry_force(set) {
+        Some(1.0) => {}
+        Some(factor) => state.u.iter_mut().for_each(|u| *u *= factor),
+        None => return problem.refresh(state, set),
+    }
+    state.fit_approach();
+}
+
+/// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.
+pub fn is_without_contact(state: &mut State, fixed: bool) -> bool {
+    let lowest = state.h.iter().copied().fold(f64::INFINITY, f64::min);
+    let nothing = match state.load {
+        Load::Approach(approach) => !fixed && lowest > approach,
+        Load::Force(force) => force == 0.0,
+    };
+    if nothing {
+        state.unload();
+        if let Load::Force(_) = state.load {
+            state.approach = if lowest.is_finite() { lowest } else { 0.0 };
+        }
+    }
+    nothing
+}
