@@ -2,7 +2,7 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Periodic, Table};
+use contact_normal::influence::{HalfSpace, Coefficients, Periodic, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Options};
 
@@ -102,5 +102,5 @@ fn reported_bytes_hold_the_coefficients() {
     let tables: usize = [(40, 36), (20, 18), (10, 9), (5, 5)].map(|(mx, my)| 32 * mx * my).iter().sum();
     assert_eq!(more, tables as u64);
     let periodic = Periodic::new(HalfSpace::new(0.5, 0.5, 1.0), (true, true), &grid);
-    assert_eq!(Influence::Periodic(periodic).bytes(), 8 * 21 * 19);
+    assert_eq!(Coefficients::from(periodic).bytes(), 8 * 21 * 19);
 }

@@ -4,8 +4,8 @@
 mod solved;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, RowTables};
-use contact_normal::operator::Toeplitz;
+use contact_normal::influence::{HalfSpace, Coefficients, RowTables};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
@@ -91,7 +91,7 @@ fn products_are_those_of_the_direct_sum() {
             };
             let tables = tables(&grid, at);
             assert_eq!(tables.is_even_in_x(), even || mx == 1);
-            let influence = Influence::RowTables(tables.clone());
+            let influence = Coefficients::from(tables.clone());
             for loaded in [0..my, my / 3..my - my / 4] {
                 let p: Vec<f64> = (0..grid.len())
                     .map(|i| if loaded.contains(&(i / mx)) { random(i as u64) - 0.4 } else { 0.0 })
@@ -99,7 +99,7 @@ fn products_are_those_of_the_direct_sum() {
                 let (expected, magnitudes) = direct(&grid, &tables, &p);
                 let mut bits = Vec::new();
                 for threads in [Threads::One, Threads::new(3).unwrap()] {
-                    let operator = Toeplitz::<f64>::new(&influence, &grid, &threads).unwrap();
+                    let operator = Operator::<f64>::new(&influence, &grid, &threads).unwrap();
                     let mut u = vec![f64::NAN; grid.len()];
                     operator.apply(&p, &mut u, &mut operator.workspace().unwrap());
                     for (u, expected) in u.iter().zip(&expected) {
@@ -250,7 +250,7 @@ fn coarser_tables_of_the_half_space_are_near_those_of_larger_elements() {
     let grid = Grid::new(13, 11, 1.0, 0.9).unwrap();
     let coarse = Grid::new(7, 6, 2.0, 1.8).unwrap();
     let fine = tables(&grid, half_space(&grid));
-    let Influence::RowTables(means) = Influence::RowTables(fine).coarsen(&grid, &coarse).unwrap() else { panic!() };
+    let Coefficients::from(means) = Coefficients::from(fine).coarsen(&grid, &coarse).unwrap() else { panic!() };
     let exact = half_space(&coarse);
     for (jy, iy, kx) in (0..6 * 6 * 7).map(|k| (k / 42, k / 7 % 6, k as i64 % 7)) {
         let (mean, exact) = (means.at(jy, iy, kx), exact(jy, iy, kx));

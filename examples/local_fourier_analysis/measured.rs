@@ -1,7 +1,7 @@
 //! Convergence factors of actual cycles on a given contact area, from a random error.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::Influence;
+use contact_normal::influence::Coefficients;
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::threads::Threads;
 
@@ -15,7 +15,7 @@ pub fn random(state: &mut u64) -> f64 {
 /// parts of the error rule.
 pub fn factor(
     grid: &Grid,
-    influence: &Influence,
+    influence: &Coefficients,
     contact: &[bool],
     shape: CycleShape,
     (cycles, of): (usize, usize),

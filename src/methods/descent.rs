@@ -211,15 +211,15 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::grid::Grid;
-    use crate::influence::{HalfSpace, Influence};
+    use crate::influence::{HalfSpace, Coefficients};
     use crate::operator::dense;
 
     /// A wavy punch, that makes elements leave and enter.
-    fn state(load: Load, wave: f64) -> (Influence, State) {
+    fn state(load: Load, wave: f64) -> (Coefficients, State) {
         let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
         let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
         let h = (0..grid.len()).map(h).collect();
-        let influence = Influence::HalfSpace(HalfSpace::new(0.1, 0.1, 1.0));
+        let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
         (influence, State::new(grid, h, load, 0.0).expect("a state"))
     }
 

@@ -97,12 +97,9 @@ impl Solver {
         let h = zeros(self.grid.len(), "undeformed distances")?;
         Ok(Solver {
             grid: self.grid,
-            bodies: self.bodies,
             has_own_influence: self.has_own_influence,
             has_row_tables: self.has_row_tables,
-            period: self.period,
-            has_layer: self.has_layer,
-            has_patches: self.has_patches,
+            named: self.named.clone(),
             without_multigrid: self.without_multigrid,
             symmetric: self.symmetric,
             largest_influence: self.largest_influence,

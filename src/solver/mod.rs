@@ -20,9 +20,10 @@ pub use options::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision
 pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Report, Stop};
 
 use crate::contact::State;
+use crate::effects::{self, Named};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::methods::descent as descent_method;
 use crate::methods::multigrid::{nested as full_multigrid, step as multigrid_method};
 use crate::methods::multigrid::{CycleShape, Multigrid};
@@ -30,7 +31,7 @@ use crate::methods::norm::step::{self as norm_method, Displace};
 use crate::methods::projected_cg::Projected;
 use crate::operator::zeros;
 use crate::progress::{Monitor, Rule};
-use crate::scene::{Bodies, Layer, Load, Period, Scene};
+use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 use start::Start;
 
@@ -51,12 +52,10 @@ pub struct Guess<'a> {
 /// changes.
 pub struct Solver {
     grid: Grid,
-    bodies: Bodies,
     has_own_influence: bool,
     has_row_tables: bool,
-    period: Option<Period>,
-    has_layer: bool,
-    has_patches: bool,
+    /// What the set-up depends on.
+    named: Named,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     symmetric: bool,
@@ -97,18 +96,15 @@ impl Solver {
         scene.check()?;
         options.check()?;
         let threads = Threads::new(options.threads)?;
-        let influence = scene.influence();
+        let influence = scene.coefficients()?;
         let projected = Projected::new(&scene.grid, &influence, options.precision, &threads)?;
         let h = zeros(scene.grid.len(), "undeformed distances")?;
         Ok(Solver {
             grid: scene.grid,
-            bodies: scene.bodies,
             has_own_influence: scene.influence.is_some(),
             has_row_tables: scene.row_tables.is_some(),
-            period: scene.period,
-            has_layer: scene.layer.is_some(),
-            has_patches: scene.patches.is_some(),
-            without_multigrid: without_multigrid(scene),
+            named: Named::new(scene),
+            without_multigrid: effects::excluded_method(scene),
             symmetric: influence.is_symmetric(&scene.grid),
             largest_influence: influence.largest(&scene.grid),
             shape: options.cycle_shape(),
@@ -217,7 +213,7 @@ impl Solver {
     }
 
     /// The influence coefficients in use.
-    pub fn influence(&self) -> &Influence {
+    pub fn influence(&self) -> &Coefficients {
         self.projected.influence()
     }
 
@@ -237,32 +233,8 @@ impl Solver {
         if scene.grid != self.grid {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
         }
-        // Own coefficients know no bodies.
-        if !self.has_own_influence && !self.has_row_tables && scene.bodies != self.bodies {
-            return invalid(format!("the bodies are {:?}; this solver was set up for {:?}", scene.bodies, self.bodies));
-        }
-        if scene.influence.is_some() && !self.has_own_influence {
-            return invalid("influence is given, but this solver was set up without".into());
-        }
-        if scene.row_tables.is_some() && !self.has_row_tables {
-            return invalid("row_tables is given, but this solver was set up without".into());
-        }
-        if scene.period != self.period {
-            return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));
-        }
-        let named = [
-            ("a layer", scene.layer.is_some(), self.has_layer),
-            ("patches", scene.patches.is_some(), self.has_patches),
-        ];
-        for (effect, is_named, was_named) in named {
-            if is_named != was_named {
-                let with = |yes: bool| if yes { "with" } else { "without" };
-                return invalid(format!(
-                    "the scene is {} {effect}; this solver was set up {}",
-                    with(is_named),
-                    with(was_named)
-                ));
-            }
+        if let Some(difference) = self.named.differs(scene) {
+            return invalid(difference);
         }
         if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
@@ -452,17 +424,6 @@ impl Solver {
             + states
             + workers
             + self.limited.bytes()
-    }
-}
-
-/// The effects that MULTIGRID and FULL_MULTIGRID do not solve.
-fn without_multigrid(scene: &Scene<'_>) -> Option<&'static str> {
-    match scene {
-        Scene { period: Some(_), .. } => Some("period"),
-        Scene { patches: Some(_), .. } => Some("patches"),
-        Scene { row_tables: Some(_), .. } => Some("row_tables"),
-        Scene { layer: Some(Layer::PerElement(_)), .. } => Some("a layer of one compliance per element"),
-        _ => None,
     }
 }
 

@@ -130,7 +130,7 @@ mod promises {
         assert!(solved > 50 && refused > 5, "{solved} and {refused}");
     }
 
-    /// Whether the Toeplitz matrix of 1 and these is positive definite: Cholesky's pivots are positive.
+    /// Whether the Operator matrix of 1 and these is positive definite: Cholesky's pivots are positive.
     fn is_definite(coefficients: &[f64]) -> bool {
         let m = coefficients.len() + 1;
         let at = |i: usize, k: usize| if i == k { 1.0 } else { coefficients[i.abs_diff(k) - 1] };

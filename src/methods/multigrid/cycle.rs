@@ -9,7 +9,7 @@ use super::smoother::{Smoother, SmootherKind};
 use super::{transfer, Hierarchy};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::zeros;
 use crate::threads::Threads;
 
@@ -57,7 +57,7 @@ pub struct Multigrid {
 
 impl Multigrid {
     /// Sets up cycles of one shape on `grid`.
-    pub fn new(grid: &Grid, influence: &Influence, shape: CycleShape, threads: &Threads) -> Result<Multigrid> {
+    pub fn new(grid: &Grid, influence: &Coefficients, shape: CycleShape, threads: &Threads) -> Result<Multigrid> {
         let hierarchy = Hierarchy::new(grid, influence, shape.coarsest, threads)?;
         let mut unknowns = Vec::new();
         for level in &hierarchy.levels {

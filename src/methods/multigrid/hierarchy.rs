@@ -7,8 +7,8 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
-use crate::operator::{Toeplitz, Workspace};
+use crate::influence::Coefficients;
+use crate::operator::{Operator, Workspace};
 use crate::threads::Threads;
 
 /// One grid and its operator.
@@ -16,9 +16,9 @@ pub struct Level {
     /// The grid.
     pub grid: Grid,
     /// Its coefficients.
-    pub influence: Influence,
+    pub influence: Coefficients,
     /// `u = A p` on it.
-    pub operator: Toeplitz<f64>,
+    pub operator: Operator<f64>,
 }
 
 /// The grids, finest first.
@@ -31,11 +31,11 @@ pub struct Hierarchy {
 
 impl Hierarchy {
     /// Coarsens until no direction has more than `coarsest` elements.
-    pub fn new(grid: &Grid, influence: &Influence, coarsest: usize, threads: &Threads) -> Result<Hierarchy> {
+    pub fn new(grid: &Grid, influence: &Coefficients, coarsest: usize, threads: &Threads) -> Result<Hierarchy> {
         let mut levels = Vec::new();
         let (mut grid, mut influence) = (*grid, influence.clone());
         loop {
-            let operator = Toeplitz::new(&influence, &grid, threads)?;
+            let operator = Operator::new(&influence, &grid, threads)?;
             levels.push(Level { grid, influence: influence.clone(), operator });
             let Some(coarse) = coarsen(&grid, coarsest) else { break };
             influence = influence.coarsen(&grid, &coarse)?;

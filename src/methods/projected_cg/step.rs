@@ -17,9 +17,9 @@ use super::{End, Stopping};
 use crate::contact::{admit, Freshness, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::methods::direct::Direct;
-use crate::operator::{reserve, Toeplitz, Workspace};
+use crate::operator::{reserve, Operator, Workspace};
 use crate::progress::{Monitor, Rule};
 use crate::solver::estimates::{self, Sample};
 use crate::solver::start::Start;
@@ -43,7 +43,7 @@ const WORTHLESS: f64 = 0.3;
 pub struct Projected {
     grid: Grid,
     /// In double precision, on the full grid: for certificates.
-    operator: Arc<Toeplitz<f64>>,
+    operator: Arc<Operator<f64>>,
     workspace: Workspace<f64>,
     finest: Level,
     /// None before it is first needed.
@@ -59,8 +59,8 @@ pub struct Projected {
 
 impl Projected {
     /// Sets up the full-grid operator; the rest follows when it is first needed.
-    pub fn new(grid: &Grid, influence: &Influence, precision: Precision, threads: &Threads) -> Result<Projected> {
-        let operator = Arc::new(Toeplitz::new(influence, grid, &threads.suited_to(grid.len()))?);
+    pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<Projected> {
+        let operator = Arc::new(Operator::new(influence, grid, &threads.suited_to(grid.len()))?);
         Ok(Projected {
             grid: *grid,
             workspace: operator.workspace()?,
@@ -76,7 +76,7 @@ impl Projected {
     }
 
     /// The influence coefficients.
-    pub fn influence(&self) -> &Influence {
+    pub fn influence(&self) -> &Coefficients {
         self.finest.influence()
     }
 
