@@ -10,7 +10,7 @@ use std::process::Command;
 use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace};
 
 /// Every warning is an error: the module must compile cleanly with the strictest users' flags.
 const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];

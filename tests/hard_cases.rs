@@ -6,7 +6,7 @@ mod families;
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{
     solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Precision, Solver, Stop,

@@ -8,7 +8,7 @@ mod measured;
 
 use antiperiodic::{window, Antiperiodic};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel};
 use contact_normal::methods::multigrid::analysis::{Analysis, Symbol};
 use contact_normal::methods::multigrid::smoother::Smoother;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients, Periodic};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic};
 use contact_normal::methods::multigrid::coarsen;
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Period, Scene};
@@ -20,7 +20,7 @@ fn scene<'a>(grid: Grid, h: &'a [f64], (x, y): (bool, bool), load: Load) -> Scen
 }
 
 fn periodic(grid: &Grid, directions: (bool, bool)) -> Periodic {
-    Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid)
+    Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid).unwrap()
 }
 
 /// `sum over n of (-1)^n f(n)` from n = 0, f smooth and falling: Cohen, Rodriguez Villegas & Zagier (2000), algorithm 1; the error
@@ -342,9 +342,9 @@ fn coarser_grids_have_the_coefficients_that_their_elements_have() {
         (50, 21, (true, true)), // of which the coarser ones are longer by an element
     ] {
         let mut grid = Grid::new(mx, my, 0.5, 0.4).unwrap();
-        let mut coefficients = periodic(&grid, directions);
+        let mut coefficients = Coefficients::from(periodic(&grid, directions));
         while let Some(coarse) = coarsen(&grid, 8) {
-            coefficients = coefficients.coarsen(&coarse);
+            coefficients = coefficients.coarsen(&grid, &coarse).unwrap();
             grid = coarse;
             let anew = periodic(&grid, directions);
             let largest = anew.at(0, 0);

@@ -12,7 +12,7 @@ use std::process::Command;
 use clients::{assert_certified, recompute, root, run, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
 
 /// What python_examples/wheel_rail.py asks for.

@@ -1,7 +1,7 @@
 //! A fast Gauss-Seidel sweep makes the iterates of the dense one, term by term.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::dense;
 use contact_normal::threads::Threads;

@@ -80,7 +80,8 @@ impl Product {
     /// Of a scene, with so many threads.
     pub fn new(scene: &Scene<'_>, threads: usize) -> Product {
         let threads = Threads::new(threads).expect("threads");
-        let operator = Operator::new(&scene.influence(), &scene.grid, &threads).expect("an operator");
+        let operator =
+            Operator::new(&scene.coefficients().expect("coefficients"), &scene.grid, &threads).expect("an operator");
         let workspace = operator.workspace().expect("a workspace");
         let p = (0..scene.grid.len()).map(|i| 1.0 + (i % 7) as f64).collect();
         Product { operator, workspace, p, u: vec![0.0; scene.grid.len()] }

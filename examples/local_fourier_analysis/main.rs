@@ -11,7 +11,7 @@ mod measured;
 mod picture;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::analysis::Analysis;
 use contact_normal::methods::multigrid::CycleShape;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};

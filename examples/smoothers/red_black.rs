@@ -1,7 +1,7 @@
 //! Why red-black order is worse than lexicographic order: neither the coarse grid nor a red-black sweep sees a checkerboard.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Coefficients};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::Operator;
 use contact_normal::solver::{Method, Stop};

@@ -61,7 +61,10 @@ const SECOND: u64 = 0xbb67_ae85_84ca_a73b;
 
 fn hash(words: impl Iterator<Item = u64>) -> [u64; 2] {
     words.fold([FIRST, SECOND], |[a, b], word| {
-        [(a ^ word).wrapping_mul(FIRST).rotate_left(29), (b.rotate_left(17) ^ word).wrapping_mul(SECOND).rotate_left(31)]
+        [
+            (a ^ word).wrapping_mul(FIRST).rotate_left(29),
+            (b.rotate_left(17) ^ word).wrapping_mul(SECOND).rotate_left(31),
+        ]
     })
 }
 

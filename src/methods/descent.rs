@@ -211,7 +211,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::grid::Grid;
-    use crate::influence::{HalfSpace, Coefficients};
+    use crate::influence::{Coefficients, HalfSpace};
     use crate::operator::dense;
 
     /// A wavy punch, that makes elements leave and enter.

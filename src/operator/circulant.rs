@@ -22,9 +22,19 @@ impl<T: Real> Operator<T> {
         (period(grid.mx, repeats.0), period(grid.my, repeats.1))
     }
 
-    /// The inverse of a circulant near A, of coefficients times a factor: period `px * py >= mx * my`, coefficients at offsets up to half of it, even in both
+    /// The inverse of a circulant near A: period `px * py >= mx * my`, coefficients at offsets up to half of it, even in both
     /// directions. None if it is not positive.
     pub fn inverse_circulant(
+        coefficients: &Coefficients,
+        grid: &Grid,
+        period: (usize, usize),
+        threads: &Threads,
+    ) -> Result<Option<Operator<T>>> {
+        Operator::scaled_inverse(coefficients, 1.0, grid, period, threads)
+    }
+
+    /// The same of coefficients times a factor, a power of two.
+    pub fn scaled_inverse(
         coefficients: &Coefficients,
         factor: f64,
         grid: &Grid,

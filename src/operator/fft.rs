@@ -152,7 +152,14 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.len()
     }
 
-    /// Makes scratch long enough for both directions.
+    /// Scratch that both directions need.
+    pub fn scratch(&self) -> Vec<Complex<T>> {
+        let mut scratch = Vec::new();
+        self.fit(&mut scratch);
+        scratch
+    }
+
+    /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
         let length = self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len());
         scratch.resize(scratch.len().max(length), Complex::default());

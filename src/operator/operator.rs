@@ -113,13 +113,7 @@ impl<T: Real> Operator<T> {
 
     /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
     /// error, before it is renewed again.
-    pub fn renew(
-        &mut self,
-        coefficients: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        set_up: &mut SetUp,
-    ) -> Result<()> {
+    pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (px, py) = periods(coefficients, grid);
         let threads = self.rows.threads.clone();
         if px != self.rows.transform.length() {
@@ -143,7 +137,13 @@ impl<T: Real> Operator<T> {
         Ok(())
     }
 
-    fn set_spectrum(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
+    fn set_spectrum(
+        &mut self,
+        coefficients: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        set_up: &mut SetUp,
+    ) -> Result<()> {
         if coefficients.is_even(grid) {
             let repeats = coefficients.repeats(grid);
             let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };

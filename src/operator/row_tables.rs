@@ -32,7 +32,12 @@ pub(super) struct PerRow<T> {
 
 impl<T: Real> PerRow<T> {
     /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
-    pub fn new(tables: &RowTables, (least, factor): (f64, f64), rows: &RowTransform<f64>, threads: &Threads) -> Result<PerRow<T>> {
+    pub fn new(
+        tables: &RowTables,
+        (least, factor): (f64, f64),
+        rows: &RowTransform<f64>,
+        threads: &Threads,
+    ) -> Result<PerRow<T>> {
         let (my, nb, px) = (tables.rows(), rows.bins(), rows.length());
         let planes = if tables.is_even_in_x() { 1 } else { 2 };
         let size = (my * my).checked_mul(planes * nb);

@@ -62,7 +62,7 @@ pub fn found(solver: &Solver, stop: Stop, report: Report) -> Found {
 
 /// u = A p.
 pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
-    let influence: Coefficients = case.scene().influence();
+    let influence: Coefficients = case.scene().coefficients().unwrap();
     let mut u = vec![0.0; p.len()];
     if p.len() <= SUMMED {
         dense::apply(&influence, &case.grid, p, &mut u);

@@ -50,7 +50,7 @@ mod promises {
 
     /// Solves on C by elimination: `A p = 1 - h` there.
     fn solve_on(case: &Case, contact: &[bool]) -> Vec<f64> {
-        let influence = case.scene().influence();
+        let influence = case.scene().coefficients().unwrap();
         let elements: Vec<usize> = (0..contact.len()).filter(|&i| contact[i]).collect();
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for &i in &elements {

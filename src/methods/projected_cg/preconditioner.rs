@@ -41,7 +41,7 @@ impl<T: Real> Preconditioner<T> {
         let mut parts = Vec::new();
         for (influence, weights) in influence.levels()? {
             let period = Operator::<T>::circulant_period(&influence, grid);
-            let Some(inverse) = Operator::inverse_circulant(&influence, factor, grid, period, threads)? else {
+            let Some(inverse) = Operator::scaled_inverse(&influence, factor, grid, period, threads)? else {
                 return Ok(None);
             };
             parts.push(Part { inverse, weights: weights.into_iter().map(T::of).collect() });

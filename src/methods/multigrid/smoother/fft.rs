@@ -56,7 +56,7 @@ impl Fft {
     /// Sets up the smoother on `grid`.
     pub fn new(influence: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Fft> {
         let period = Operator::<f64>::circulant_period(influence, grid);
-        let inverse_circulant = match Operator::inverse_circulant(influence, 1.0, grid, period, threads)? {
+        let inverse_circulant = match Operator::inverse_circulant(influence, grid, period, threads)? {
             Some(inverse) => {
                 let workspace = inverse.workspace()?;
                 Some((inverse, workspace))
