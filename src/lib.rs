@@ -44,13 +44,14 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`scene`] | what is simulated: bodies, undeformed distance, load, effects |
+//! | [`effects`] | one file per effect, and the list of them |
 //! | [`solver`] | how: options, the loops of the methods as prose, the report and its ledger; an accuracy instead of a grid |
 //! | [`projected_cg`] | projected preconditioned conjugate gradients on one grid, and its window |
 //! | [`multigrid`] | section 4.2: grids, transfers, smoothers, the V-cycle; local Fourier analysis of them |
 //! | [`active_set`] | steps 4.1 and 4.2, the guard against cycling, the certificate |
 //! | [`norm`] | section 3: the inner solves of NORM |
 //! | [`operator`] | u = A p by FFT, and by direct summation |
-//! | [`influence`] | Love's coefficients, the caller's own table |
+//! | [`influence`] | kernels (Love's, periodic, the caller's own tables), diagonal and coupling |
 //! | [`analytic`] | the Hertz solution |
 //! | [`threads`] | the pool |
 //! | [`ffi`] | the C ABI, translation only |
@@ -60,6 +61,7 @@
 
 pub mod analytic;
 pub mod contact;
+pub mod effects;
 pub mod error;
 #[allow(unsafe_code)]
 pub mod ffi;

@@ -10,7 +10,7 @@ use std::process::Command;
 use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
@@ -63,7 +63,7 @@ fn certificate(solution: &Path) -> Recomputed {
     let contact: Vec<bool> = elements.iter().map(|element| element[2] != 0.0).collect();
     assert!(contact.contains(&true), "there is contact");
     let steel = Bodies::same(82000.0, 0.28);
-    let influence = Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
+    let influence = Coefficients::from(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
     recompute(&grid, &influence, &column(0), head[4], &column(1), &contact)
 }
 

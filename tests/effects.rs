@@ -2,7 +2,7 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, RowTables, Table};
+use contact_normal::influence::{HalfSpace, Kernel, RowTables, Table};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 

@@ -2,7 +2,7 @@
 //! whose coarser ones have transforms that need more memory than the finest one's, single rows, odd counts, primes.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Table};
+use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Method, Options, Stop};
 

@@ -8,11 +8,11 @@ mod rough;
 
 use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::good_length;
-use contact_normal::operator::{dense, Toeplitz};
+use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 use contact_normal::threads::Threads;
@@ -197,7 +197,7 @@ fn no_cycle_raises_the_energy() {
     // (v, A v)/2 - (d, v), with relaxations up to the limit of 2, on sets where a fixed step length diverges.
     let mut random = Random(11);
     let grid = Grid::new(40, 56, 1.0, 1.0).unwrap();
-    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
+    let influence = Coefficients::from(HalfSpace::new(1.0, 1.0, 1.0));
     for (fill, relaxation) in [(0.1, 1.0), (0.3, 0.3), (0.3, 1.9), (0.6, 1.0), (1.0, 1.0)] {
         let contact = spots(&grid, fill, &mut random);
         let shape = CycleShape { smoother: SmootherKind::Fft, relaxation, ..CycleShape::default() };
@@ -220,11 +220,11 @@ fn no_cycle_raises_the_energy() {
 }
 
 /// A table of `f(kx, ky)` for a grid.
-fn table(grid: &Grid, f: impl Fn(i64, i64) -> f64) -> Influence {
+fn table(grid: &Grid, f: impl Fn(i64, i64) -> f64) -> Table {
     let (cx, cy) = (grid.mx as i64, grid.my as i64);
     let values: Vec<f64> =
         (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky))).map(|(kx, ky)| f(kx, ky)).collect();
-    Influence::Table(Table::new(grid.mx, grid.my, &values, grid).unwrap())
+    Table::new(grid.mx, grid.my, &values, grid).unwrap()
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn a_sweep_leaves_the_true_residual_and_product() {
         let bent = table(&grid, |kx, ky| {
             1.0 / (1.0 + ((kx * kx + ky * ky) as f64).sqrt() + 0.1 * (kx + 2 * ky) as f64).powi(2)
         });
-        for influence in [Influence::HalfSpace(HalfSpace::new(1.0, 0.7, 1.0)), bent] {
+        for influence in [Coefficients::from(HalfSpace::new(1.0, 0.7, 1.0)), bent.into()] {
             let contact: Vec<bool> = (0..grid.len()).map(|i| i == 0 || random.next() < 0.7).collect();
             let b: Vec<f64> = (0..grid.len()).map(|i| if contact[i] { random.next() } else { 0.0 }).collect();
             let mut smoother = Smoother::new(SmootherKind::Fft, &influence, &grid, &Threads::One).unwrap();
@@ -301,14 +301,18 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
         .map(|i| 0.01 * ((i % 20) as f64 - 9.0).powi(2) + 0.02 * ((i / 20) as f64 - 8.0).powi(2))
         .collect();
     for (what, influence) in &cases[..2] {
-        let inverse =
-            Toeplitz::<f64>::inverse_circulant(influence, &grid, (good_length(21), good_length(17)), &Threads::One)
-                .unwrap();
+        let inverse = Operator::<f64>::inverse_circulant(
+            &influence.clone().into(),
+            &grid,
+            (good_length(21), good_length(17)),
+            &Threads::One,
+        )
+        .unwrap();
         assert!(inverse.is_none(), "{what} was meant to have no positive circulant");
     }
-    for (what, influence) in cases {
+    for (what, own) in cases {
+        let influence = Coefficients::from(own.clone());
         for load in [Load::Approach(0.4), Load::Force(2.0)] {
-            let Influence::Table(own) = &influence else { panic!("a table") };
             let scene = Scene { influence: Some(own.clone()), ..Scene::new(grid, &h, BODIES, load) };
             for method in [Method::Multigrid, Method::FullMultigrid] {
                 let (solver, stop, _) = solve(&scene, &options(method)).unwrap();

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace};
 
 /// Every warning is an error: the module must compile cleanly with the strictest users' flags.
 const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];
@@ -49,7 +49,7 @@ fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64)
         contact.push(next() != 0.0);
     }
     // Steel on steel, as in all examples: 1/E* = 2 (1 - nu) / (2 G).
-    let influence = Influence::HalfSpace(HalfSpace::new(dx, dy, (1.0 - 0.28) / 82000.0));
+    let influence = Coefficients::from(HalfSpace::new(dx, dy, (1.0 - 0.28) / 82000.0));
     let measures = recompute(&grid, &influence, &h, approach, &p, &contact);
     assert_certified(&measures, tolerance);
 }

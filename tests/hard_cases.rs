@@ -6,7 +6,7 @@ mod families;
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{
     solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Precision, Solver, Stop,
@@ -246,7 +246,7 @@ fn a_table_without_symmetry_is_solved_as_it_is() {
         let state = solver.state();
         // independently: e by direct summation
         let mut u = vec![0.0; grid.len()];
-        contact_normal::operator::dense::apply(&Influence::Table(influence.clone()), &grid, &state.p, &mut u);
+        contact_normal::operator::dense::apply(&Coefficients::from(influence.clone()), &grid, &state.p, &mut u);
         for i in 0..grid.len() {
             let e = h[i] - 0.1 + u[i];
             assert!(if state.contact[i] { e.abs() <= 1e-9 } else { e > 0.0 }, "{method:?}");
@@ -280,8 +280,8 @@ fn a_table_whose_circulant_is_not_positive_is_solved_all_the_same() {
     let wave = |k: i64| (0.9 * k as f64).cos() * (-0.05 * k.abs() as f64).exp();
     let influence =
         table_of(&grid, 16, 16, |kx, ky, _| wave(kx) * wave(ky) + if (kx, ky) == (0, 0) { 0.5 } else { 0.0 });
-    let full = Influence::Table(influence.clone());
-    let circulant = contact_normal::operator::Toeplitz::<f64>::inverse_circulant(&full, &grid, (18, 18), &Threads::One);
+    let full = Coefficients::from(influence.clone());
+    let circulant = contact_normal::operator::Operator::<f64>::inverse_circulant(&full, &grid, (18, 18), &Threads::One);
     assert!(circulant.unwrap().is_none(), "the table does not test what it should");
     for load in [Load::Approach(0.3), Load::Force(5.0)] {
         let scene = Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), load) };

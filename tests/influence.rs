@@ -2,7 +2,7 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Periodic, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Options};
 
@@ -93,7 +93,7 @@ fn reported_bytes_hold_the_coefficients() {
     let grid = Grid::new(mx, my, 0.5, 0.5).expect("a grid");
     let h: Vec<f64> = (0..grid.len()).map(|i| 0.01 * ((i % mx) as f64 - 20.0).powi(2)).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.5));
-    let half_space = plain.influence();
+    let half_space = plain.coefficients().unwrap();
     let offsets = (0..4 * mx * my).map(|i| ((i % (2 * mx)) as i64 - mx as i64, (i / (2 * mx)) as i64 - my as i64));
     let values: Vec<f64> = offsets.map(|(kx, ky)| half_space.at(kx, ky)).collect();
     let table = Table::new(mx, my, &values, &grid).expect("a table");
@@ -101,6 +101,6 @@ fn reported_bytes_hold_the_coefficients() {
     let more = bytes(&Scene { influence: Some(table), ..plain.clone() }) - bytes(&plain);
     let tables: usize = [(40, 36), (20, 18), (10, 9), (5, 5)].map(|(mx, my)| 32 * mx * my).iter().sum();
     assert_eq!(more, tables as u64);
-    let periodic = Periodic::new(HalfSpace::new(0.5, 0.5, 1.0), (true, true), &grid);
-    assert_eq!(Influence::Periodic(periodic).bytes(), 8 * 21 * 19);
+    let periodic = Periodic::new(HalfSpace::new(0.5, 0.5, 1.0), (true, true), &grid).unwrap();
+    assert_eq!(Coefficients::from(periodic).bytes(), 8 * 21 * 19);
 }

@@ -29,7 +29,7 @@ fn assert_near(found: &State, expected: &[f64], tolerance: f64, what: &str) {
 
 /// The self-influence of an element: what compliances are compared with.
 fn self_influence(scene: &Scene<'_>) -> f64 {
-    scene.influence().at(0, 0)
+    scene.coefficients().unwrap().at(0, 0)
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn one_compliance_per_element_satisfies_the_equations_of_the_direct_sum() {
     for scale in [0.01, 1.0, 100.0] {
         let c = uneven(&grid, scale * self_influence(&plain));
         for period in [None, Some(Period { x: true, y: false }), Some(Period { x: true, y: true })] {
-            let bodies = Scene { period, ..plain.clone() }.influence();
+            let bodies = Scene { period, ..plain.clone() }.coefficients().unwrap();
             for load in [Load::Force(0.2), Load::Approach(0.15)] {
                 let scene = Scene { layer: Some(Layer::PerElement(&c)), load, period, ..plain.clone() };
                 let (solver, report) = run(&scene, &tight(Method::Auto));

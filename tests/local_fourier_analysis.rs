@@ -9,17 +9,17 @@ mod measured;
 use antiperiodic::{window, Antiperiodic};
 use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel};
 use contact_normal::methods::multigrid::analysis::{Analysis, Symbol};
 use contact_normal::methods::multigrid::smoother::Smoother;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::Complex;
-use contact_normal::operator::Toeplitz;
+use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
-fn half_space(grid: &Grid) -> Influence {
-    Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, 1.0))
+fn half_space(grid: &Grid) -> Coefficients {
+    Coefficients::from(HalfSpace::new(grid.dx, grid.dy, 1.0))
 }
 
 fn shape(smoother: SmootherKind, relaxation: f64, (pre_sweeps, post_sweeps): (usize, usize)) -> CycleShape {
@@ -71,7 +71,7 @@ fn the_symbols_are_the_sums_of_the_coefficients() {
 fn the_eigenvalues_of_the_circulant_are_near_the_symbol() {
     let deviation = |n: usize| {
         let grid = Grid::new(n, n, 1.0, 1.0).unwrap();
-        let inverse = Toeplitz::<f64>::inverse_circulant(&half_space(&grid), &grid, (n, n), &Threads::One).unwrap();
+        let inverse = Operator::<f64>::inverse_circulant(&half_space(&grid), &grid, (n, n), &Threads::One).unwrap();
         let inverse = inverse.expect("a positive circulant");
         let mut workspace = inverse.workspace().unwrap();
         let symbol = Symbol::new(1.0, 1.0, 1.0);

@@ -46,7 +46,7 @@ fn the_equations_hold_with_the_direct_sum() {
                     let mine: Vec<f64> =
                         state.p.iter().zip(&patch).map(|(p, &of)| if of == b { *p } else { 0.0 }).collect();
                     let mut product = vec![0.0; grid.len()];
-                    dense::apply(&plain.influence(), &grid, &mine, &mut product);
+                    dense::apply(&plain.coefficients().unwrap(), &grid, &mine, &mut product);
                     for (i, u) in u.iter_mut().enumerate() {
                         *u += FACTORS[(3 * patch[i] + b) as usize] * product[i];
                     }

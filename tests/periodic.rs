@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Periodic};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic};
 use contact_normal::methods::multigrid::coarsen;
-use contact_normal::operator::{dense, Toeplitz};
+use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
@@ -20,7 +20,7 @@ fn scene<'a>(grid: Grid, h: &'a [f64], (x, y): (bool, bool), load: Load) -> Scen
 }
 
 fn periodic(grid: &Grid, directions: (bool, bool)) -> Periodic {
-    Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid)
+    Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid).unwrap()
 }
 
 /// `sum over n of (-1)^n f(n)` from n = 0, f smooth and falling: Cohen, Rodriguez Villegas & Zagier (2000), algorithm 1; the error
@@ -135,8 +135,8 @@ fn products_are_those_of_the_direct_sum_for_every_length() {
     for (mx, my) in [(1, 1), (1, 7), (2, 2), (5, 3), (6, 11), (8, 8), (13, 4)] {
         let grid = Grid::new(mx, my, 1.0, 0.7).unwrap();
         for directions in [(true, true), (true, false), (false, true)] {
-            let influence = Influence::Periodic(periodic(&grid, directions));
-            let operator = Toeplitz::<f64>::new(&influence, &grid, &Threads::One).unwrap();
+            let influence = Coefficients::from(periodic(&grid, directions));
+            let operator = Operator::<f64>::new(&influence, &grid, &Threads::One).unwrap();
             let p: Vec<f64> = (0..grid.len()).map(|i| ((i * i + 3 * i) % 7) as f64).collect();
             let (mut u, mut direct) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
             operator.apply(&p, &mut u, &mut operator.workspace().unwrap());
@@ -342,9 +342,9 @@ fn coarser_grids_have_the_coefficients_that_their_elements_have() {
         (50, 21, (true, true)), // of which the coarser ones are longer by an element
     ] {
         let mut grid = Grid::new(mx, my, 0.5, 0.4).unwrap();
-        let mut coefficients = periodic(&grid, directions);
+        let mut coefficients = Coefficients::from(periodic(&grid, directions));
         while let Some(coarse) = coarsen(&grid, 8) {
-            coefficients = coefficients.coarsen(&coarse);
+            coefficients = coefficients.coarsen(&grid, &coarse).unwrap();
             grid = coarse;
             let anew = periodic(&grid, directions);
             let largest = anew.at(0, 0);

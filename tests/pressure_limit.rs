@@ -35,7 +35,7 @@ fn tight(method: Method) -> Options {
 fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str) -> usize {
     let (grid, state, limit) = (scene.grid, solver.state(), scene.pressure_limit.unwrap());
     let mut u = vec![0.0; grid.len()];
-    let bodies = Scene { layer: None, ..scene.clone() }.influence();
+    let bodies = Scene { layer: None, ..scene.clone() }.coefficients().unwrap();
     dense::apply(&bodies, &grid, &state.p, &mut u);
     if let Some(Layer::Uniform(c)) = scene.layer {
         u.iter_mut().zip(&state.p).for_each(|(u, p)| *u += c * p);
@@ -140,7 +140,7 @@ fn with_a_layer_and_with_a_period() {
     let h = rough(&grid);
     let elastic = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.1));
     let limit = Some(PressureLimit::Uniform(0.4 * run(&elastic, &Options::default()).1.measures.max_pressure));
-    let c = elastic.influence().at(0, 0);
+    let c = elastic.coefficients().unwrap().at(0, 0);
     for (layer, period) in [
         (Some(Layer::Uniform(0.2 * c)), None),
         (None, Some(Period { x: true, y: false })),

@@ -12,7 +12,7 @@ use std::process::Command;
 use clients::{assert_certified, recompute, root, run, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
 
 /// What python_examples/wheel_rail.py asks for.
@@ -65,7 +65,7 @@ fn recomputed(arrays: &Path) -> Recomputed {
     let column = |k: usize| rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
     let contact: Vec<bool> = column(2).iter().map(|&inside| inside != 0.0).collect();
     let steel = Bodies::same(82000.0, 0.28);
-    let influence = Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
+    let influence = Coefficients::from(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
     recompute(&grid, &influence, &column(0), numbers[4], &column(1), &contact)
 }
 

@@ -4,8 +4,8 @@
 mod solved;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, RowTables};
-use contact_normal::operator::Toeplitz;
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, RowTables};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
@@ -40,7 +40,7 @@ fn direct(grid: &Grid, tables: &RowTables, p: &[f64]) -> (Vec<f64>, f64) {
     for (i, u) in u.iter_mut().enumerate() {
         let mut magnitudes = 0.0;
         for (j, p) in p.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-            let term = tables.at(j / grid.mx, i / grid.mx, (i % grid.mx) as i64 - (j % grid.mx) as i64) * p;
+            let term = tables.coefficient(j / grid.mx, i / grid.mx, (i % grid.mx) as i64 - (j % grid.mx) as i64) * p;
             *u += term;
             magnitudes += term.abs();
         }
@@ -91,7 +91,7 @@ fn products_are_those_of_the_direct_sum() {
             };
             let tables = tables(&grid, at);
             assert_eq!(tables.is_even_in_x(), even || mx == 1);
-            let influence = Influence::RowTables(tables.clone());
+            let influence = Coefficients::from(tables.clone());
             for loaded in [0..my, my / 3..my - my / 4] {
                 let p: Vec<f64> = (0..grid.len())
                     .map(|i| if loaded.contains(&(i / mx)) { random(i as u64) - 0.4 } else { 0.0 })
@@ -99,7 +99,7 @@ fn products_are_those_of_the_direct_sum() {
                 let (expected, magnitudes) = direct(&grid, &tables, &p);
                 let mut bits = Vec::new();
                 for threads in [Threads::One, Threads::new(3).unwrap()] {
-                    let operator = Toeplitz::<f64>::new(&influence, &grid, &threads).unwrap();
+                    let operator = Operator::<f64>::new(&influence, &grid, &threads).unwrap();
                     let mut u = vec![f64::NAN; grid.len()];
                     operator.apply(&p, &mut u, &mut operator.workspace().unwrap());
                     for (u, expected) in u.iter().zip(&expected) {
@@ -224,7 +224,7 @@ fn what_is_not_symmetric_is_solved_too() {
     let uneven = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64 + 0.01 * kx as f64);
     let even = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64);
     for (row_tables, is_even) in [(tables(&grid, uneven), false), (tables(&grid, even), true)] {
-        assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric()), (is_even, false));
+        assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric(&grid)), (is_even, false));
         for load in [Load::Approach(0.4), Load::Force(1.5)] {
             let scene = Scene { row_tables: Some(row_tables.clone()), ..Scene::new(grid, &h, BODIES, load) };
             for method in [Method::Auto, Method::Norm] {
@@ -238,7 +238,7 @@ fn what_is_not_symmetric_is_solved_too() {
     // Symmetric, and not even in x: the turned table is at -k.
     let leaning = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.002 * (iy as f64 - jy as f64) * kx as f64);
     let row_tables = tables(&grid, leaning);
-    assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric()), (false, true));
+    assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric(&grid)), (false, true));
     let scene = Scene { row_tables: Some(row_tables), ..Scene::new(grid, &h, BODIES, Load::Force(1.5)) };
     let (solver, _) = run(&scene, &tight(Method::ProjectedCg));
     assert_conditions(&scene, &solver, |_| 0.0, "leaning");
@@ -250,17 +250,18 @@ fn coarser_tables_of_the_half_space_are_near_those_of_larger_elements() {
     let grid = Grid::new(13, 11, 1.0, 0.9).unwrap();
     let coarse = Grid::new(7, 6, 2.0, 1.8).unwrap();
     let fine = tables(&grid, half_space(&grid));
-    let Influence::RowTables(means) = Influence::RowTables(fine).coarsen(&grid, &coarse).unwrap() else { panic!() };
+    let coarser = Coefficients::from(fine).coarsen(&grid, &coarse).unwrap();
+    let (means, _) = coarser.row_tables().unwrap();
     let exact = half_space(&coarse);
     for (jy, iy, kx) in (0..6 * 6 * 7).map(|k| (k / 42, k / 7 % 6, k as i64 % 7)) {
-        let (mean, exact) = (means.at(jy, iy, kx), exact(jy, iy, kx));
+        let (mean, exact) = (means.coefficient(jy, iy, kx), exact(jy, iy, kx));
         // Of unit squares the potentials at offsets (0, 0), (1, 0), (1, 1), (2, 0) are 3.525, 1.038, 0.73, 0.505: the mean is 6.33 at
         // offset 0 where 7.05 is exact, and 2.165 beside it where 2.076 is.
         let allowed = if (jy, kx) == (iy, 0) { 0.13 } else { 0.07 };
         assert!((mean / exact - 1.0).abs() <= allowed, "({jy}, {iy}, {kx}): {mean} {exact}");
-        assert_eq!(mean, means.at(jy, iy, -kx));
+        assert_eq!(mean, means.coefficient(jy, iy, -kx));
     }
-    assert!(means.is_symmetric());
+    assert!(means.is_symmetric(&coarse));
 }
 
 #[test]

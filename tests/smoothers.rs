@@ -1,7 +1,7 @@
 //! A fast Gauss-Seidel sweep makes the iterates of the dense one, term by term.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::dense;
 use contact_normal::threads::Threads;
@@ -12,7 +12,7 @@ fn random(state: &mut u64) -> f64 {
 }
 
 /// The sweep as its formula says, in the order of `elements`.
-fn dense_sweep(influence: &Influence, grid: &Grid, p: &mut [f64], b: &[f64], relaxation: f64, elements: &[usize]) {
+fn dense_sweep(influence: &Coefficients, grid: &Grid, p: &mut [f64], b: &[f64], relaxation: f64, elements: &[usize]) {
     for &i in elements {
         let mut sum = 0.0;
         for (j, p) in p.iter().enumerate() {
@@ -23,12 +23,12 @@ fn dense_sweep(influence: &Influence, grid: &Grid, p: &mut [f64], b: &[f64], rel
     }
 }
 
-fn influences(grid: &Grid, seed: &mut u64) -> [Influence; 2] {
+fn influences(grid: &Grid, seed: &mut u64) -> [Coefficients; 2] {
     let mut table: Vec<f64> = (0..4 * grid.len()).map(|_| random(seed) - 0.5).collect();
     table[grid.my * 2 * grid.mx + grid.mx] = 20.0;
     [
-        Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, 1.0)),
-        Influence::Table(Table::new(grid.mx, grid.my, &table, grid).unwrap()),
+        Coefficients::from(HalfSpace::new(grid.dx, grid.dy, 1.0)),
+        Coefficients::from(Table::new(grid.mx, grid.my, &table, grid).unwrap()),
     ]
 }
 
@@ -74,7 +74,7 @@ fn a_fast_sweep_is_the_dense_sweep_to_twelve_digits() {
 fn a_second_sweep_does_not_remember_the_first() {
     let mut seed = 6;
     let grid = Grid::new(12, 50, 1.0, 1.0).unwrap();
-    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
+    let influence = Coefficients::from(HalfSpace::new(1.0, 1.0, 1.0));
     let mut used = Smoother::new(SmootherKind::GaussSeidel, &influence, &grid, &Threads::One).unwrap();
     for _ in 0..3 {
         let contact: Vec<bool> = (0..grid.len()).map(|_| random(&mut seed) < 0.4).collect();

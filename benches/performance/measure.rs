@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use contact_normal::grid::Grid;
-use contact_normal::operator::{Toeplitz, Workspace};
+use contact_normal::operator::{Operator, Workspace};
 use contact_normal::scene::Scene;
 use contact_normal::solver::{solve, Options, Report, Stop};
 use contact_normal::threads::Threads;
@@ -70,7 +70,7 @@ pub fn median(times: &[f64]) -> f64 {
 
 /// The unit of the targets: one u = A p in double precision, pressures on all of the grid.
 pub struct Product {
-    operator: Toeplitz<f64>,
+    operator: Operator<f64>,
     workspace: Workspace<f64>,
     p: Vec<f64>,
     u: Vec<f64>,
@@ -80,7 +80,8 @@ impl Product {
     /// Of a scene, with so many threads.
     pub fn new(scene: &Scene<'_>, threads: usize) -> Product {
         let threads = Threads::new(threads).expect("threads");
-        let operator = Toeplitz::new(&scene.influence(), &scene.grid, &threads).expect("an operator");
+        let operator =
+            Operator::new(&scene.coefficients().expect("coefficients"), &scene.grid, &threads).expect("an operator");
         let workspace = operator.workspace().expect("a workspace");
         let p = (0..scene.grid.len()).map(|i| 1.0 + (i % 7) as f64).collect();
         Product { operator, workspace, p, u: vec![0.0; scene.grid.len()] }

@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, RowTables};
+use contact_normal::influence::{HalfSpace, Kernel, RowTables};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Report, Stop};
 

@@ -11,7 +11,7 @@ mod measured;
 mod picture;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::analysis::Analysis;
 use contact_normal::methods::multigrid::CycleShape;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
@@ -52,7 +52,7 @@ impl Area {
     }
 
     fn measure(&self, shape: CycleShape) -> f64 {
-        let influence = Influence::HalfSpace(HalfSpace::new(self.grid.dx, self.grid.dy, 1.0));
+        let influence = Coefficients::from(HalfSpace::new(self.grid.dx, self.grid.dy, 1.0));
         measured::factor(&self.grid, &influence, &self.contact, shape, MEASURED)
     }
 }

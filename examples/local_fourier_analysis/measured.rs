@@ -2,7 +2,7 @@
 
 use contact_normal::contact::Problem;
 use contact_normal::grid::Grid;
-use contact_normal::influence::Influence;
+use contact_normal::influence::Coefficients;
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::threads::Threads;
 
@@ -16,7 +16,7 @@ pub fn random(state: &mut u64) -> f64 {
 /// parts of the error rule.
 pub fn factor(
     grid: &Grid,
-    influence: &Influence,
+    influence: &Coefficients,
     contact: &[bool],
     shape: CycleShape,
     (cycles, of): (usize, usize),

@@ -1,9 +1,9 @@
 //! Why red-black order is worse than lexicographic order: neither the coarse grid nor a red-black sweep sees a checkerboard.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Influence};
+use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
-use contact_normal::operator::Toeplitz;
+use contact_normal::operator::Operator;
 use contact_normal::solver::{Method, Stop};
 use contact_normal::threads::Threads;
 
@@ -36,8 +36,8 @@ pub fn study() {
 
 fn checkerboard_left(kind: SmootherKind, m: usize) -> f64 {
     let grid = Grid::new(m, m, 1.0, 1.0).expect("a valid grid");
-    let influence = Influence::HalfSpace(HalfSpace::new(1.0, 1.0, 1.0));
-    let operator = Toeplitz::<f64>::new(&influence, &grid, &Threads::One).expect("an operator");
+    let influence = Coefficients::from(HalfSpace::new(1.0, 1.0, 1.0));
+    let operator = Operator::<f64>::new(&influence, &grid, &Threads::One).expect("an operator");
     let mut workspace = operator.workspace().expect("a workspace");
     let mut smoother = Smoother::new(kind, &influence, &grid, &Threads::One).expect("a smoother");
     let checkerboard = |i: usize| if (i / m + i % m) % 2 == 0 { 1.0 } else { -1.0 };

@@ -6,8 +6,8 @@ use super::admissible::AdmissibleSet;
 use super::state::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
-use crate::operator::{Toeplitz, Workspace};
+use crate::influence::Coefficients;
+use crate::operator::{Operator, Workspace};
 use crate::threads::Threads;
 
 /// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
@@ -18,10 +18,10 @@ const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 pub struct Problem {
     /// The grid.
     pub grid: Grid,
-    /// Influence coefficients.
-    pub coefficients: Influence,
+    /// Coefficients coefficients.
+    pub coefficients: Coefficients,
     /// A, in double precision.
-    pub operator: Arc<Toeplitz<f64>>,
+    pub operator: Arc<Operator<f64>>,
     /// Whether A is symmetric.
     pub symmetric: bool,
     /// Whether the coefficients are the caller's: only they may be those of no elastic body.
@@ -36,16 +36,16 @@ pub struct Problem {
 
 impl Problem {
     /// Sets up the operator of the finest grid.
-    pub fn new(grid: Grid, coefficients: Influence, threads: &Threads) -> Result<Problem> {
-        let operator = Arc::new(Toeplitz::new(&coefficients, &grid, &threads.suited_to(grid.len()))?);
+    pub fn new(grid: Grid, coefficients: Coefficients, threads: &Threads) -> Result<Problem> {
+        let operator = Arc::new(Operator::new(&coefficients, &grid, &threads.suited_to(grid.len()))?);
         Problem::with_operator(grid, coefficients, operator, 1.0, threads)
     }
 
     /// On a grid, a product on which takes `work` of one on the finest.
     pub fn with_operator(
         grid: Grid,
-        coefficients: Influence,
-        operator: Arc<Toeplitz<f64>>,
+        coefficients: Coefficients,
+        operator: Arc<Operator<f64>>,
         work: f64,
         threads: &Threads,
     ) -> Result<Problem> {

@@ -6,7 +6,7 @@ use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::analytic;
 use crate::error::require;
 use crate::grid::Grid;
-use crate::influence::HalfSpace;
+use crate::influence::{HalfSpace, Kernel};
 use crate::scene::Bodies;
 
 /// The exact Hertz solution.

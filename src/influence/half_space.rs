@@ -19,6 +19,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::Kernel;
+use crate::error::Result;
+use crate::grid::Grid;
+
 /// Terms of the multipole series at most (degree `2 * 8 = 16`).
 const MOST_TERMS: usize = 8;
 
@@ -91,11 +95,6 @@ impl HalfSpace {
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 
-    /// The coefficients times `factor`.
-    pub fn times(&self, factor: f64) -> HalfSpace {
-        HalfSpace { compliance: factor * self.compliance, ..self.clone() }
-    }
-
     /// `c = 1/(pi E*)`.
     pub fn compliance(&self) -> f64 {
         self.compliance
@@ -104,40 +103,6 @@ impl HalfSpace {
     /// The element's dx and dy.
     pub fn element(&self) -> (f64, f64) {
         (self.dx, self.dy)
-    }
-
-    /// The coefficient at offset `(kx, ky)`.
-    pub fn at(&self, kx: i64, ky: i64) -> f64 {
-        let mut value = [0.0];
-        self.fill_row(kx.abs(), ky, &mut value);
-        value[0]
-    }
-
-    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0`.
-    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
-        debug_assert!(kx >= 0);
-        let y = ky.unsigned_abs() as f64 * self.dy;
-        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
-        // The distance grows along the row: one segment after the other, each with its own number of terms.
-        let first_beyond = |half_diagonals: f64| {
-            let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
-            let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx } else { 0 };
-            k.clamp(0, out.len() as i64) as usize
-        };
-        let starts = SERIES.map(|(distance, _)| first_beyond(distance));
-        let (near, far) = out.split_at_mut(starts[0]);
-        for (k, value) in near.iter_mut().enumerate() {
-            *value = self.compliance * self.near(kx as usize + k, ky.unsigned_abs() as usize);
-        }
-        let [s8, s6, s4, s2] = starts;
-        let (far8, rest) = far.split_at_mut(s6 - s8);
-        let (far6, rest) = rest.split_at_mut(s4 - s6);
-        let (far4, far2) = rest.split_at_mut(s2 - s4);
-        let at = |s: usize| (kx + s as i64) as f64;
-        self.fill_series::<8>(at(s8), y, far8);
-        self.fill_series::<6>(at(s6), y, far6);
-        self.fill_series::<4>(at(s4), y, far4);
-        self.fill_series::<2>(at(s2), y, far2);
     }
 
     fn fill_series<const K: usize>(&self, kx: f64, y: f64, out: &mut [f64]) {
@@ -174,6 +139,44 @@ impl HalfSpace {
     }
 }
 
+impl Kernel for HalfSpace {
+    fn at(&self, kx: i64, ky: i64) -> f64 {
+        let mut value = [0.0];
+        self.fill_row(kx.abs(), ky, &mut value);
+        value[0]
+    }
+
+    fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        debug_assert!(kx >= 0);
+        let y = ky.unsigned_abs() as f64 * self.dy;
+        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
+        // The distance grows along the row: one segment after the other, each with its own number of terms.
+        let first_beyond = |half_diagonals: f64| {
+            let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
+            let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx } else { 0 };
+            k.clamp(0, out.len() as i64) as usize
+        };
+        let starts = SERIES.map(|(distance, _)| first_beyond(distance));
+        let (near, far) = out.split_at_mut(starts[0]);
+        for (k, value) in near.iter_mut().enumerate() {
+            *value = self.compliance * self.near(kx as usize + k, ky.unsigned_abs() as usize);
+        }
+        let [s8, s6, s4, s2] = starts;
+        let (far8, rest) = far.split_at_mut(s6 - s8);
+        let (far6, rest) = rest.split_at_mut(s4 - s6);
+        let (far4, far2) = rest.split_at_mut(s2 - s4);
+        let at = |s: usize| (kx + s as i64) as f64;
+        self.fill_series::<8>(at(s8), y, far8);
+        self.fill_series::<6>(at(s6), y, far6);
+        self.fill_series::<4>(at(s4), y, far4);
+        self.fill_series::<2>(at(s2), y, far2);
+    }
+
+    fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
+        Ok(Arc::new(self.for_element(coarse.dx, coarse.dy)))
+    }
+}
+
 /// The integral of 1/rho over an element at offset `(kx, ky) >= 0`.
 fn near_integral(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
     if ky >= 2.0 {
@@ -199,7 +202,7 @@ fn line(k: f64, d: f64, y: f64) -> f64 {
 }
 
 /// Integral of `f` over an interval of length `d` about `centre`.
-fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
     let pairs: f64 = GAUSS[1..]
         .iter()
         .map(|&(node, weight)| weight * (f(centre + 0.5 * d * node) + f(centre - 0.5 * d * node)))

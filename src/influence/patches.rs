@@ -1,4 +1,4 @@
-//! Coefficients of several contact patches on one grid: the influence of one patch on another is scaled.
+//! The coupling of several contact patches on one grid: the influence of one patch on another is scaled.
 //!
 //! ```text
 //! A_IJ = F(patch of I, patch of J) c(I - J),    F symmetric, 1 on the diagonal, 0: independent, 1: as if there were no patches
@@ -9,31 +9,33 @@
 
 use std::sync::Arc;
 
-use super::Influence;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::memory::reserve;
 
-/// Coefficients, patches and factors.
+/// Patches and factors.
 #[derive(Clone, Debug)]
 pub struct Patches {
-    base: Box<Influence>,
     count: usize,
     /// Of each element.
-    patch: Arc<[u16]>,
+    patch: Arc<Vec<u16>>,
     /// `[count][count]`.
     factors: Arc<[f64]>,
 }
 
-impl Patches {
-    /// Coefficients of which those between two of the `count` patches are scaled.
-    pub fn new(base: Influence, count: usize, patch: impl Iterator<Item = u16>, factors: &[f64]) -> Patches {
-        assert_eq!(factors.len(), count * count);
-        Patches { base: Box::new(base), count, patch: patch.collect(), factors: factors.into() }
-    }
+/// Patches of elements, in memory that is asked for.
+fn collected(patches: impl ExactSizeIterator<Item = u16>) -> Result<Arc<Vec<u16>>> {
+    let mut kept = Vec::new();
+    reserve(&mut kept, patches.len(), "the patches")?;
+    kept.extend(patches);
+    Ok(Arc::new(kept))
+}
 
-    /// The coefficients without factors.
-    pub fn base(&self) -> &Influence {
-        &self.base
+impl Patches {
+    /// The patch of each element, 0 to `count - 1`, and the factors between them.
+    pub fn new(count: usize, patch: impl ExactSizeIterator<Item = u16>, factors: &[f64]) -> Result<Patches> {
+        assert_eq!(factors.len(), count * count);
+        Ok(Patches { count, patch: collected(patch)?, factors: factors.into() })
     }
 
     /// Number of patches.
@@ -51,22 +53,21 @@ impl Patches {
         self.factors[a * self.count + b]
     }
 
-    /// Bytes held, beside the base.
+    /// The factor between two elements.
+    pub fn between(&self, i: usize, j: usize) -> f64 {
+        self.factor(self.patch[i].into(), self.patch[j].into())
+    }
+
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.patch[..]) + size_of_val(&self.factors[..])
     }
 
-    /// The coefficients times `factor`.
-    pub fn times(&self, factor: f64) -> Result<Patches> {
-        Ok(Patches { base: Box::new(self.base.times(factor)?), ..self.clone() })
-    }
-
-    /// The coefficients of a coarser grid: an element belongs where the first of its finer ones does.
+    /// The patches of a coarser grid: an element belongs where the first of its finer ones does.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Patches> {
         let factor = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
         let (by_x, by_y) = (factor(fine.mx, coarse.mx), factor(fine.my, coarse.my));
         let first = |i: usize| self.patch[fine.index(by_x * (i % coarse.mx), by_y * (i / coarse.mx))];
-        let patch = (0..coarse.len()).map(first).collect();
-        Ok(Patches { base: Box::new(self.base.coarsen(fine, coarse)?), patch, ..self.clone() })
+        Ok(Patches { patch: collected((0..coarse.len()).map(first))?, ..self.clone() })
     }
 }

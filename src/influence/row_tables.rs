@@ -20,7 +20,8 @@
 
 use std::sync::Arc;
 
-use super::table::SYMMETRY;
+use super::table::{check_scale, SYMMETRY};
+use super::Kernel;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::memory::reserve;
@@ -38,10 +39,42 @@ pub struct RowTables {
     values: Arc<Vec<f64>>,
 }
 
+/// Whether all tables are even in x, after a check of their coefficients.
+fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> {
+    let Grid { mx, my, .. } = *grid;
+    let mut even = true;
+    for (k, row) in values.chunks_exact(2 * cx).enumerate() {
+        let (jy, iy) = (k / my, k % my);
+        let row = &row[cx + 1 - mx..cx + mx];
+        if let Some(i) = row.iter().position(|value| !(scale * value).is_finite()) {
+            let kx = i as i64 - (mx as i64 - 1);
+            return Err(Error::NotFinite(format!(
+                "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
+                scale * row[i]
+            )));
+        }
+        if jy == iy && scale * row[mx - 1] <= 0.0 {
+            return Err(Error::NotPositiveDefinite(format!(
+                "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset 0 is {}; a pressure must displace its own \
+                 element inwards",
+                scale * row[mx - 1]
+            )));
+        }
+        even &= row[mx - 1..].iter().eq(row[..mx].iter().rev());
+    }
+    Ok(even)
+}
+
 impl RowTables {
     /// Tables of `rows` by `rows` by `2 cx` coefficients, `values[jy][iy][kx + cx]`, that must fit `grid`: `rows` is my, cx >= mx.
     /// Column `-cx` never matters.
     pub fn new(cx: usize, rows: usize, values: &[f64], grid: &Grid) -> Result<RowTables> {
+        RowTables::scaled(cx, rows, values, 1.0, grid)
+    }
+
+    /// The same of `scale * values`.
+    pub fn scaled(cx: usize, rows: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<RowTables> {
+        check_scale("row_tables->scale", scale)?;
         let Grid { mx, my, .. } = *grid;
         if cx < mx {
             return invalid(format!("row_tables->cx is {cx}; the tables must reach offsets of the grid, mx = {mx}"));
@@ -58,45 +91,20 @@ impl RowTables {
                 values.len()
             ));
         }
-        let mut even = true;
-        for (k, row) in values.chunks_exact(2 * cx).enumerate() {
-            let (jy, iy) = (k / my, k % my);
-            let row = &row[cx + 1 - mx..cx + mx];
-            if let Some(i) = row.iter().position(|value| !value.is_finite()) {
-                let kx = i as i64 - (mx as i64 - 1);
-                return Err(Error::NotFinite(format!(
-                    "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
-                    row[i]
-                )));
-            }
-            if jy == iy && row[mx - 1] <= 0.0 {
-                return Err(Error::NotPositiveDefinite(format!(
-                    "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset 0 is {}; a pressure must displace its own \
-                     element inwards",
-                    row[mx - 1]
-                )));
-            }
-            even &= row[mx - 1..].iter().eq(row[..mx].iter().rev());
-        }
+        let even = are_even(cx, values, scale, grid)?;
         // Only the offsets of the grid matter, so only they are kept.
         let mut kept = Vec::new();
         reserve(&mut kept, my * my * width(mx, even), TABLES)?;
         for row in values.chunks_exact(2 * cx) {
-            kept.extend_from_slice(&row[if even { cx } else { cx + 1 - mx }..cx + mx]);
+            let row = &row[if even { cx } else { cx + 1 - mx }..cx + mx];
+            kept.extend(row.iter().map(|value| scale * value));
         }
         Ok(RowTables { mx, my, even, values: Arc::new(kept) })
     }
 
-    /// Refuses a grid that these are no tables of.
-    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
-        let RowTables { mx, my, .. } = *self;
-        if (mx, my) != (grid.mx, grid.my) {
-            return invalid(format!(
-                "row_tables are those of {mx} x {my} elements; the grid has {} x {}",
-                grid.mx, grid.my
-            ));
-        }
-        Ok(())
+    /// The values, shared.
+    pub(crate) fn values(&self) -> &Arc<Vec<f64>> {
+        &self.values
     }
 
     /// Elements of the grid in x.
@@ -115,7 +123,7 @@ impl RowTables {
     }
 
     /// The coefficient of a loaded row jy and a row iy at offset kx, the outermost one where the table ends.
-    pub fn at(&self, jy: usize, iy: usize, kx: i64) -> f64 {
+    pub fn coefficient(&self, jy: usize, iy: usize, kx: i64) -> f64 {
         self.row(jy, iy)[self.column(kx)]
     }
 
@@ -134,15 +142,40 @@ impl RowTables {
         }
     }
 
-    /// The mean over the rows at offset `(kx, ky)`.
-    pub fn mean(&self, kx: i64, ky: i64) -> f64 {
-        let rows = self.rows_apart(ky);
-        let count = rows.clone().count() as f64;
-        rows.map(|(jy, iy)| self.at(jy, iy, kx)).sum::<f64>() / count
+    fn row(&self, jy: usize, iy: usize) -> &[f64] {
+        let width = width(self.mx, self.even);
+        &self.values[(jy * self.my + iy) * width..][..width]
     }
 
-    /// Fills `out[k]` with the mean over the rows at offsets `(+-k, +-ky)`.
-    pub fn fill_even_mean(&self, ky: i64, out: &mut [f64]) {
+    /// Where offset kx stands in a row, the outermost one where it ends.
+    fn column(&self, kx: i64) -> usize {
+        let last = self.mx as i64 - 1;
+        match self.even {
+            true => kx.abs().min(last) as usize,
+            false => (kx.clamp(-last, last) + last) as usize,
+        }
+    }
+
+    /// Pairs of rows (jy, iy), `iy - jy = ky`; those furthest apart where the grid ends.
+    fn rows_apart(&self, ky: i64) -> impl Iterator<Item = (usize, usize)> + Clone {
+        let last = self.my as i64 - 1;
+        let ky = ky.clamp(-last, last);
+        ((-ky).max(0)..=(last - ky).min(last)).map(move |jy| (jy as usize, (jy + ky) as usize))
+    }
+}
+
+impl Kernel for RowTables {
+    fn at(&self, kx: i64, ky: i64) -> f64 {
+        let rows = self.rows_apart(ky);
+        let count = rows.clone().count() as f64;
+        rows.map(|(jy, iy)| self.coefficient(jy, iy, kx)).sum::<f64>() / count
+    }
+
+    fn between(&self, (jx, jy): (i64, i64), (ix, iy): (i64, i64)) -> f64 {
+        self.coefficient(jy as usize, iy as usize, ix - jx)
+    }
+
+    fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         out.fill(0.0);
         let rows = || self.rows_apart(ky).chain(self.rows_apart(-ky));
         for row in rows().map(|(jy, iy)| self.row(jy, iy)) {
@@ -154,14 +187,16 @@ impl RowTables {
         out.iter_mut().for_each(|value| *value *= share);
     }
 
-    /// The largest coefficient, whatever its sign.
-    pub fn largest(&self) -> f64 {
+    fn largest(&self, _grid: &Grid) -> f64 {
         self.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
     }
 
-    /// Whether A is symmetric, `c_jy(iy, k) = c_iy(jy, -k)`, to within round-off.
-    pub fn is_symmetric(&self) -> bool {
-        let allowed = SYMMETRY * self.largest();
+    fn is_even(&self, _grid: &Grid) -> bool {
+        false
+    }
+
+    fn is_symmetric(&self, grid: &Grid) -> bool {
+        let allowed = SYMMETRY * self.largest(grid);
         let alike = |jy: usize, iy: usize| {
             let (row, turned) = (self.row(jy, iy), self.row(iy, jy));
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= allowed;
@@ -173,19 +208,11 @@ impl RowTables {
         (0..self.my).all(|jy| (0..=jy).all(|iy| alike(jy, iy)))
     }
 
-    /// The coefficients times `factor`.
-    pub fn times(&self, factor: f64) -> Result<RowTables> {
-        if factor == 1.0 {
-            return Ok(self.clone());
-        }
-        let mut values = Vec::new();
-        reserve(&mut values, self.values.len(), TABLES)?;
-        values.extend(self.values.iter().map(|value| value * factor));
-        Ok(RowTables { values: Arc::new(values), ..*self })
+    fn row_tables(&self) -> Option<&RowTables> {
+        Some(self)
     }
 
-    /// The coefficients of the coarser grid, as means of the finer ones.
-    pub fn coarsen(&self, coarse: &Grid) -> Result<RowTables> {
+    fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
         let Grid { mx, my, .. } = *coarse;
         let (half_x, half_y) = (mx < self.mx, my < self.my);
         // The outer two are added first: so what is even stays so to the last bit.
@@ -212,33 +239,11 @@ impl RowTables {
             let both = |rows: [&[f64]; 2], kx: i64| 0.5 * (in_x(rows[0], kx) + in_x(rows[1], kx));
             values.extend((first..mx as i64).map(|kx| both(one, kx) + other.map_or(0.0, |other| both(other, kx))));
         }
-        Ok(RowTables { mx, my, even: self.even, values: Arc::new(values) })
+        Ok(Arc::new(RowTables { mx, my, even: self.even, values: Arc::new(values) }))
     }
 
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
-    }
-
-    fn row(&self, jy: usize, iy: usize) -> &[f64] {
-        let width = width(self.mx, self.even);
-        &self.values[(jy * self.my + iy) * width..][..width]
-    }
-
-    /// Where offset kx stands in a row, the outermost one where it ends.
-    fn column(&self, kx: i64) -> usize {
-        let last = self.mx as i64 - 1;
-        match self.even {
-            true => kx.abs().min(last) as usize,
-            false => (kx.clamp(-last, last) + last) as usize,
-        }
-    }
-
-    /// Pairs of rows (jy, iy), `iy - jy = ky`; those furthest apart where the grid ends.
-    fn rows_apart(&self, ky: i64) -> impl Iterator<Item = (usize, usize)> + Clone {
-        let last = self.my as i64 - 1;
-        let ky = ky.clamp(-last, last);
-        ((-ky).max(0)..=(last - ky).min(last)).map(move |jy| (jy as usize, (jy + ky) as usize))
     }
 }
 

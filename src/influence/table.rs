@@ -9,7 +9,8 @@
 
 use std::sync::Arc;
 
-use crate::error::{invalid, Error, Result};
+use super::Kernel;
+use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{reserve, zeros};
 
@@ -18,6 +19,11 @@ const TABLE: &str = "the influence coefficients";
 
 /// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
 pub(super) const SYMMETRY: f64 = 1e-7;
+
+/// Refuses a scale that turns coefficients around or away.
+pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
+    require(scale > 0.0 && scale.is_finite(), name, scale, "coefficients are scaled by a positive, finite number")
+}
 
 /// A table of coefficients, `values[ky + cy][kx + cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +37,12 @@ pub struct Table {
 impl Table {
     /// A table of `2 cx` by `2 cy` coefficients that must cover `grid`.
     pub fn new(cx: usize, cy: usize, values: &[f64], grid: &Grid) -> Result<Table> {
+        Table::scaled(cx, cy, values, 1.0, grid)
+    }
+
+    /// The same of `scale * values`: CONTACT keeps its coefficients times G.
+    pub fn scaled(cx: usize, cy: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<Table> {
+        check_scale("influence.scale", scale)?;
         for (name, c, count, m) in [("cx", cx, "mx", grid.mx), ("cy", cy, "my", grid.my)] {
             if c < m {
                 return invalid(format!(
@@ -47,7 +59,7 @@ impl Table {
         let mut kept = zeros(4 * kept_x * kept_y, TABLE)?;
         for ky in -(kept_y as i64) + 1..kept_y as i64 {
             for kx in -(kept_x as i64) + 1..kept_x as i64 {
-                let value = values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
+                let value = scale * values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
                 if !value.is_finite() {
                     return Err(Error::NotFinite(format!(
                         "influence.coefficients at offset ({kx}, {ky}) is {value}; coefficients must be finite"
@@ -66,49 +78,53 @@ impl Table {
         Ok(table)
     }
 
-    /// The coefficient at offset `(kx, ky)`, the outermost one where the table ends.
-    pub fn at(&self, kx: i64, ky: i64) -> f64 {
+    /// Elements of the grid that it was made for.
+    pub fn elements(&self) -> (usize, usize) {
+        (self.cx, self.cy)
+    }
+
+    /// The values, shared.
+    pub(crate) fn values(&self) -> &Arc<Vec<f64>> {
+        &self.values
+    }
+
+    fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {
+        let (mx, my) = (grid.mx as i64, grid.my as i64);
+        (0..my).flat_map(move |ky| (1 - mx..mx).map(move |kx| (kx, ky)))
+    }
+}
+
+impl Kernel for Table {
+    fn at(&self, kx: i64, ky: i64) -> f64 {
         let clamp = |k: i64, c: usize| (k.clamp(1 - c as i64, c as i64 - 1) + c as i64) as usize;
         self.values[clamp(ky, self.cy) * 2 * self.cx + clamp(kx, self.cx)]
     }
 
-    /// The coefficients times `factor`.
-    pub fn times(&self, factor: f64) -> Result<Table> {
-        let mut values = Vec::new();
-        reserve(&mut values, self.values.len(), TABLE)?;
-        values.extend(self.values.iter().map(|value| value * factor));
-        Ok(Table { values: Arc::new(values), ..*self })
-    }
-
-    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`.
-    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
-        for (k, value) in out.iter_mut().enumerate() {
-            *value = self.at(kx + k as i64, ky);
+    fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
+        for (kx, value) in (0..).zip(out) {
+            let four = [(kx, ky), (-kx, ky), (kx, -ky), (-kx, -ky)];
+            *value = 0.25 * four.into_iter().map(|(x, y)| self.at(x, y)).sum::<f64>();
         }
     }
 
-    /// Whether the coefficients within `grid` are even in x and in y.
-    pub fn is_even(&self, grid: &Grid) -> bool {
+    fn is_even(&self, grid: &Grid) -> bool {
         self.offsets(grid).all(|(kx, ky)| {
             let value = self.at(kx, ky);
             value == self.at(-kx, ky) && value == self.at(kx, -ky)
         })
     }
 
-    /// The largest coefficient within `grid`, whatever its sign.
-    pub fn largest(&self, grid: &Grid) -> f64 {
+    fn largest(&self, grid: &Grid) -> f64 {
         let both = self.offsets(grid).map(|(kx, ky)| self.at(kx, ky).abs().max(self.at(-kx, -ky).abs()));
         both.fold(0.0, f64::max)
     }
 
-    /// Whether A is symmetric on `grid` to within round-off.
-    pub fn is_symmetric(&self, grid: &Grid) -> bool {
+    fn is_symmetric(&self, grid: &Grid) -> bool {
         let largest = self.largest(grid);
         self.offsets(grid).all(|(kx, ky)| (self.at(kx, ky) - self.at(-kx, -ky)).abs() <= SYMMETRY * largest)
     }
 
-    /// The coefficients of the coarser grid, as means of the finer ones.
-    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Table> {
+    fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
         let (half_x, half_y) = (coarse.mx < fine.mx, coarse.my < fine.my);
         // The outer two are added first: so the coarser coefficients of an even table are even to the last bit, as the
         // operator's shorter period (and the workspace that the grids share) needs them.
@@ -126,16 +142,10 @@ impl Table {
         for ky in -(cy as i64)..cy as i64 {
             values.extend((-(cx as i64)..cx as i64).map(|kx| in_both(kx, ky)));
         }
-        Ok(Table { cx, cy, values: Arc::new(values) })
+        Ok(Arc::new(Table { cx, cy, values: Arc::new(values) }))
     }
 
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
-    }
-
-    fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {
-        let (mx, my) = (grid.mx as i64, grid.my as i64);
-        (0..my).flat_map(move |ky| (1 - mx..mx).map(move |kx| (kx, ky)))
     }
 }

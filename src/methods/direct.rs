@@ -17,7 +17,7 @@ use faer::{MatMut, Par};
 use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::methods::{Change, Habits, Step};
 use crate::operator::{dense, zeros};
 use crate::progress::{Goal, Monitor};
@@ -41,7 +41,7 @@ pub struct Direct {
 
 impl Direct {
     /// On a small grid with even coefficients and an inverse; none on others.
-    pub fn new(influence: &Influence, grid: &Grid) -> Result<Option<Direct>> {
+    pub fn new(influence: &Coefficients, grid: &Grid) -> Result<Option<Direct>> {
         let suits = influence.is_even(grid) && !influence.depends_on_place() && !influence.is_mean_free();
         if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);

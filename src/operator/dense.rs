@@ -1,31 +1,29 @@
-//! `u = A p` by direct summation: the naive twin of [`Toeplitz`](super::Toeplitz), the oracle of its tests, and the
-//! matrix of the small systems that are factorised.
+//! `u = A p` by direct summation: the naive twin of [`Operator`](super::Operator), the oracle of its tests, right for every effect; and
+//! the matrix of the small systems that are factorised.
 
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 
-/// `u_I = sum_J c(ix - jx, iy - jy) p_J`, term by term.
-pub fn apply(influence: &Influence, grid: &Grid, p: &[f64], u: &mut [f64]) {
+/// `u_I = sum_J A_IJ p_J`, term by term.
+pub fn apply(coefficients: &Coefficients, grid: &Grid, p: &[f64], u: &mut [f64]) {
     assert!(p.len() == grid.len() && u.len() == grid.len());
-    let (mx, my) = (grid.mx as i64, grid.my as i64);
-    let width = 2 * grid.mx - 1;
-    let mut table = vec![0.0; width * (2 * grid.my - 1)];
-    for (row, ky) in table.chunks_exact_mut(width).zip(1 - my..) {
-        for (value, kx) in row.iter_mut().zip(1 - mx..) {
-            *value = influence.at(kx, ky);
-        }
+    let loaded = || p.iter().enumerate().filter(|(_, p)| **p != 0.0);
+    if coefficients.row_tables().is_some() {
+        return u.iter_mut().enumerate().for_each(|(i, u)| {
+            *u = loaded().map(|(j, p)| coefficients.entry(grid, i, j) * p).sum();
+        });
     }
-    for iy in 0..grid.my {
-        for ix in 0..grid.mx {
-            let mut sum = 0.0;
-            for jy in 0..grid.my {
-                let row = &table[(iy + grid.my - 1 - jy) * width..][..width];
-                for jx in 0..grid.mx {
-                    sum += row[ix + grid.mx - 1 - jx] * p[jy * grid.mx + jx];
-                }
-            }
-            u[grid.index(ix, iy)] = sum;
-        }
+    // Each offset once.
+    let (width, height) = (2 * grid.mx - 1, 2 * grid.my - 1);
+    let (mx, my) = (grid.mx as i64, grid.my as i64);
+    let offsets = (0..width * height).map(|k| ((k % width) as i64 - (mx - 1), (k / width) as i64 - (my - 1)));
+    let table: Vec<f64> = offsets.map(|(kx, ky)| coefficients.kernel().at(kx, ky)).collect();
+    let kernel = |i: usize, j: usize| {
+        let (x, y) = (i % grid.mx + grid.mx - 1 - j % grid.mx, i / grid.mx + grid.my - 1 - j / grid.mx);
+        table[y * width + x]
+    };
+    for (i, u) in u.iter_mut().enumerate() {
+        *u = loaded().map(|(j, p)| coefficients.entry_of(kernel(i, j), i, j) * p).sum();
     }
 }
 

@@ -99,7 +99,15 @@ impl<T: Real> RowTransform<T> {
 
     /// Scratch that [`forward`](Self::forward) and [`inverse`](Self::inverse) need.
     pub fn scratch(&self) -> Vec<Complex<T>> {
-        vec![Complex::default(); self.forward.get_scratch_len().max(self.inverse.get_scratch_len())]
+        let mut scratch = Vec::new();
+        self.fit(&mut scratch);
+        scratch
+    }
+
+    /// Makes scratch long enough.
+    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
+        let length = self.forward.get_scratch_len().max(self.inverse.get_scratch_len());
+        scratch.resize(scratch.len().max(length), Complex::default());
     }
 
     /// Real row to bins; the row is overwritten.
@@ -146,7 +154,15 @@ impl<T: Real> ColumnTransform<T> {
 
     /// Scratch that both directions need.
     pub fn scratch(&self) -> Vec<Complex<T>> {
-        vec![Complex::default(); self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len())]
+        let mut scratch = Vec::new();
+        self.fit(&mut scratch);
+        scratch
+    }
+
+    /// Makes scratch long enough.
+    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
+        let length = self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len());
+        scratch.resize(scratch.len().max(length), Complex::default());
     }
 
     /// Transforms the columns that stand one after the other in `columns`, in place.

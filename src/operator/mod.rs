@@ -1,15 +1,20 @@
 //! The operator of the contact problem: `u = A p`.
 
+mod circulant;
 #[allow(unsafe_code)] // the kernel
 pub mod columns;
+mod convolution;
 pub mod dense;
 pub mod fft;
+#[allow(clippy::module_inception)]
+mod operator;
 mod patches;
 mod row_tables;
-mod toeplitz;
+mod rows;
 
 pub(crate) use crate::memory::{reserve, zeros};
-pub use toeplitz::{Toeplitz, Workspace};
+pub use convolution::SetUp;
+pub use operator::{Operator, Workspace};
 
 /// Arithmetic of the inner work; results are always computed in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,7 +5,9 @@
 //! ```
 
 use super::fft::Real;
+use crate::error::Result;
 use crate::influence::Patches;
+use crate::memory::reserve;
 
 /// What a product needs to know of patches.
 pub(super) struct Mask<T> {
@@ -14,17 +16,24 @@ pub(super) struct Mask<T> {
     factors: Vec<T>,
 }
 
+fn copy(patch: &[u16]) -> Result<Vec<u16>> {
+    let mut kept = Vec::new();
+    reserve(&mut kept, patch.len(), "the patches")?;
+    kept.extend_from_slice(patch);
+    Ok(kept)
+}
+
 impl<T: Real> Mask<T> {
-    pub fn new(patches: &Patches) -> Mask<T> {
+    pub fn new(patches: &Patches) -> Result<Mask<T>> {
         let count = patches.count();
         let factors = (0..count * count).map(|k| T::of(patches.factor(k / count, k % count))).collect();
-        Mask { count, patch: patches.patch().to_vec(), factors }
+        Ok(Mask { count, patch: copy(patches.patch())?, factors })
     }
 
     /// The same in another precision.
-    pub fn in_precision<S: Real>(&self) -> Mask<S> {
+    pub fn in_precision<S: Real>(&self) -> Result<Mask<S>> {
         let factors = self.factors.iter().map(|factor| S::of(factor.to_double())).collect();
-        Mask { count: self.count, patch: self.patch.clone(), factors }
+        Ok(Mask { count: self.count, patch: copy(&self.patch)?, factors })
     }
 
     pub fn bytes(&self) -> usize {

@@ -10,7 +10,9 @@
 
 use std::ops::Range;
 
+use super::columns::for_each_block;
 use super::fft::{Complex, Real, RowTransform};
+use super::rows::{Product, Rows};
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
 use crate::memory::zeros;
@@ -29,8 +31,13 @@ pub(super) struct PerRow<T> {
 }
 
 impl<T: Real> PerRow<T> {
-    /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element.
-    pub fn new(tables: &RowTables, least: f64, rows: &RowTransform<f64>, threads: &Threads) -> Result<PerRow<T>> {
+    /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
+    pub fn new(
+        tables: &RowTables,
+        (least, factor): (f64, f64),
+        rows: &RowTransform<f64>,
+        threads: &Threads,
+    ) -> Result<PerRow<T>> {
         let (my, nb, px) = (tables.rows(), rows.bins(), rows.length());
         let planes = if tables.is_even_in_x() { 1 } else { 2 };
         let size = (my * my).checked_mul(planes * nb);
@@ -39,7 +46,7 @@ impl<T: Real> PerRow<T> {
         let mut values: Vec<T> = zeros(size, MATRICES)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| (vec![0.0; px], rows.scratch())).collect();
-        let scale = 1.0 / px as f64;
+        let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
                 tables.fill_period(jy, iy, row);
@@ -80,8 +87,24 @@ impl<T: Real> PerRow<T> {
         2 * self.my
     }
 
+    /// Multiplies all columns; rows `loaded` hold pressures.
+    pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
+        let Product { bins, pieces } = product;
+        let (nb, length) = (rows.transform.bins(), self.my);
+        for_each_block(&mut bins[..length * nb], nb, &rows.threads, pieces, |block, piece| {
+            #[cfg(feature = "test-panics")]
+            crate::panics::at_a_block();
+            let columns = &mut piece.columns[..block.columns() * length];
+            block.gather(loaded.clone(), length, columns);
+            for (c, column) in columns.chunks_exact_mut(length).enumerate() {
+                self.multiply(block.first() + c, loaded.clone(), column, &mut piece.row);
+            }
+            block.scatter(0..length, length, columns);
+        });
+    }
+
     /// Multiplies one column, that of x bin `bin`, which holds pressures in rows `loaded` only.
-    pub fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
+    fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
         let my = self.my;
         let (re, im) = sums[..2 * my].split_at_mut(my);
         re.fill(T::zero());

@@ -1,24 +1,18 @@
 //! What is simulated: two bodies, the undeformed distance between them, the load, and the effects a scene names.
 
 mod bodies;
-mod layer;
 mod load;
-mod patches;
-mod period;
-mod pressure_limit;
 mod refine;
 
+pub use crate::effects::{Layer, Patches, Period, PressureLimit};
 pub use bodies::Bodies;
-pub use layer::Layer;
 pub use load::Load;
-pub use patches::Patches;
-pub use period::Period;
-pub use pressure_limit::PressureLimit;
 pub use refine::refine;
 
+use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{HalfSpace, Influence, Periodic, RowTables, Table};
+use crate::influence::{Coefficients, RowTables, Table};
 
 /// One contact problem: `e = h - approach + A p`.
 #[derive(Clone, Debug)]
@@ -63,65 +57,14 @@ impl<'a> Scene<'a> {
     }
 
     /// The coefficients that this scene asks for.
-    pub fn influence(&self) -> Influence {
-        let half_space = || HalfSpace::new(self.grid.dx, self.grid.dy, self.bodies.compliance());
-        let bodies = match (&self.influence, &self.row_tables, self.period) {
-            (Some(table), ..) => Influence::Table(table.clone()),
-            (_, Some(tables), _) => Influence::RowTables(tables.clone()),
-            (.., Some(Period { x, y })) => Influence::Periodic(Periodic::new(half_space(), (x, y), &self.grid)),
-            _ => Influence::HalfSpace(half_space()),
-        };
-        let scaled = match &self.patches {
-            Some(patches) => patches.on(bodies),
-            None => bodies,
-        };
-        match &self.layer {
-            Some(layer) => layer.on(scaled),
-            None => scaled,
-        }
+    pub fn coefficients(&self) -> Result<Coefficients> {
+        effects::coefficients(self)
     }
 
     /// Checks everything the solver relies on.
     pub fn check(&self) -> Result<()> {
         self.check_distance_and_load()?;
-        self.check_effects()?;
-        // Own coefficients know no bodies.
-        if self.influence.is_some() || self.row_tables.is_some() {
-            return Ok(());
-        }
-        self.bodies.check()
-    }
-
-    /// Checks each effect, and refuses pairs that are not solved.
-    fn check_effects(&self) -> Result<()> {
-        if let Some(period) = &self.period {
-            period.check()?;
-            if self.influence.is_some() {
-                return not_together("influence", "period");
-            }
-        }
-        if let Some(tables) = &self.row_tables {
-            tables.check(&self.grid)?;
-            if self.influence.is_some() {
-                return not_together("influence", "row_tables");
-            }
-            if self.period.is_some() {
-                return not_together("row_tables", "period");
-            }
-        }
-        if let Some(patches) = &self.patches {
-            patches.check(&self.grid)?;
-            if self.period.is_some() {
-                return not_together("patches", "period");
-            }
-        }
-        if let Some(layer) = &self.layer {
-            layer.check(&self.grid)?;
-        }
-        if let Some(limit) = &self.pressure_limit {
-            limit.check(&self.grid)?;
-        }
-        Ok(())
+        effects::check(self)
     }
 
     /// Checks what changes from solve to solve.
@@ -143,24 +86,12 @@ impl<'a> Scene<'a> {
             )));
         }
         self.load.check()?;
-        if let Some(period) = &self.period {
-            period.check_load(self)?;
+        effects::check_load(self)?;
+        match self.load {
+            Load::Force(force) if force > 0.0 && h.iter().all(|v| v.is_infinite()) => Err(Error::Infeasible(format!(
+                "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
+            ))),
+            _ => Ok(()),
         }
-        if let Load::Force(force) = self.load {
-            if force > 0.0 && h.iter().all(|v| v.is_infinite()) {
-                return Err(Error::Infeasible(format!(
-                    "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
-                )));
-            }
-            if let Some(limit) = &self.pressure_limit {
-                limit.check(&self.grid)?;
-                limit.check_force(force, h, &self.grid)?;
-            }
-        }
-        Ok(())
     }
-}
-
-fn not_together(one: &str, other: &str) -> Result<()> {
-    Err(Error::Unsupported(format!("{one} and {other} are both given; this version does not solve them together")))
 }

@@ -147,7 +147,7 @@ mod tests {
     use super::*;
     use crate::contact::NonNegative;
     use crate::grid::Grid;
-    use crate::influence::{HalfSpace, Influence};
+    use crate::influence::{Coefficients, HalfSpace};
     use crate::methods::descent::Descent;
     use crate::progress::Criterion;
     use crate::scene::Load;
@@ -158,7 +158,7 @@ mod tests {
         let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
         let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
         let h = (0..grid.len()).map(h).collect();
-        let influence = Influence::HalfSpace(HalfSpace::new(0.1, 0.1, 1.0));
+        let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
         let problem = Problem::new(grid, influence, &Threads::One).expect("a problem");
         (problem, State::new(grid, h, load, 0.0).expect("a state"))
     }

@@ -25,12 +25,13 @@ pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use report::{Halving, Limit, Report};
 
 use crate::contact::{self, AdmissibleSet, Fixed, Limited, NonNegative, State};
+use crate::effects::{self, Named};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::memory::{reserve, zeros};
 use crate::progress::Monitor;
-use crate::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
+use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
 use methods::Methods;
 
@@ -70,12 +71,10 @@ pub struct Solver {
 /// What a solver was set up with.
 #[derive(Clone)]
 struct SetUp {
-    bodies: Bodies,
+    /// What later scenes may not change.
+    named: Named,
     has_own_influence: bool,
     has_row_tables: bool,
-    period: Option<Period>,
-    has_layer: bool,
-    has_patches: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
@@ -97,15 +96,12 @@ impl Solver {
         let began = Instant::now();
         scene.check()?;
         options.check()?;
-        let influence = scene.influence();
+        let influence = scene.coefficients()?;
         let set_up = SetUp {
-            bodies: scene.bodies,
+            named: Named::new(scene),
             has_own_influence: scene.influence.is_some(),
             has_row_tables: scene.row_tables.is_some(),
-            period: scene.period,
-            has_layer: scene.layer.is_some(),
-            has_patches: scene.patches.is_some(),
-            without_multigrid: without_multigrid(scene),
+            without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
             options: *options,
         };
@@ -114,7 +110,7 @@ impl Solver {
         Ok(solver)
     }
 
-    fn of(grid: Grid, influence: Influence, set_up: SetUp, threads: &Threads) -> Result<Solver> {
+    fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
         problem.given = set_up.has_own_influence || set_up.has_row_tables;
         let h = zeros(grid.len(), "undeformed distances")?;
@@ -279,7 +275,7 @@ impl Solver {
     }
 
     /// The influence coefficients in use.
-    pub fn influence(&self) -> &Influence {
+    pub fn influence(&self) -> &Coefficients {
         &self.problem.coefficients
     }
 
@@ -302,38 +298,8 @@ impl Solver {
                 scene.grid, self.problem.grid
             ));
         }
-        // Own coefficients know no bodies.
-        if !self.set_up.has_own_influence && !self.set_up.has_row_tables && scene.bodies != self.set_up.bodies {
-            return invalid(format!(
-                "the bodies are {:?}; this solver was set up for {:?}",
-                scene.bodies, self.set_up.bodies
-            ));
-        }
-        if scene.influence.is_some() && !self.set_up.has_own_influence {
-            return invalid("influence is given, but this solver was set up without".into());
-        }
-        if scene.row_tables.is_some() && !self.set_up.has_row_tables {
-            return invalid("row_tables is given, but this solver was set up without".into());
-        }
-        if scene.period != self.set_up.period {
-            return invalid(format!(
-                "period is {:?}; this solver was set up for {:?}",
-                scene.period, self.set_up.period
-            ));
-        }
-        let named = [
-            ("a layer", scene.layer.is_some(), self.set_up.has_layer),
-            ("patches", scene.patches.is_some(), self.set_up.has_patches),
-        ];
-        for (effect, is_named, was_named) in named {
-            if is_named != was_named {
-                let with = |yes: bool| if yes { "with" } else { "without" };
-                return invalid(format!(
-                    "the scene is {} {effect}; this solver was set up {}",
-                    with(is_named),
-                    with(was_named)
-                ));
-            }
+        if let Some(difference) = self.set_up.named.differs(scene) {
+            return invalid(difference);
         }
         if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
@@ -369,17 +335,6 @@ impl Solver {
 
 fn is_fixed(options: &Options) -> bool {
     options.active_set == ActiveSet::Fixed
-}
-
-/// The effects that MULTIGRID and FULL_MULTIGRID do not solve.
-fn without_multigrid(scene: &Scene<'_>) -> Option<&'static str> {
-    match scene {
-        Scene { period: Some(_), .. } => Some("period"),
-        Scene { patches: Some(_), .. } => Some("patches"),
-        Scene { row_tables: Some(_), .. } => Some("row_tables"),
-        Scene { layer: Some(Layer::PerElement(_)), .. } => Some("a layer of one compliance per element"),
-        _ => None,
-    }
 }
 
 fn unsupported(method: &str, effect: &str) -> Result<()> {

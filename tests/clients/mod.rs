@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::Influence;
-use contact_normal::operator::Toeplitz;
+use contact_normal::influence::Coefficients;
+use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
 /// The project's root.
@@ -75,13 +75,13 @@ pub struct Recomputed {
 /// Recomputes the measures with a fresh product (tested against direct summation in tests/operator.rs).
 pub fn recompute(
     grid: &Grid,
-    influence: &Influence,
+    influence: &Coefficients,
     h: &[f64],
     approach: f64,
     p: &[f64],
     contact: &[bool],
 ) -> Recomputed {
-    let operator = Toeplitz::new(influence, grid, &Threads::One).expect("an operator");
+    let operator = Operator::new(influence, grid, &Threads::One).expect("an operator");
     let mut u = vec![0.0; grid.len()];
     operator.apply(p, &mut u, &mut operator.workspace().expect("memory"));
     let (mut r2, mut h2, mut outside, mut gaps, mut energy) = (0.0, 0.0, 0.0f64, 0.0, 0.0);

@@ -1,7 +1,7 @@
 //! One hard case: a scene that owns its arrays, and the shapes that the families share.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Table};
+use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 
 /// A contact problem and its name.

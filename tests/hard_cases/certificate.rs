@@ -2,8 +2,8 @@
 
 use contact_normal::contact::State;
 use contact_normal::error::Result;
-use contact_normal::influence::Influence;
-use contact_normal::operator::{dense, Toeplitz};
+use contact_normal::influence::Coefficients;
+use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::Load;
 use contact_normal::solver::{solve, Method, Options, Report, Solver, Stop};
 use contact_normal::threads::Threads;
@@ -62,12 +62,12 @@ pub fn found(solver: &Solver, stop: Stop, report: Report) -> Found {
 
 /// u = A p.
 pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
-    let influence: Influence = case.scene().influence();
+    let influence: Coefficients = case.scene().coefficients().unwrap();
     let mut u = vec![0.0; p.len()];
     if p.len() <= SUMMED {
         dense::apply(&influence, &case.grid, p, &mut u);
     } else {
-        let operator = Toeplitz::<f64>::new(&influence, &case.grid, &Threads::One).expect("an operator");
+        let operator = Operator::<f64>::new(&influence, &case.grid, &Threads::One).expect("an operator");
         operator.apply(p, &mut u, &mut operator.workspace().expect("memory"));
     }
     u

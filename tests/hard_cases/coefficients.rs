@@ -1,5 +1,6 @@
 //! The caller's coefficients: whatever they are, the right answer or a status.
 
+use contact_normal::influence::Kernel;
 use contact_normal::scene::Load;
 
 use super::case::{distance, grid, table, Case};

@@ -50,7 +50,7 @@ mod promises {
 
     /// Solves on C by elimination: `A p = 1 - h` there.
     fn solve_on(case: &Case, contact: &[bool]) -> Vec<f64> {
-        let influence = case.scene().influence();
+        let influence = case.scene().coefficients().unwrap();
         let elements: Vec<usize> = (0..contact.len()).filter(|&i| contact[i]).collect();
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for &i in &elements {
@@ -130,7 +130,7 @@ mod promises {
         assert!(solved > 50 && refused > 5, "{solved} and {refused}");
     }
 
-    /// Whether the Toeplitz matrix of 1 and these is positive definite: Cholesky's pivots are positive.
+    /// Whether the Operator matrix of 1 and these is positive definite: Cholesky's pivots are positive.
     fn is_definite(coefficients: &[f64]) -> bool {
         let m = coefficients.len() + 1;
         let at = |i: usize, k: usize| if i == k { 1.0 } else { coefficients[i.abs_diff(k) - 1] };

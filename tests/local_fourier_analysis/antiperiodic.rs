@@ -1,7 +1,7 @@
 //! The equations on waves that change sign after n elements, as dense matrices: coefficients summed over all images.
 
 use contact_normal::grid::Grid;
-use contact_normal::influence::HalfSpace;
+use contact_normal::influence::{HalfSpace, Kernel};
 use contact_normal::methods::multigrid::{transfer, CycleShape, SmootherKind};
 use faer::linalg::solvers::Solve;
 use faer::Mat;

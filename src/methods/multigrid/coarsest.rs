@@ -6,7 +6,7 @@ use faer::prelude::ReborrowMut;
 use faer::{Conj, MatMut, Par};
 
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::dense;
 
 /// The elimination, and memory for as many elements as it has met so far.
@@ -41,7 +41,7 @@ impl Coarsest {
     }
 
     /// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
-    pub fn solve(&mut self, influence: &Influence, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
+    pub fn solve(&mut self, influence: &Coefficients, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         self.elements.clear();
         self.elements.extend((0..grid.len()).filter(|&i| contact[i]));

@@ -10,17 +10,17 @@ use std::sync::Arc;
 use crate::contact::Problem;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
-use crate::operator::{Toeplitz, Workspace};
+use crate::influence::Coefficients;
+use crate::operator::{Operator, Workspace};
 
 /// One grid and its operator.
 pub struct Level {
     /// The grid.
     pub grid: Grid,
     /// Its coefficients.
-    pub influence: Influence,
+    pub influence: Coefficients,
     /// `u = A p` on it.
-    pub operator: Arc<Toeplitz<f64>>,
+    pub operator: Arc<Operator<f64>>,
 }
 
 /// The grids, finest first.
@@ -39,7 +39,7 @@ impl Hierarchy {
         loop {
             let operator = match levels.is_empty() {
                 true => problem.operator.clone(),
-                false => Arc::new(Toeplitz::new(&influence, &grid, &problem.threads.suited_to(grid.len()))?),
+                false => Arc::new(Operator::new(&influence, &grid, &problem.threads.suited_to(grid.len()))?),
             };
             levels.push(Level { grid, influence: influence.clone(), operator });
             let Some(coarse) = coarsen(&grid, coarsest) else { break };

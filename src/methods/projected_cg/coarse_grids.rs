@@ -8,7 +8,7 @@ use super::{End, Stopping};
 use crate::contact::{AdmissibleSet, Freshness, NonNegative, State};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::methods::multigrid::{coarsen, transfer};
 use crate::operator::zeros;
 use crate::operator::Precision;
@@ -40,7 +40,7 @@ pub struct CoarseGrids {
 
 impl CoarseGrids {
     /// The grids below `grid`; their operators follow when they are needed.
-    pub fn new(grid: &Grid, influence: &Influence, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
+    pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let mut grids = Vec::new();
         let (mut fine, mut influence) = (*grid, influence.clone());
         while let Some(coarse) = coarsen(&fine, COARSEST) {

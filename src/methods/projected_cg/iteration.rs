@@ -33,9 +33,9 @@ use super::segments::Segments;
 use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::fft::Real;
-use crate::operator::{reserve, zeros, Toeplitz, Workspace};
+use crate::operator::{reserve, zeros, Operator, Workspace};
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -60,7 +60,7 @@ const HELD_BACK: f64 = 1e-6;
 
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
-    operator: Toeplitz<T>,
+    operator: Operator<T>,
     preconditioner: Option<Preconditioner<T>>,
     workspace: Workspace<T>,
     t: Vec<T>,
@@ -126,10 +126,16 @@ pub enum End {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`, the operator of which is given. Where the preconditioner's circulant is not positive, the
+    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's circulant is not positive, the
     /// iteration does without.
-    pub fn new(operator: Toeplitz<T>, influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
-        let preconditioner = Preconditioner::new(influence, grid, threads)?;
+    pub fn new(
+        operator: Operator<T>,
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Iteration<T>> {
+        let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
         if preconditioner.is_none() {
             log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
         }

@@ -7,10 +7,10 @@ use super::{Cycle, End, Iteration, Stopping, Window};
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::fft::Real;
 use crate::operator::Precision;
-use crate::operator::{zeros, Toeplitz};
+use crate::operator::{zeros, Operator};
 use crate::progress::Monitor;
 use crate::threads::Threads;
 
@@ -23,26 +23,25 @@ enum Inner {
 impl Inner {
     /// On `grid`, of which `operator` is the one in double precision if that is known. Coefficients are taken times `factor`.
     fn new(
-        influence: &Influence,
+        influence: &Coefficients,
         grid: &Grid,
-        operator: Option<&Toeplitz<f64>>,
+        operator: Option<&Operator<f64>>,
         factor: f64,
         precision: Precision,
         threads: &Threads,
     ) -> Result<Inner> {
         fn iteration<T: Real>(
-            influence: &Influence,
+            influence: &Coefficients,
             grid: &Grid,
-            operator: Option<&Toeplitz<f64>>,
+            operator: Option<&Operator<f64>>,
             factor: f64,
             threads: &Threads,
         ) -> Result<Iteration<T>> {
-            let influence = &influence.times(factor)?;
             let operator = match operator {
                 Some(operator) => operator.in_precision(factor)?,
-                None => Toeplitz::new(influence, grid, threads)?,
+                None => Operator::scaled(influence, factor, grid, threads)?,
             };
-            Iteration::new(operator, influence, grid, threads)
+            Iteration::new(operator, influence, factor, grid, threads)
         }
         let threads = &threads.suited_to(grid.len());
         Ok(match precision {
@@ -93,9 +92,9 @@ struct Windowed {
 /// One grid.
 pub struct Level {
     grid: Grid,
-    influence: Influence,
+    influence: Coefficients,
     /// Of the whole grid, in double precision, if there is one.
-    operator: Option<Arc<Toeplitz<f64>>>,
+    operator: Option<Arc<Operator<f64>>>,
     precision: Precision,
     threads: Threads,
     /// None before the first iteration.
@@ -106,7 +105,7 @@ pub struct Level {
 
 impl Level {
     /// Nothing is set up before it is needed.
-    pub fn new(grid: Grid, influence: Influence, precision: Precision, threads: &Threads) -> Level {
+    pub fn new(grid: Grid, influence: Coefficients, precision: Precision, threads: &Threads) -> Level {
         Level {
             grid,
             influence,
@@ -119,7 +118,7 @@ impl Level {
     }
 
     /// Where the window is the whole grid, its operator need not be set up anew.
-    pub fn with_operator(self, operator: Arc<Toeplitz<f64>>) -> Level {
+    pub fn with_operator(self, operator: Arc<Operator<f64>>) -> Level {
         Level { operator: Some(operator), ..self }
     }
 

@@ -4,19 +4,19 @@
 //! M = sum over levels c_l of W_l (A + c_l)^-1 W_l
 //! ```
 //!
-//! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layered::levels`](crate::influence::Layered::levels)), so that
+//! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
 //! M is symmetric and positive definite.
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::fft::Real;
-use crate::operator::{zeros, Toeplitz, Workspace};
+use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
 
 /// One circulant, and its weights; none: 1.
 struct Part<T: Real> {
-    inverse: Toeplitz<T>,
+    inverse: Operator<T>,
     weights: Vec<T>,
 }
 
@@ -31,16 +31,17 @@ pub struct Preconditioner<T: Real> {
 }
 
 impl<T: Real> Preconditioner<T> {
-    /// Of an operator; none if the circulant is not positive.
-    pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Option<Preconditioner<T>>> {
-        let levels = match influence {
-            Influence::Layered(layered) if layered.more().is_some() => layered.levels(),
-            plain => vec![(plain.clone(), Vec::new())],
-        };
+    /// Of an operator, the coefficients of which are taken times `factor`; none if the circulant is not positive.
+    pub fn new(
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Option<Preconditioner<T>>> {
         let mut parts = Vec::new();
-        for (influence, weights) in levels {
-            let period = Toeplitz::<T>::circulant_period(&influence, grid);
-            let Some(inverse) = Toeplitz::inverse_circulant(&influence, grid, period, threads)? else {
+        for (influence, weights) in influence.levels()? {
+            let period = Operator::<T>::circulant_period(&influence, grid);
+            let Some(inverse) = Operator::scaled_inverse(&influence, factor, grid, period, threads)? else {
                 return Ok(None);
             };
             parts.push(Part { inverse, weights: weights.into_iter().map(T::of).collect() });
@@ -62,38 +63,36 @@ impl<T: Real> Preconditioner<T> {
         if self.right.is_empty() {
             return self.parts[0].inverse.apply_in_place(z, &mut self.workspace);
         }
-        self.mix(z);
+        let Preconditioner { parts, workspace, right, term, unit } = self;
+        mix(parts, z, workspace, [right, term]);
         let Some(contact) = carried_by else { return };
-        let mut unit = std::mem::take(&mut self.unit);
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });
-        self.mix(&mut unit);
+        mix(parts, unit, workspace, [right, term]);
         let sum = |values: &[T]| -> f64 {
             values.iter().zip(contact).map(|(value, &inside)| if inside { value.to_double() } else { 0.0 }).sum()
         };
-        let amount = T::of(sum(z) / sum(&unit));
-        z.iter_mut().zip(&unit).for_each(|(z, unit)| *z = *z - amount * *unit);
-        self.unit = unit;
-    }
-
-    /// z = M z of a mix.
-    fn mix(&mut self, z: &mut [T]) {
-        let Preconditioner { parts, workspace, right, term, .. } = self;
-        right.copy_from_slice(z);
-        z.fill(T::zero());
-        for part in parts {
-            for ((term, r), w) in term.iter_mut().zip(&*right).zip(&part.weights) {
-                *term = *r * *w;
-            }
-            part.inverse.apply_in_place(term, workspace);
-            for ((z, term), w) in z.iter_mut().zip(&*term).zip(&part.weights) {
-                *z += *term * *w;
-            }
-        }
+        let amount = T::of(sum(z) / sum(unit));
+        z.iter_mut().zip(&*unit).for_each(|(z, unit)| *z = *z - amount * *unit);
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let parts: usize = self.parts.iter().map(|part| part.inverse.bytes() + size_of_val(&part.weights[..])).sum();
         parts + self.workspace.bytes() + 3 * size_of_val(&self.right[..])
+    }
+}
+
+/// z = M z of a mix.
+fn mix<T: Real>(parts: &[Part<T>], z: &mut [T], workspace: &mut Workspace<T>, [right, term]: [&mut [T]; 2]) {
+    right.copy_from_slice(z);
+    z.fill(T::zero());
+    for part in parts {
+        for ((term, r), w) in term.iter_mut().zip(&*right).zip(&part.weights) {
+            *term = *r * *w;
+        }
+        part.inverse.apply_in_place(term, workspace);
+        for ((z, term), w) in z.iter_mut().zip(&*term).zip(&part.weights) {
+            *z += *term * *w;
+        }
     }
 }

@@ -28,7 +28,7 @@
 
 use std::f64::consts::PI;
 
-use crate::influence::HalfSpace;
+use crate::influence::{HalfSpace, Kernel};
 use crate::operator::fft::Complex;
 
 /// Step of the trapezoidal rule in s: e^(-pi^2/H) = 7e-18.

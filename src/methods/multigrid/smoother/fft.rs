@@ -36,13 +36,13 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
-use crate::operator::{zeros, Toeplitz, Workspace};
+use crate::influence::Coefficients;
+use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
 
 /// The FFT smoother on one grid.
 pub struct Fft {
-    inverse_circulant: Option<(Toeplitz<f64>, Workspace<f64>)>,
+    inverse_circulant: Option<(Operator<f64>, Workspace<f64>)>,
     symmetric: bool,
     /// z.
     direction: Vec<f64>,
@@ -54,9 +54,9 @@ pub struct Fft {
 
 impl Fft {
     /// Sets up the smoother on `grid`.
-    pub fn new(influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Fft> {
-        let period = Toeplitz::<f64>::circulant_period(influence, grid);
-        let inverse_circulant = match Toeplitz::inverse_circulant(influence, grid, period, threads)? {
+    pub fn new(influence: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Fft> {
+        let period = Operator::<f64>::circulant_period(influence, grid);
+        let inverse_circulant = match Operator::inverse_circulant(influence, grid, period, threads)? {
             Some(inverse) => {
                 let workspace = inverse.workspace()?;
                 Some((inverse, workspace))

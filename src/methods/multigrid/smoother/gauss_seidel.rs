@@ -13,7 +13,7 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::operator::fft::{good_length, ColumnTransform, Complex, RowTransform};
 use crate::operator::zeros;
 
@@ -52,7 +52,7 @@ struct Half {
 
 impl GaussSeidel {
     /// Sets up sweeps on `grid`.
-    pub fn new(influence: &Influence, grid: &Grid) -> Result<GaussSeidel> {
+    pub fn new(influence: &Coefficients, grid: &Grid) -> Result<GaussSeidel> {
         let (mx, my) = (grid.mx, grid.my);
         let px = good_length(2 * mx - 1);
         let rows = RowTransform::new(px);
@@ -75,7 +75,7 @@ impl GaussSeidel {
         let mut block = 2 * STRIP;
         while block < 2 * my && my > STRIP {
             let transform = ColumnTransform::new(block);
-            scratch.resize(scratch.len().max(transform.scratch().len()), Complex::default());
+            transform.fit(&mut scratch);
             let mut kernel: Vec<Complex<f64>> = zeros(nb * block, "the smoother")?;
             for (bin, column) in kernel.chunks_exact_mut(block).enumerate() {
                 for d in 1..block.min(my) {

@@ -10,7 +10,7 @@ pub use gauss_seidel::GaussSeidel;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::Coefficients;
 use crate::threads::Threads;
 
 /// Which smoother.
@@ -53,7 +53,7 @@ pub enum Smoother {
 
 impl Smoother {
     /// Sets up a smoother.
-    pub fn new(kind: SmootherKind, influence: &Influence, grid: &Grid, threads: &Threads) -> Result<Smoother> {
+    pub fn new(kind: SmootherKind, influence: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Smoother> {
         Ok(match kind {
             SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(influence, grid)?),
             SmootherKind::RedBlack => {

@@ -1,8 +1,9 @@
 //! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
 
+use super::{Effect, Value};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{Influence, Layered};
+use crate::influence::{self, Coefficients};
 
 /// The compliance c of the layer, a length per pressure: of the same kind as influence coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,8 +15,21 @@ pub enum Layer<'a> {
 }
 
 impl Layer<'_> {
-    /// Refuses what is no compliance.
-    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+    /// Whether it gives way nowhere: then it is none.
+    pub(crate) fn is_rigid(&self) -> bool {
+        match self {
+            Layer::Uniform(c) => *c == 0.0,
+            Layer::PerElement(c) => c.iter().all(|c| *c == 0.0),
+        }
+    }
+}
+
+impl Effect for Layer<'_> {
+    fn name(&self) -> &'static str {
+        "layer"
+    }
+
+    fn check(&self, grid: &Grid) -> Result<()> {
         let require = |name: &dyn Fn() -> String, c: f64| match c {
             c if !c.is_finite() => Err(Error::NotFinite(format!("{} is {c}; it must be finite", name()))),
             c if c < 0.0 => invalid(format!("{} is {c}; a compliance must not be negative", name())),
@@ -32,20 +46,24 @@ impl Layer<'_> {
         }
     }
 
-    /// Whether it gives way nowhere: then it is none.
-    pub(super) fn is_rigid(&self) -> bool {
-        match self {
-            Layer::Uniform(c) => *c == 0.0,
-            Layer::PerElement(c) => c.iter().all(|c| *c == 0.0),
-        }
+    fn without_multigrid(&self) -> Option<&'static str> {
+        matches!(self, Layer::PerElement(_)).then_some("a layer of one compliance per element")
     }
 
-    /// The coefficients with this layer.
-    pub(super) fn on(&self, base: Influence) -> Influence {
+    fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
+        let layer = match self {
+            layer if layer.is_rigid() => return Ok(coefficients),
+            Layer::Uniform(c) => influence::Layer::uniform(*c),
+            Layer::PerElement(c) => influence::Layer::per_element(c, coefficients.at(0, 0))?,
+        };
+        Ok(coefficients.with_layer(layer))
+    }
+
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         match self {
-            layer if layer.is_rigid() => base,
-            Layer::Uniform(c) => Influence::Layered(Layered::uniform(base, *c)),
-            Layer::PerElement(c) => Influence::Layered(Layered::per_element(base, c)),
+            layer if layer.is_rigid() => {}
+            Layer::Uniform(c) => tell("layer->compliance", Value::Number(*c)),
+            Layer::PerElement(c) => tell("layer->compliances", Value::Array(c)),
         }
     }
 }

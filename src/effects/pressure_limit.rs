@@ -9,8 +9,11 @@
 //! p = p_max,      e <= 0    at the limit
 //! ```
 
+use super::Effect;
+use crate::contact::Limited;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
+use crate::scene::{Load, Scene};
 
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +33,21 @@ impl PressureLimit<'_> {
         }
     }
 
-    /// Refuses what is no limit.
-    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+    /// The pressures that it allows.
+    pub fn admissible(&self) -> Limited<'_> {
+        match self {
+            PressureLimit::Uniform(limit) => Limited::Uniform(*limit),
+            PressureLimit::PerElement(limits) => Limited::PerElement(limits),
+        }
+    }
+}
+
+impl Effect for PressureLimit<'_> {
+    fn name(&self) -> &'static str {
+        "pressure_limit"
+    }
+
+    fn check(&self, grid: &Grid) -> Result<()> {
         let require = |name: &dyn Fn() -> String, limit: f64| match limit {
             limit if limit.is_nan() => Err(Error::NotFinite(format!("{} is {limit}; it must be a number", name()))),
             limit if limit <= 0.0 => {
@@ -52,10 +68,13 @@ impl PressureLimit<'_> {
         }
     }
 
-    /// Refuses a force that is more than all elements with a surface carry at the limit.
-    pub(super) fn check_force(&self, force: f64, h: &[f64], grid: &Grid) -> Result<()> {
+    // A force that is more than all elements with a surface carry at the limit.
+    fn check_load(&self, scene: &Scene<'_>) -> Result<()> {
+        self.check(&scene.grid)?;
+        let Load::Force(force) = scene.load else { return Ok(()) };
+        let h = scene.undeformed_distance;
         let limits = (0..h.len()).filter(|&i| h[i].is_finite()).map(|i| self.at(i));
-        let greatest = limits.sum::<f64>() * grid.element_area();
+        let greatest = limits.sum::<f64>() * scene.grid.element_area();
         // A sum of n terms is good to some units of round-off.
         if force > greatest * (1.0 + 1e-12) {
             return Err(Error::Infeasible(format!(

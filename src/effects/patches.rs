@@ -1,8 +1,9 @@
 //! Effect: several contact patches on one grid, whose interaction is scaled. See [`influence::Patches`](crate::influence::Patches).
 
+use super::{Effect, Value};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
-use crate::influence::{self, Influence};
+use crate::influence::{self, Coefficients};
 
 /// Patches at most: each costs a product.
 const MOST: usize = 64;
@@ -18,9 +19,12 @@ pub struct Patches<'a> {
     pub factors: &'a [f64],
 }
 
-impl Patches<'_> {
-    /// Refuses what are no patches.
-    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+impl Effect for Patches<'_> {
+    fn name(&self) -> &'static str {
+        "patches"
+    }
+
+    fn check(&self, grid: &Grid) -> Result<()> {
         let count = self.count;
         if !(1..=MOST).contains(&count) {
             return invalid(format!("patches->count is {count}; it must lie in 1..{MOST}"));
@@ -57,9 +61,22 @@ impl Patches<'_> {
         Ok(())
     }
 
-    /// The coefficients with these patches.
-    pub(super) fn on(&self, base: Influence) -> Influence {
+    fn excludes(&self) -> &'static [&'static str] {
+        &["period"]
+    }
+
+    fn without_multigrid(&self) -> Option<&'static str> {
+        Some(self.name())
+    }
+
+    fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
         let patch = self.patch.iter().map(|&patch| patch as u16);
-        Influence::Patches(influence::Patches::new(base, self.count, patch, self.factors))
+        Ok(coefficients.with_patches(influence::Patches::new(self.count, patch, self.factors)?))
+    }
+
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
+        tell("patches->count", Value::Number(self.count as f64));
+        tell("patches->patch", Value::Integers(self.patch));
+        tell("patches->factors", Value::Array(self.factors));
     }
 }

@@ -2,8 +2,13 @@
 //!
 //! See [`Periodic`](crate::influence::Periodic) for the coefficients and for what the approach is relative to.
 
-use super::{Load, Scene};
+use std::sync::Arc;
+
+use super::{Effect, Layer, Value};
 use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+use crate::influence::{HalfSpace, Kernel, Periodic};
+use crate::scene::{Load, Scene};
 
 /// In which directions the scene repeats itself, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,20 +19,23 @@ pub struct Period {
     pub y: bool,
 }
 
-impl Period {
-    /// Refuses a period of nothing.
-    pub(super) fn check(&self) -> Result<()> {
+impl Effect for Period {
+    fn name(&self) -> &'static str {
+        "period"
+    }
+
+    fn check(&self, _grid: &Grid) -> Result<()> {
         if !self.x && !self.y {
             return invalid("period->x and period->y are 0; at least one of them must be 1: no period is NULL".into());
         }
         Ok(())
     }
 
-    /// With two periods the mean displacement is zero, so no approach is possible at which the mean of the distance vanishes: contact
-    /// is full there, and any force fits.
-    pub(super) fn check_load(&self, scene: &Scene<'_>) -> Result<()> {
+    // With two periods the mean displacement is zero, so no approach is possible at which the mean of the distance vanishes: contact
+    // is full there, and any force fits.
+    fn check_load(&self, scene: &Scene<'_>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
-        if scene.layer.is_some_and(|layer| !layer.is_rigid()) {
+        if scene.layer.as_ref().is_some_and(|layer: &Layer| !layer.is_rigid()) {
             return Ok(()); // gives way in the mean, too
         }
         let h = scene.undeformed_distance;
@@ -39,5 +47,19 @@ impl Period {
             )));
         }
         Ok(())
+    }
+
+    fn without_multigrid(&self) -> Option<&'static str> {
+        Some(self.name())
+    }
+
+    fn kernel(&self, scene: &Scene<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+        let half_space = HalfSpace::new(scene.grid.dx, scene.grid.dy, scene.bodies.compliance());
+        Ok(Some(Arc::new(Periodic::new(half_space, (self.x, self.y), &scene.grid)?)))
+    }
+
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
+        tell("period->x", Value::Number(f64::from(self.x)));
+        tell("period->y", Value::Number(f64::from(self.y)));
     }
 }

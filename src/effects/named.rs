@@ -1,0 +1,139 @@
+//! What a set-up depends on: an owned record of the bodies and of the values of all effects, to be compared with later scenes.
+//!
+//! Numbers are kept. Tables are kept shared with the coefficients, so they cost nothing, and compared value by value unless they are the
+//! very same. Arrays of one value per element are kept as their length and a hash of 128 bits: each word enters by steps that are
+//! one-to-one (exclusive or, a product by an odd number, a rotation), so that arrays that differ in one value always differ, others but
+//! for one case in 2^128. Nothing is allocated by a comparison that finds no difference.
+
+use std::sync::Arc;
+
+use super::{effects, list, replace_bodies, Effect, COUNT};
+use crate::scene::{Bodies, Scene};
+
+/// A value of an effect.
+#[derive(Clone, Copy, Debug)]
+pub enum Value<'a> {
+    /// A number, a count, or a switch (0 or 1).
+    Number(f64),
+    /// One per element.
+    Array(&'a [f64]),
+    /// One per element, whole.
+    Integers(&'a [i32]),
+    /// Many, which the coefficients hold, too.
+    Shared(&'a Arc<Vec<f64>>),
+}
+
+/// What is kept of a value.
+#[derive(Clone, Debug)]
+enum Kept {
+    Number(f64),
+    Hash(usize, [u64; 2]),
+    Shared(Arc<Vec<f64>>),
+}
+
+impl Kept {
+    fn new(value: Value<'_>) -> Kept {
+        match value {
+            Value::Number(number) => Kept::Number(number),
+            // -0 is 0.
+            Value::Array(values) => Kept::Hash(values.len(), hash(values.iter().map(|value| (value + 0.0).to_bits()))),
+            Value::Integers(values) => Kept::Hash(values.len(), hash(values.iter().map(|value| *value as u64))),
+            Value::Shared(values) => Kept::Shared(values.clone()),
+        }
+    }
+
+    fn is(&self, value: Value<'_>) -> bool {
+        match (self, value) {
+            (Kept::Number(kept), Value::Number(number)) => *kept == number,
+            (Kept::Shared(kept), Value::Shared(values)) => Arc::ptr_eq(kept, values) || kept == values,
+            (Kept::Hash(length, kept), value) => match Kept::new(value) {
+                Kept::Hash(other, hash) => (other, hash) == (*length, *kept),
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+}
+
+/// Odd numbers without pattern: the fractions of the golden ratio and of the square root of 3.
+const FIRST: u64 = 0x9e37_79b9_7f4a_7c15;
+const SECOND: u64 = 0xbb67_ae85_84ca_a73b;
+
+fn hash(words: impl Iterator<Item = u64>) -> [u64; 2] {
+    words.fold([FIRST, SECOND], |[a, b], word| {
+        [
+            (a ^ word).wrapping_mul(FIRST).rotate_left(29),
+            (b.rotate_left(17) ^ word).wrapping_mul(SECOND).rotate_left(31),
+        ]
+    })
+}
+
+/// What a set-up depends on, beside the grid.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// None where they do not matter.
+    bodies: Option<Bodies>,
+    effects: [Option<&'static str>; COUNT],
+    values: Vec<(&'static str, Kept)>,
+}
+
+impl Named {
+    /// Of the scene of a set-up.
+    pub fn new(scene: &Scene<'_>) -> Named {
+        let mut values = Vec::new();
+        effects(scene).for_each(|effect| effect.values(&mut |name, value| values.push((name, Kept::new(value)))));
+        let bodies = (!replace_bodies(scene)).then_some(scene.bodies);
+        Named { bodies, effects: list(scene).map(name_of_set_up), values }
+    }
+
+    /// What of another scene is not as at the set-up; none if all is.
+    pub fn differs(&self, scene: &Scene<'_>) -> Option<String> {
+        if let Some(bodies) = self.bodies.filter(|bodies| !replace_bodies(scene) && *bodies != scene.bodies) {
+            return Some(format!("the bodies are {:?}; this solver was set up for {bodies:?}", scene.bodies));
+        }
+        for pair in self.effects.into_iter().zip(list(scene).map(name_of_set_up)) {
+            match pair {
+                (None, Some(name)) => return Some(format!("{name} is given, but this solver was set up without")),
+                (Some(name), None) if !self.is_table(name) => {
+                    return Some(format!("{name} is not given, but this solver was set up with it"));
+                }
+                _ => {}
+            }
+        }
+        let mut difference = None;
+        for effect in effects(scene) {
+            effect.values(&mut |name, value| difference = difference.take().or_else(|| self.other(name, value)));
+        }
+        difference
+    }
+
+    /// Whether an effect is a table, which later scenes need not name again.
+    fn is_table(&self, effect: &str) -> bool {
+        let is_of = |name: &str| name.strip_prefix(effect).is_some_and(|rest| rest.starts_with("->"));
+        self.values.iter().any(|(name, kept)| is_of(name) && matches!(kept, Kept::Shared(_)))
+    }
+
+    fn other(&self, name: &'static str, value: Value<'_>) -> Option<String> {
+        let kept = self.values.iter().find(|(known, _)| *known == name).map(|(_, kept)| kept);
+        match (kept, value) {
+            (Some(kept), value) if kept.is(value) => None,
+            (Some(Kept::Number(kept)), Value::Number(number)) => {
+                Some(format!("{name} is {number}; this solver was set up with {kept}"))
+            }
+            (Some(Kept::Shared(kept)), Value::Shared(values)) => {
+                let other = kept.iter().zip(&**values).find(|(kept, now)| kept != now);
+                let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
+                Some(format!("{name} has the value {now} where this solver was set up with {kept}"))
+            }
+            (Some(_), _) => Some(format!("{name} has other values than this solver was set up with")),
+            (None, _) => Some(format!("{name} is given, but this solver was set up without")),
+        }
+    }
+}
+
+/// The name of an effect that a set-up depends on.
+fn name_of_set_up(effect: Option<&dyn Effect>) -> Option<&'static str> {
+    let mut matters = false;
+    effect?.values(&mut |_, _| matters = true);
+    effect.filter(|_| matters).map(Effect::name)
+}

@@ -1,0 +1,161 @@
+//! The coefficients of one grid: kernel, diagonal and coupling. See [`influence`](super).
+
+use std::sync::Arc;
+
+use super::{Kernel, Layer, Patches, RowTables};
+use crate::error::Result;
+use crate::grid::Grid;
+
+/// The influence coefficients of one grid. A copy shares them.
+#[derive(Clone, Debug)]
+pub struct Coefficients {
+    kernel: Arc<dyn Kernel>,
+    diagonal: Option<Layer>,
+    coupling: Option<Patches>,
+}
+
+impl<K: Kernel + 'static> From<K> for Coefficients {
+    fn from(kernel: K) -> Coefficients {
+        Coefficients::new(Arc::new(kernel))
+    }
+}
+
+impl Coefficients {
+    /// Those of a kernel alone.
+    pub fn new(kernel: Arc<dyn Kernel>) -> Coefficients {
+        Coefficients { kernel, diagonal: None, coupling: None }
+    }
+
+    /// The same with a compliant layer.
+    pub fn with_layer(self, layer: Layer) -> Coefficients {
+        Coefficients { diagonal: Some(layer), ..self }
+    }
+
+    /// The same, scaled between patches.
+    pub fn with_patches(self, patches: Patches) -> Coefficients {
+        Coefficients { coupling: Some(patches), ..self }
+    }
+
+    /// The kernel.
+    pub fn kernel(&self) -> &dyn Kernel {
+        &*self.kernel
+    }
+
+    /// What the layer adds to the coefficient at offset (0, 0), everywhere.
+    fn least(&self) -> f64 {
+        self.diagonal.as_ref().map_or(0.0, Layer::least)
+    }
+
+    /// The coefficient at offset `(kx, ky)`, without factors between patches; of row tables the mean over rows.
+    pub fn at(&self, kx: i64, ky: i64) -> f64 {
+        let layer = if (kx, ky) == (0, 0) { self.least() } else { 0.0 };
+        self.kernel.at(kx, ky) + layer
+    }
+
+    /// `A_IJ` of elements i and j of `grid`: all that A is.
+    pub fn entry(&self, grid: &Grid, i: usize, j: usize) -> f64 {
+        let place = |i: usize| ((i % grid.mx) as i64, (i / grid.mx) as i64);
+        self.entry_of(self.kernel.between(place(j), place(i)), i, j)
+    }
+
+    /// The same, where that of the kernel is known.
+    pub fn entry_of(&self, kernel: f64, i: usize, j: usize) -> f64 {
+        let coupled = self.coupling.as_ref().map_or(kernel, |patches| patches.between(i, j) * kernel);
+        match i == j {
+            true => coupled + self.least() + self.diagonal().map_or(0.0, |more| more[i]),
+            false => coupled,
+        }
+    }
+
+    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
+    pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        self.kernel.fill_row(kx, ky, out);
+        if ky == 0 && kx <= 0 && -kx < out.len() as i64 {
+            out[-kx as usize] += self.least();
+        }
+    }
+
+    /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
+    /// [typical](Layer::typical) layer, and what has no inverse gets one.
+    pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
+        self.kernel.fill_even_row(ky, out);
+        match &self.diagonal {
+            Some(layer) if ky == 0 => out[0] += layer.typical(),
+            Some(_) => {}
+            None => {
+                let constant = self.kernel.constant_for_inverse();
+                if constant != 0.0 {
+                    out.iter_mut().for_each(|value| *value += constant);
+                }
+            }
+        }
+    }
+
+    /// The largest coefficient within `grid`, whatever its sign.
+    pub fn largest(&self, grid: &Grid) -> f64 {
+        self.kernel.largest(grid) + self.diagonal.as_ref().map_or(0.0, Layer::most)
+    }
+
+    /// Whether the coefficients of offsets are even in both directions.
+    pub fn is_even(&self, grid: &Grid) -> bool {
+        self.kernel.is_even(grid)
+    }
+
+    /// Whether A is symmetric on `grid`, to within round-off of a table.
+    pub fn is_symmetric(&self, grid: &Grid) -> bool {
+        self.kernel.is_symmetric(grid)
+    }
+
+    /// In which directions A is circulant on `grid`, not only Toeplitz.
+    pub fn repeats(&self, grid: &Grid) -> (bool, bool) {
+        self.kernel.repeats(grid)
+    }
+
+    /// What A has on the diagonal beyond the coefficient at offset (0, 0), per element; none where it is the same everywhere.
+    pub fn diagonal(&self) -> Option<&[f64]> {
+        self.diagonal.as_ref().and_then(Layer::more)
+    }
+
+    /// Patches between which the coefficients are scaled.
+    pub fn patches(&self) -> Option<&Patches> {
+        self.coupling.as_ref()
+    }
+
+    /// Tables of loaded rows, and what a layer adds to all of them at offset (0, 0).
+    pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
+        self.kernel.row_tables().map(|tables| (tables, self.least()))
+    }
+
+    /// Whether A is more than coefficients of offsets: then a part of the grid has an operator of its own, wherever it is.
+    pub fn depends_on_place(&self) -> bool {
+        self.diagonal().is_some() || self.patches().is_some() || self.row_tables().is_some()
+    }
+
+    /// Whether a uniform pressure on the whole grid displaces nothing, so that A has no inverse.
+    pub fn is_mean_free(&self) -> bool {
+        self.diagonal.is_none() && self.kernel.constant_for_inverse() != 0.0
+    }
+
+    /// For preconditioners, which know one compliance: coefficients of several, and the weights of the elements with each. No weights:
+    /// the layer is the same everywhere.
+    pub fn levels(&self) -> Result<Vec<(Coefficients, Vec<f64>)>> {
+        let Some(layer) = &self.diagonal else { return Ok(vec![(self.clone(), Vec::new())]) };
+        let levels = layer.levels(self.kernel.at(0, 0))?.into_iter();
+        Ok(levels.map(|(layer, weights)| (self.clone().with_layer(layer), weights)).collect())
+    }
+
+    /// The coefficients on a grid coarsened from `fine` to `coarse`.
+    pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Coefficients> {
+        Ok(Coefficients {
+            kernel: self.kernel.coarsen(fine, coarse)?,
+            diagonal: self.diagonal.as_ref().map(|layer| layer.coarsen(fine, coarse)).transpose()?,
+            coupling: self.coupling.as_ref().map(|patches| patches.coarsen(fine, coarse)).transpose()?,
+        })
+    }
+
+    /// Bytes of coefficients held: none for the half-space.
+    pub fn bytes(&self) -> usize {
+        let layer = self.diagonal().map_or(0, size_of_val);
+        self.kernel.bytes() + layer + self.coupling.as_ref().map_or(0, Patches::bytes)
+    }
+}

@@ -1,0 +1,272 @@
+//! The images of a scene that repeats itself: what all but the near ones contribute, as a polynomial.
+//!
+//! The sum over the images is smooth on one period: a polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes, whose means over
+//! elements are its integrals. At the nodes it is Ewald's sum (1921), or with one period the sum of `1/|x + n L| - 1/|n L|`, whose tail
+//! is a multipole series.
+//!
+//! *Bounded work.* A line of images of period L has waves along it that fade with the distance y as `exp(-2 pi |y|/L)`. Beyond
+//! [`FADED`] L only the mean is left, which has a closed form. So images are summed for nearer rows alone; and with two periods, one of
+//! which is much the longer, for the lines along the shorter one only.
+
+use std::f64::consts::PI;
+
+use super::half_space::GAUSS;
+use super::special::{complementary_error_function, hurwitz_zeta, EULER_GAMMA};
+use crate::grid::Grid;
+
+/// Chebyshev nodes in each direction. The nearest singularity of what they represent lies on the ellipse of sum of semi-axes 4.5 or
+/// beyond (see `reach`): `4.5^-24 = 2e-16` is left.
+pub(super) const NODES: usize = 12;
+/// A Gaussian at this many widths is below 1e-17.
+const GAUSSIAN: f64 = 6.3;
+/// What a grid of 8 elements covers of its period: half, and half an element.
+const COARSE: f64 = 0.5626;
+/// Periods beyond which the waves of a line of images are gone: `exp(-2 pi 6) = 4e-17`.
+const FADED: f64 = 6.0;
+/// One period so many times the other: at the farthest offset, half of it less half an element (a quarter of it at least), waves of
+/// other lines are gone.
+const MUCH_LONGER: f64 = 4.0 * FADED;
+
+/// In which direction lines of images are summed, the mean of each being added in closed form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Lines {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+}
+
+/// What of a grid images are summed for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// Offsets in x and in y; one at least.
+    pub offsets: (usize, usize),
+    /// The element's size, cut off where waves have faded.
+    pub element: (f64, f64),
+}
+
+impl Near {
+    /// Half the rectangle that these offsets cover.
+    fn half(&self) -> (f64, f64) {
+        ((self.offsets.0 as f64 - 0.5) * self.element.0, (self.offsets.1 as f64 - 0.5) * self.element.1)
+    }
+}
+
+/// Number of offsets >= 0 in x and y: up to half the period where there is one.
+pub(super) fn offsets((x, y): (bool, bool), grid: &Grid) -> (usize, usize) {
+    let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
+    (offsets(x, grid.mx), offsets(y, grid.my))
+}
+
+/// The grid's lengths.
+pub(super) fn lengths(grid: &Grid) -> (f64, f64) {
+    (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy)
+}
+
+/// What all but the near images contribute, per unit strength, as a polynomial on `|x| <= half.0, |y| <= half.1`.
+#[derive(Debug, PartialEq)]
+pub(super) struct Far {
+    directions: (bool, bool),
+    lengths: (f64, f64),
+    half: (f64, f64),
+    /// None: both directions are summed alike.
+    pub lines: Option<Lines>,
+    /// Near images on either side, in x and in y.
+    pub images: (usize, usize),
+    /// `[j][i]`: of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
+    coefficients: [[f64; NODES]; NODES],
+}
+
+/// Images on either side that are near: beyond them no singularity is inside the ellipse about `[-here, here]` whose semi-axes are
+/// 2.4 and 2.2 half-lengths.
+fn reach(length: f64, here: f64, across: f64) -> usize {
+    (f64::max(2.4 * here, here + 2.2 * across) / length).ceil() as usize - 1
+}
+
+/// Along which direction images are summed in lines.
+fn lines(directions: (bool, bool), (length_x, length_y): (f64, f64)) -> Option<Lines> {
+    match directions {
+        (true, false) => Some(Lines::X),
+        (false, true) => Some(Lines::Y),
+        _ if length_y >= MUCH_LONGER * length_x => Some(Lines::X),
+        _ if length_x >= MUCH_LONGER * length_y => Some(Lines::Y),
+        _ => None,
+    }
+}
+
+/// Offsets `0..count` of elements of size d that are nearer than `faded`, and the part of an element that is.
+fn cut(count: usize, d: f64, faded: f64) -> (usize, f64) {
+    let near = (faded / d + 0.5).ceil().min(count as f64) as usize;
+    (near.max(1), d.min(2.0 * faded))
+}
+
+impl Far {
+    /// Of a grid and, where there is a period, of coarser ones: half an element beyond half the period.
+    pub fn new(directions: (bool, bool), grid: &Grid) -> Far {
+        let lengths = lengths(grid);
+        let lines = lines(directions, lengths);
+        let mut far =
+            Far { directions, lengths, half: (0.0, 0.0), lines, images: (0, 0), coefficients: [[0.0; NODES]; NODES] };
+        let (own, count) = (far.near(grid).half(), offsets(directions, grid));
+        // Across lines coarser elements reach a little farther, at most to the end.
+        let across = |own: f64, count: usize, d: f64, period: f64| {
+            own.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * period))
+        };
+        far.half = match lines {
+            Some(Lines::X) => (own.0.max(COARSE * lengths.0), across(own.1, count.1, grid.dy, lengths.0)),
+            Some(Lines::Y) => (across(own.0, count.0, grid.dx, lengths.1), own.1.max(COARSE * lengths.1)),
+            None => (own.0.max(COARSE * lengths.0), own.1.max(COARSE * lengths.1)),
+        };
+        if lines != Some(Lines::Y) {
+            far.images.0 = reach(lengths.0, far.half.0, far.half.1);
+        }
+        if lines != Some(Lines::X) {
+            far.images.1 = reach(lengths.1, far.half.1, far.half.0);
+        }
+        far.interpolate();
+        far
+    }
+
+    /// The sum over all but the near images at a place.
+    fn value(&self, x: f64, y: f64) -> f64 {
+        let (lengths, images) = (self.lengths, self.images);
+        match self.lines {
+            None => ewald(x, y, lengths, images),
+            Some(Lines::X) => line_of_images(x, y, lengths.0, images.0, lengths.1),
+            Some(Lines::Y) => line_of_images(y, x, lengths.1, images.1, lengths.0),
+        }
+    }
+
+    fn interpolate(&mut self) {
+        let angle = |i: usize| PI * (i as f64 + 0.5) / NODES as f64;
+        let node = |i: usize, half: f64| half * (0.5 * (1.0 + angle(i).cos())).sqrt();
+        let twice = |k: usize| if k == 0 { 1.0 } else { 2.0 };
+        for (a, b) in (0..NODES * NODES).map(|k| (k % NODES, k / NODES)) {
+            let value = self.value(node(a, self.half.0), node(b, self.half.1)) / (NODES * NODES) as f64;
+            for (j, row) in self.coefficients.iter_mut().enumerate() {
+                for (i, coefficient) in row.iter_mut().enumerate() {
+                    *coefficient +=
+                        twice(i) * twice(j) * value * (i as f64 * angle(a)).cos() * (j as f64 * angle(b)).cos();
+                }
+            }
+        }
+    }
+
+    /// What of a grid images are summed for.
+    pub fn near(&self, grid: &Grid) -> Near {
+        let (row, rows) = offsets(self.directions, grid);
+        let mut near = Near { offsets: (row, rows), element: (grid.dx, grid.dy) };
+        match self.lines {
+            Some(Lines::X) => (near.offsets.1, near.element.1) = cut(rows, grid.dy, FADED * self.lengths.0),
+            Some(Lines::Y) => (near.offsets.0, near.element.0) = cut(row, grid.dx, FADED * self.lengths.1),
+            None => {}
+        }
+        near
+    }
+
+    /// Whether it is that of a coarser grid, too.
+    pub fn serves(&self, grid: &Grid) -> bool {
+        let half = self.near(grid).half();
+        lengths(grid) == self.lengths && half.0 <= self.half.0 && half.1 <= self.half.1
+    }
+
+    /// The polynomial's means over elements at the first offsets: in x and in y.
+    pub fn means(&self, near: &Near) -> [impl Iterator<Item = [f64; NODES]>; 2] {
+        let means = |count: usize, d: f64| (0..count).map(move |k| chebyshev_means(k as f64, d));
+        [means(near.offsets.0, near.element.0 / self.half.0), means(near.offsets.1, near.element.1 / self.half.1)]
+    }
+
+    /// The polynomial in x where those in y have the means `in_y`.
+    pub fn along_x(&self, in_y: &[f64; NODES]) -> [f64; NODES] {
+        let mut line = [0.0; NODES];
+        for (coefficients, t) in self.coefficients.iter().zip(in_y) {
+            line.iter_mut().zip(coefficients).for_each(|(sum, coefficient)| *sum += coefficient * t);
+        }
+        line
+    }
+}
+
+/// Means of `T_i(2 t^2 - 1)`, i < 12, over `|t - k d| <= d/2`.
+fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
+    let mut means = [0.0; NODES];
+    for (node, weight) in GAUSS.into_iter().flat_map(|(node, weight)| [(node, weight), (-node, weight)]) {
+        let weight = if node == 0.0 { 0.25 * weight } else { 0.5 * weight };
+        let s = 2.0 * ((k + 0.5 * node) * d).powi(2) - 1.0;
+        let (mut before, mut now) = (s, 1.0); // T_-1 = T_1 and T_0
+        for mean in &mut means {
+            *mean += weight * now;
+            (before, now) = (now, 2.0 * s * now - before);
+        }
+    }
+    means
+}
+
+/// The sum of 1/rho over all images but the near ones, two periods, up to a constant. With a width `1/eta` of Gaussians,
+///
+/// ```text
+/// sum of 1/rho = sum of erfc(eta rho)/rho + 2 pi/(Lx Ly) sum over q of erfc(q/(2 eta))/q cos(q r)
+/// ```
+fn ewald(x: f64, y: f64, (lx, ly): (f64, f64), (near_x, near_y): (usize, usize)) -> f64 {
+    let eta = (PI / (lx * ly)).sqrt();
+    let last = |length: f64, near: usize| (((GAUSSIAN / eta) / length).ceil() as i64 + 1).max(near as i64);
+    let (last_x, last_y) = (last(lx, near_x), last(ly, near_y));
+    let mut sum = 0.0;
+    for m in -last_y..=last_y {
+        for n in -last_x..=last_x {
+            let rho = (x + n as f64 * lx).hypot(y + m as f64 * ly);
+            let is_near = n.unsigned_abs() as usize <= near_x && m.unsigned_abs() as usize <= near_y;
+            if is_near && eta * rho < 1e-8 {
+                sum -= 2.0 * eta / PI.sqrt();
+            } else if is_near {
+                let beyond = if eta * rho < GAUSSIAN { complementary_error_function(eta * rho) } else { 0.0 };
+                sum -= (1.0 - beyond) / rho;
+            } else if eta * rho < GAUSSIAN {
+                sum += complementary_error_function(eta * rho) / rho;
+            }
+        }
+    }
+    let waves = |length: f64| (GAUSSIAN * eta * length / PI).ceil() as usize;
+    for j in 0..=waves(ly) {
+        for i in usize::from(j == 0)..=waves(lx) {
+            let (qx, qy) = (2.0 * PI * i as f64 / lx, 2.0 * PI * j as f64 / ly);
+            let q = qx.hypot(qy);
+            if q < 2.0 * GAUSSIAN * eta {
+                let signs = if i == 0 || j == 0 { 2.0 } else { 4.0 };
+                let term = complementary_error_function(0.5 * q / eta) / q * (qx * x).cos() * (qy * y).cos();
+                sum += signs * 2.0 * PI / (lx * ly) * term;
+            }
+        }
+    }
+    sum
+}
+
+/// The same for one period: `along` it, of the given length, and `across`; the mean along it of the whole sum is `2/L log(W/across)`.
+///
+/// ```text
+/// sum over n of 1/rho_n - [n != 0]/|n L|    has the mean 2/L (log(2 L/across) - gamma)
+/// ```
+fn line_of_images(along: f64, across: f64, length: f64, near: usize, width: f64) -> f64 {
+    let harmonic: f64 = (1..=near).rev().map(|n| 1.0 / n as f64).sum();
+    let constant = 2.0 / length * ((width / (2.0 * length)).ln() + EULER_GAMMA - harmonic);
+    // From here on the terms are a series in (r/(n L))^2 <= 1/100.
+    let r = along.hypot(across);
+    let first_far = near + 10 + (10.0 * r / length).ceil() as usize;
+    let mut sum = 0.0;
+    for n in (near + 1..first_far).rev() {
+        let image = n as f64 * length;
+        sum += 1.0 / (image + along).hypot(across) + 1.0 / (image - along).hypot(across) - 2.0 / image;
+    }
+    // 1/rho_n + 1/rho_-n = 2/(n L) sum over even l of (r/(n L))^l P_l(along/r)
+    let (t, ratio) = (if r > 0.0 { along / r } else { 0.0 }, r / length);
+    let (mut before, mut legendre) = (1.0, t);
+    let mut power = ratio;
+    for l in 2..=16 {
+        let l_real = f64::from(l);
+        (before, legendre) = (legendre, ((2.0 * l_real - 1.0) * t * legendre - (l_real - 1.0) * before) / l_real);
+        power *= ratio;
+        if l % 2 == 0 {
+            sum += 2.0 / length * power * legendre * hurwitz_zeta(l_real + 1.0, first_far as f64);
+        }
+    }
+    sum + constant
+}

@@ -1,0 +1,63 @@
+//! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
+//!
+//! Its period is that of the grid itself, a quarter of the work of a padded one at the same number of iterations. It is one element
+//! longer than the grid, so that the coefficient at offset -m is the true one; where there is only one row (or column) that direction
+//! has the period 1.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::convolution::{Even, SetUp};
+use super::fft::{good_length, Real};
+use super::operator::Operator;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::threads::Threads;
+
+impl<T: Real> Operator<T> {
+    /// The period of a preconditioner's circulant.
+    pub fn circulant_period(coefficients: &Coefficients, grid: &Grid) -> (usize, usize) {
+        let repeats = coefficients.repeats(grid);
+        let period = |m: usize, repeats: bool| if repeats || m == 1 { m } else { good_length(m + 1) };
+        (period(grid.mx, repeats.0), period(grid.my, repeats.1))
+    }
+
+    /// The inverse of a circulant near A: period `px * py >= mx * my`, coefficients at offsets up to half of it, even in both
+    /// directions. None if it is not positive.
+    pub fn inverse_circulant(
+        coefficients: &Coefficients,
+        grid: &Grid,
+        period: (usize, usize),
+        threads: &Threads,
+    ) -> Result<Option<Operator<T>>> {
+        Operator::scaled_inverse(coefficients, 1.0, grid, period, threads)
+    }
+
+    /// The same of coefficients times a factor, a power of two.
+    pub fn scaled_inverse(
+        coefficients: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        period: (usize, usize),
+        threads: &Threads,
+    ) -> Result<Option<Operator<T>>> {
+        let mut inverse = Operator::of_period(grid, period, threads);
+        Ok(inverse.renew_inverse(coefficients, factor, &mut SetUp::default())?.then_some(inverse))
+    }
+
+    /// Computes an [inverse](Self::inverse_circulant) anew, of other coefficients times a factor, in the memory that there is. False if
+    /// it is not positive: then it is of no use before it is computed again.
+    pub fn renew_inverse(&mut self, coefficients: &Coefficients, factor: f64, set_up: &mut SetUp) -> Result<bool> {
+        let positive = AtomicBool::new(true);
+        let finish = |value: f64| {
+            if !(value > 0.0) {
+                positive.store(false, Ordering::Relaxed);
+            }
+            1.0 / (factor * value)
+        };
+        let fill = |ky: i64, row: &mut [f64]| coefficients.fill_even_row(ky, row);
+        let given = |period: (usize, usize)| (period.0 / 2 + 1, period.1 / 2 + 1);
+        self.set_even(set_up, |period| Even { period, given: given(period), fill, finish })?;
+        Ok(positive.into_inner())
+    }
+}

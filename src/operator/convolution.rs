@@ -1,0 +1,257 @@
+//! The y direction of a product where A is block Toeplitz, and the spectrum of both directions.
+//!
+//! ```text
+//! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
+//! ```
+//!
+//! Per block of eight columns: gather, transform, multiply, transform back, scatter. Even coefficients have a real, even spectrum: a
+//! quarter of it is kept. Two columns of it share one complex transform, one as its real and one as its imaginary part.
+
+use std::ops::Range;
+
+use super::columns::for_each_block;
+use super::fft::{ColumnTransform, Complex, Real, RowTransform};
+use super::rows::{Product, Rows};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::reserve;
+use crate::threads::Threads;
+
+/// What memory is for.
+const COEFFICIENTS: &str = "the influence coefficients";
+const SPECTRUM: &str = "the operator's spectrum";
+
+/// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
+enum Spectrum<T> {
+    /// Even coefficients: real, `py/2 + 1` values a column.
+    Even(Vec<T>),
+    /// General coefficients: `py` complex values a column.
+    General(Vec<Complex<T>>),
+}
+
+/// Transforms in y, and the spectrum.
+pub(super) struct Convolution<T: Real> {
+    pub columns: ColumnTransform<T>,
+    spectrum: Spectrum<T>,
+}
+
+/// Even coefficients of both directions.
+pub(super) struct Even<F, G> {
+    /// The period.
+    pub period: (usize, usize),
+    /// Coefficients that are not zero: offsets less than that.
+    pub given: (usize, usize),
+    /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
+    pub fill: F,
+    /// What is kept of each value of the spectrum, but for the normalisation.
+    pub finish: G,
+}
+
+/// Memory that a spectrum is computed in. An operator whose coefficients change often keeps it.
+#[derive(Default)]
+pub struct SetUp {
+    real: Vec<f64>,
+    complex: Vec<Complex<f64>>,
+    pieces: Vec<Piece>,
+}
+
+/// That of one piece of the work.
+#[derive(Default)]
+struct Piece {
+    row: Vec<f64>,
+    column: Vec<Complex<f64>>,
+    rows: Vec<Complex<f64>>,
+    columns: Vec<Complex<f64>>,
+}
+
+impl Piece {
+    /// Pieces that suit transforms of both directions.
+    fn suit(pieces: &mut Vec<Piece>, threads: &Threads, rows: &RowTransform<f64>, columns: &ColumnTransform<f64>) {
+        pieces.resize_with(threads.pieces(), Piece::default);
+        for piece in pieces {
+            piece.row.resize(rows.length(), 0.0);
+            piece.column.resize(rows.bins().max(columns.length()), Complex::default());
+            rows.fit(&mut piece.rows);
+            columns.fit(&mut piece.columns);
+        }
+    }
+}
+
+/// Makes room for n values, which keep what they hold.
+fn resize<A: Clone + Default>(values: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
+    values.truncate(n);
+    reserve(values, n, what)?;
+    values.resize(n, A::default());
+    Ok(())
+}
+
+impl<T: Real> Convolution<T> {
+    /// Transforms of period py; the spectrum is still to be computed.
+    pub fn new(py: usize) -> Convolution<T> {
+        Convolution { columns: ColumnTransform::new(py), spectrum: Spectrum::Even(Vec::new()) }
+    }
+
+    /// The same in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
+        let convert = |value: T| S::of(factor * value.to_double());
+        let spectrum = match &self.spectrum {
+            Spectrum::Even(from) => {
+                let mut to = Vec::new();
+                reserve(&mut to, from.len(), SPECTRUM)?;
+                to.extend(from.iter().map(|from| convert(*from)));
+                Spectrum::Even(to)
+            }
+            Spectrum::General(from) => {
+                let mut to = Vec::new();
+                reserve(&mut to, from.len(), SPECTRUM)?;
+                to.extend(from.iter().map(|from| Complex::new(convert(from.re), convert(from.im))));
+                Spectrum::General(to)
+            }
+        };
+        Ok(Convolution { columns: ColumnTransform::new(self.columns.length()), spectrum })
+    }
+
+    pub fn bytes(&self) -> usize {
+        match &self.spectrum {
+            Spectrum::Even(s) => size_of_val(&s[..]),
+            Spectrum::General(s) => size_of_val(&s[..]),
+        }
+    }
+
+    /// Transforms in y, multiplies by the spectrum and transforms back; rows `loaded` hold pressures.
+    pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
+        let Product { bins, pieces } = product;
+        let (nb, length) = (rows.transform.bins(), self.columns.length());
+        for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
+            let columns = &mut piece.columns[..block.columns() * length];
+            block.gather(loaded.clone(), length, columns);
+            self.columns.forward(columns, &mut piece.scratch);
+            self.multiply(block.first(), columns);
+            self.columns.inverse(columns, &mut piece.scratch);
+            block.scatter(0..rows.my, length, columns);
+        });
+    }
+
+    /// Multiplies the transformed columns of a block, the first of which has x bin `first`, by the spectrum.
+    fn multiply(&self, first: usize, block: &mut [Complex<T>]) {
+        #[cfg(feature = "test-panics")]
+        crate::panics::at_a_block();
+        let py = self.columns.length();
+        for (c, column) in block.chunks_exact_mut(py).enumerate() {
+            match &self.spectrum {
+                Spectrum::Even(s) => {
+                    let s = &s[(first + c) * (py / 2 + 1)..(first + c + 1) * (py / 2 + 1)];
+                    let (lower, upper) = column.split_at_mut(py / 2 + 1);
+                    for (value, &factor) in lower.iter_mut().zip(s) {
+                        *value = *value * factor;
+                    }
+                    for (value, &factor) in upper.iter_mut().rev().zip(&s[1..]) {
+                        *value = *value * factor;
+                    }
+                }
+                Spectrum::General(s) => {
+                    for (value, &factor) in column.iter_mut().zip(&s[(first + c) * py..]) {
+                        *value = *value * factor;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Computes the spectrum of even coefficients, in the memory that there is.
+    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, threads: &Threads, set_up: &mut SetUp) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let (px, py) = even.period;
+        let (row_given, rows_given) = even.given;
+        let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+        let nb = rows.bins();
+        let SetUp { real: in_x, pieces, .. } = set_up;
+        resize(in_x, rows_given * nb, COEFFICIENTS)?;
+        Piece::suit(pieces, threads, &rows, &columns);
+        threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
+            let row = &mut piece.row;
+            row.fill(0.0);
+            (even.fill)(ky as i64, &mut row[..row_given]);
+            for kx in 1..row_given {
+                row[px - kx] = row[kx];
+            }
+            rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
+            out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
+        });
+        let half = py / 2 + 1;
+        let mut spectrum = match std::mem::replace(&mut self.spectrum, Spectrum::Even(Vec::new())) {
+            Spectrum::Even(spectrum) => spectrum,
+            Spectrum::General(_) => Vec::new(),
+        };
+        resize(&mut spectrum, (nb + nb % 2) * half, SPECTRUM)?;
+        let scale = 1.0 / (px as f64 * py as f64);
+        threads.for_each_row(&mut spectrum, 2 * half, pieces, |pair, out, piece| {
+            let column = &mut piece.column[..py];
+            let second = (2 * pair + 1).min(nb - 1);
+            column.fill(Complex::default());
+            for ky in 0..rows_given {
+                let value = Complex::new(in_x[ky * nb + 2 * pair], in_x[ky * nb + second]);
+                column[ky] = value;
+                if ky > 0 {
+                    column[py - ky] = value;
+                }
+            }
+            columns.forward(column, &mut piece.columns);
+            for (ky, bin) in column[..half].iter().enumerate() {
+                out[ky] = T::of(scale * (even.finish)(bin.re));
+                out[half + ky] = T::of(scale * (even.finish)(bin.im));
+            }
+        });
+        self.spectrum = Spectrum::Even(spectrum);
+        Ok(())
+    }
+
+    /// Computes the spectrum of coefficients that are not even, of which period px is kept in x.
+    pub fn set_general(
+        &mut self,
+        coefficients: &Coefficients,
+        grid: &Grid,
+        (px, factor): (usize, f64),
+        threads: &Threads,
+        set_up: &mut SetUp,
+    ) -> Result<()> {
+        let py = self.columns.length();
+        let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+        let nb = rows.bins();
+        let (mx, my) = (grid.mx, grid.my);
+        let SetUp { complex: in_x, pieces, .. } = set_up;
+        resize(in_x, (2 * my - 1) * nb, COEFFICIENTS)?;
+        Piece::suit(pieces, threads, &rows, &columns);
+        threads.for_each_row(in_x, nb, pieces, |i, out, piece| {
+            let row = &mut piece.row;
+            row.fill(0.0);
+            let ky = i as i64 - (my as i64 - 1);
+            coefficients.fill_row(0, ky, &mut row[..mx]);
+            coefficients.fill_row(1 - mx as i64, ky, &mut row[px - (mx - 1)..]);
+            rows.forward(row, out, &mut piece.rows);
+        });
+        let mut spectrum = match std::mem::replace(&mut self.spectrum, Spectrum::Even(Vec::new())) {
+            Spectrum::General(spectrum) => spectrum,
+            Spectrum::Even(_) => Vec::new(),
+        };
+        resize(&mut spectrum, nb * py, SPECTRUM)?;
+        let scale = factor / (px as f64 * py as f64);
+        threads.for_each_row(&mut spectrum, py, pieces, |kx, out, piece| {
+            let column = &mut piece.column[..py];
+            column.fill(Complex::default());
+            for i in 0..2 * my - 1 {
+                column[(i + py - (my - 1)) % py] = in_x[i * nb + kx];
+            }
+            columns.forward(column, &mut piece.columns);
+            for (value, bin) in out.iter_mut().zip(&*column) {
+                *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+            }
+        });
+        self.spectrum = Spectrum::General(spectrum);
+        Ok(())
+    }
+}

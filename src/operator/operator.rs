@@ -1,0 +1,277 @@
+//! `u = A p`: a product by FFT, with the diagonal and the coupling that the coefficients may have.
+//!
+//! A is block Toeplitz, so it is a part of a block circulant of period `px * py`. The period must keep the offsets `-(m-1)..m-1`
+//! apart: `2m - 1`, or `2m - 2` when the coefficients are even (offsets `m-1` and `-(m-1)` are then alike). In a direction in which the
+//! coefficients repeat themselves after the grid A is circulant: the period is the grid's, and nothing is padded.
+//!
+//! The product is fused and pruned: transforms in x of those rows only that hold pressures ([`Rows`]); in y a [`Convolution`], or where
+//! A is Toeplitz in x only a product by matrices ([`PerRow`]); transforms back in x, to which a diagonal is added.
+
+use std::ops::Range;
+
+use super::columns::BLOCK;
+use super::convolution::{Convolution, Even, SetUp};
+use super::fft::{good_length, Complex, Real, RowTransform};
+use super::patches::Mask;
+use super::row_tables::PerRow;
+use super::rows::{Piece, Product, Rows};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::{reserve, zeros};
+use crate::threads::Threads;
+
+/// What memory is for.
+const DIAGONAL: &str = "the operator's diagonal";
+
+/// The y direction.
+enum Columns<T: Real> {
+    Convolution(Convolution<T>),
+    PerRow(PerRow<T>),
+}
+
+/// The operator of one grid.
+pub struct Operator<T: Real> {
+    rows: Rows<T>,
+    columns: Columns<T>,
+    /// What A has on its diagonal beyond the coefficients; empty: nothing.
+    diagonal: Vec<T>,
+    /// Patches between which A is scaled.
+    coupling: Option<Mask<T>>,
+}
+
+/// Memory that a product needs, so that it allocates nothing.
+pub struct Workspace<T: Real> {
+    product: Product<T>,
+    /// With patches: p scaled for one of them, and its product.
+    masked: [Vec<T>; 2],
+    /// And p, where u takes its place.
+    given: Vec<T>,
+}
+
+impl<T: Real> Workspace<T> {
+    /// Makes room for products by another operator too. A smaller grid may need more of something: its transforms may be
+    /// of another kind.
+    pub fn cover(&mut self, other: Workspace<T>) {
+        fn longer<A>(mine: &mut Vec<A>, other: Vec<A>) {
+            if other.len() > mine.len() {
+                *mine = other;
+            }
+        }
+        longer(&mut self.product.bins, other.product.bins);
+        for (mine, other) in self.product.pieces.iter_mut().zip(other.product.pieces) {
+            longer(&mut mine.row, other.row);
+            longer(&mut mine.columns, other.columns);
+            longer(&mut mine.scratch, other.scratch);
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.product.bins[..]) + 3 * size_of_val(&self.given[..])
+    }
+}
+
+/// The periods of a product.
+fn periods(coefficients: &Coefficients, grid: &Grid) -> (usize, usize) {
+    let (even, repeats) = (coefficients.is_even(grid), coefficients.repeats(grid));
+    let period = |m: usize, repeats: bool| match (repeats, even) {
+        (true, _) => m,
+        (_, true) => good_length(2 * m - 2),
+        (_, false) => good_length(2 * m - 1),
+    };
+    match coefficients.row_tables() {
+        // Columns are not transformed.
+        Some((tables, _)) if tables.is_even_in_x() => (good_length(2 * grid.mx - 2), grid.my),
+        Some(_) => (good_length(2 * grid.mx - 1), grid.my),
+        None => (period(grid.mx, repeats.0), period(grid.my, repeats.1)),
+    }
+}
+
+impl<T: Real> Operator<T> {
+    /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
+    pub fn new(coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
+        Operator::scaled(coefficients, 1.0, grid, threads)
+    }
+
+    /// Of coefficients times a factor, a power of two: no digit changes.
+    pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
+        let mut operator = Operator::of_period(grid, periods(coefficients, grid), threads);
+        operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
+        Ok(operator)
+    }
+
+    /// Plans of a period; the spectrum is still to be computed.
+    pub(super) fn of_period(grid: &Grid, (px, py): (usize, usize), threads: &Threads) -> Operator<T> {
+        Operator {
+            rows: Rows::new(grid.mx, grid.my, px, threads),
+            columns: Columns::Convolution(Convolution::new(py)),
+            diagonal: Vec::new(),
+            coupling: None,
+        }
+    }
+
+    /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
+    /// error, before it is renewed again.
+    pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
+        let (px, py) = periods(coefficients, grid);
+        let threads = self.rows.threads.clone();
+        if px != self.rows.transform.length() {
+            self.rows = Rows::new(grid.mx, grid.my, px, &threads);
+        }
+        if let Some((tables, least)) = coefficients.row_tables() {
+            let per_row = PerRow::new(tables, (least, factor), &RowTransform::new(px), &threads)?;
+            self.columns = Columns::PerRow(per_row);
+        } else {
+            match &self.columns {
+                Columns::Convolution(convolution) if convolution.columns.length() == py => {}
+                _ => self.columns = Columns::Convolution(Convolution::new(py)),
+            }
+            self.set_spectrum(coefficients, factor, grid, set_up)?;
+        }
+        let diagonal = coefficients.diagonal().unwrap_or_default();
+        self.diagonal.clear();
+        reserve(&mut self.diagonal, diagonal.len(), DIAGONAL)?;
+        self.diagonal.extend(diagonal.iter().map(|d| T::of(factor * d)));
+        self.coupling = coefficients.patches().map(Mask::new).transpose()?;
+        Ok(())
+    }
+
+    fn set_spectrum(
+        &mut self,
+        coefficients: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        set_up: &mut SetUp,
+    ) -> Result<()> {
+        if coefficients.is_even(grid) {
+            let repeats = coefficients.repeats(grid);
+            let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
+            return self.set_even(set_up, |period| Even {
+                period,
+                given: (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
+                fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
+                finish: move |value| factor * value,
+            });
+        }
+        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
+        convolution.set_general(coefficients, grid, (rows.transform.length(), factor), &rows.threads, set_up)
+    }
+
+    /// Computes a spectrum of even coefficients, of the period that there is.
+    pub(super) fn set_even<F, G>(
+        &mut self,
+        set_up: &mut SetUp,
+        even: impl FnOnce((usize, usize)) -> Even<F, G>,
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
+        let period = (rows.transform.length(), convolution.columns.length());
+        convolution.set_even(&even(period), &rows.threads, set_up)
+    }
+
+    /// The same operator in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
+        let mut diagonal = Vec::new();
+        reserve(&mut diagonal, self.diagonal.len(), DIAGONAL)?;
+        diagonal.extend(self.diagonal.iter().map(|d| S::of(factor * d.to_double())));
+        Ok(Operator {
+            rows: self.rows.in_precision(),
+            columns: match &self.columns {
+                Columns::Convolution(convolution) => Columns::Convolution(convolution.in_precision(factor)?),
+                Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
+            },
+            diagonal,
+            coupling: self.coupling.as_ref().map(Mask::in_precision).transpose()?,
+        })
+    }
+
+    /// Memory for products by this operator.
+    pub fn workspace(&self) -> Result<Workspace<T>> {
+        let transform = &self.rows.transform;
+        let (length, sums) = match &self.columns {
+            Columns::Convolution(convolution) => (convolution.columns.length(), 0),
+            Columns::PerRow(per_row) => (self.rows.my, per_row.scratch()),
+        };
+        let piece = |_| {
+            let mut scratch = transform.scratch();
+            if let Columns::Convolution(convolution) = &self.columns {
+                convolution.columns.fit(&mut scratch);
+            }
+            let columns = vec![Complex::default(); (BLOCK * length).max(transform.bins())];
+            Piece { row: vec![T::zero(); transform.length().max(sums)], columns, scratch }
+        };
+        let masked = self.coupling.as_ref().map_or(0, |_| self.rows.mx * self.rows.my);
+        let memory = |n| zeros(n, "the product's workspace");
+        let bins = zeros(self.rows.my * transform.bins(), "the product's workspace")?;
+        Ok(Workspace {
+            product: Product { bins, pieces: (0..self.rows.threads.pieces()).map(piece).collect() },
+            masked: [memory(masked)?, memory(masked)?],
+            given: memory(masked)?,
+        })
+    }
+
+    /// Bytes held by the operator.
+    pub fn bytes(&self) -> usize {
+        let columns = match &self.columns {
+            Columns::Convolution(convolution) => convolution.bytes(),
+            Columns::PerRow(per_row) => per_row.bytes(),
+        };
+        columns + size_of_val(&self.diagonal[..]) + self.coupling.as_ref().map_or(0, Mask::bytes)
+    }
+
+    /// `u = A p`.
+    pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
+        let n = self.rows.mx * self.rows.my;
+        assert!(p.len() == n && u.len() == n);
+        let Workspace { product, masked, .. } = workspace;
+        match &self.coupling {
+            None => self.without_coupling(p, u, product),
+            Some(mask) => mask.apply(p, u, masked, |p, u| self.without_coupling(p, u, product)),
+        }
+    }
+
+    /// `p = A p`.
+    pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
+        assert!(p.len() == self.rows.mx * self.rows.my);
+        let Workspace { product, masked, given } = workspace;
+        if let Some(mask) = &self.coupling {
+            given.copy_from_slice(p);
+            return mask.apply(given, p, masked, |p, u| self.without_coupling(p, u, product));
+        }
+        let loaded = self.rows.forward(p, product);
+        self.convolve(loaded, product);
+        if self.diagonal.is_empty() {
+            return self.rows.back(p, product, |_, u, row| u.copy_from_slice(row));
+        }
+        self.rows.back(p, product, |iy, p, row| {
+            for ((p, value), d) in p.iter_mut().zip(row).zip(&self.diagonal[iy * self.rows.mx..]) {
+                *p = *value + *d * *p;
+            }
+        });
+    }
+
+    fn without_coupling(&self, p: &[T], u: &mut [T], product: &mut Product<T>) {
+        let loaded = self.rows.forward(p, product);
+        self.convolve(loaded, product);
+        if self.diagonal.is_empty() {
+            return self.rows.back(u, product, |_, u, row| u.copy_from_slice(row));
+        }
+        self.rows.back(u, product, |iy, u, row| {
+            let first = iy * self.rows.mx;
+            for (((u, value), d), p) in u.iter_mut().zip(row).zip(&self.diagonal[first..]).zip(&p[first..]) {
+                *u = *value + *d * *p;
+            }
+        });
+    }
+
+    fn convolve(&self, loaded: Range<usize>, product: &mut Product<T>) {
+        match &self.columns {
+            Columns::Convolution(convolution) => convolution.apply(&self.rows, loaded, product),
+            Columns::PerRow(per_row) => per_row.apply(&self.rows, loaded, product),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The transforms in x of a product: of those rows only that hold pressures, and back.
+
+use std::ops::Range;
+
+use super::fft::{Complex, Real, RowTransform};
+use crate::threads::Threads;
+
+/// Rows of the grid, padded to the period in x.
+pub(super) struct Rows<T: Real> {
+    pub mx: usize,
+    pub my: usize,
+    pub transform: RowTransform<T>,
+    pub threads: Threads,
+}
+
+/// Scratch of one piece of the work.
+pub(super) struct Piece<T: Real> {
+    pub row: Vec<T>,
+    pub columns: Vec<Complex<T>>,
+    pub scratch: Vec<Complex<T>>,
+}
+
+/// Memory of one product.
+pub(super) struct Product<T: Real> {
+    /// `[my][px/2 + 1]`: the rows, transformed in x.
+    pub bins: Vec<Complex<T>>,
+    pub pieces: Vec<Piece<T>>,
+}
+
+impl<T: Real> Rows<T> {
+    pub fn new(mx: usize, my: usize, period: usize, threads: &Threads) -> Rows<T> {
+        Rows { mx, my, transform: RowTransform::new(period), threads: threads.clone() }
+    }
+
+    /// The same in another precision.
+    pub fn in_precision<S: Real>(&self) -> Rows<S> {
+        Rows::new(self.mx, self.my, self.transform.length(), &self.threads)
+    }
+
+    /// Transforms the rows that hold pressures; returns which.
+    pub fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
+        let loaded = rows_with_pressure(p, self.mx);
+        let nb = self.transform.bins();
+        let bins = &mut product.bins[loaded.start * nb..loaded.end * nb];
+        let first = loaded.start;
+        self.threads.for_each_row(bins, nb, &mut product.pieces, |i, row_bins, piece| {
+            let row = &mut piece.row[..self.transform.length()];
+            row[..self.mx].copy_from_slice(&p[(first + i) * self.mx..(first + i + 1) * self.mx]);
+            row[self.mx..].fill(T::zero());
+            self.transform.forward(row, row_bins, &mut piece.scratch);
+        });
+        loaded
+    }
+
+    /// Transforms all rows back; `write(iy, row of u, values)` takes each of them.
+    pub fn back(&self, u: &mut [T], product: &mut Product<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
+        let Product { bins, pieces } = product;
+        let nb = self.transform.bins();
+        let bins = &bins[..];
+        self.threads.for_each_row(u, self.mx, pieces, |iy, u_row, piece| {
+            // The inverse overwrites its input: each row goes through the piece's scratch.
+            let row_bins = &mut piece.columns[..nb];
+            row_bins.copy_from_slice(&bins[iy * nb..(iy + 1) * nb]);
+            self.transform.inverse(row_bins, &mut piece.row[..self.transform.length()], &mut piece.scratch);
+            write(iy, u_row, &piece.row[..self.mx]);
+        });
+    }
+}
+
+/// The run of rows outside of which `p` is zero.
+fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
+    let loaded = |row: &[T]| row.iter().any(|&value| value != T::zero());
+    let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
+    let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);
+    first..last + 1
+}

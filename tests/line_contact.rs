@@ -1,0 +1,72 @@
+//! Line contacts, on one row or one column of elements: own coefficients cost no more cycles than the half-space's.
+
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Kernel, Table};
+use contact_normal::operator::{dense, Operator};
+use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::threads::Threads;
+
+fn grid(mx: usize, my: usize) -> Grid {
+    Grid::new(mx, my, 0.1, 0.1).unwrap()
+}
+
+/// A table of the half-space's coefficients times `factor(distance in elements)`.
+fn table(grid: &Grid, bodies: &Bodies, factor: fn(f64) -> f64) -> Table {
+    let half_space = HalfSpace::new(grid.dx, grid.dy, bodies.compliance());
+    let (cx, cy) = (grid.mx as i64, grid.my as i64);
+    let offsets = (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky)));
+    let values: Vec<f64> =
+        offsets.map(|(kx, ky)| half_space.at(kx, ky) * factor((kx as f64).hypot(ky as f64))).collect();
+    Table::new(grid.mx, grid.my, &values, grid).unwrap()
+}
+
+#[test]
+fn own_coefficients_on_one_row_or_column_keep_the_preconditioner() {
+    let bodies = Bodies::same(1.0, 0.3);
+    let factors: [fn(f64) -> f64; 2] = [|_| 1.0, |r| (-0.05 * r).exp()];
+    for (mx, my) in [(256, 1), (1, 256)] {
+        let grid = grid(mx, my);
+        let h: Vec<f64> = (0..256).map(|i| 0.002 * (i as f64 - 127.3).powi(2) * 0.01).collect();
+        for load in [Load::Approach(0.1), Load::Force(0.3)] {
+            let plain = Scene::new(grid, &h, bodies, load);
+            let (_, _, report) = solve(&plain, &Options::default()).unwrap();
+            for factor in factors {
+                let scene = Scene { influence: Some(table(&grid, &bodies, factor)), ..plain.clone() };
+                let (solver, stop, own) = solve(&scene, &Options::default()).unwrap();
+                assert_eq!(stop, Stop::Converged, "{mx} x {my} {load:?}");
+                // The preconditioner's circulant is that of the same coefficients but for what lies beyond the grid.
+                let allowed = report.cycles + 4;
+                assert!(
+                    own.cycles <= allowed,
+                    "{mx} x {my} {load:?}: {} cycles, {} without a table",
+                    own.cycles,
+                    report.cycles
+                );
+                let state = solver.state();
+                let mut u = vec![0.0; grid.len()];
+                dense::apply(&scene.coefficients().unwrap(), &grid, &state.p, &mut u);
+                let distances: f64 = (0..256)
+                    .filter(|&i| state.contact[i])
+                    .map(|i| (state.h[i] - state.approach + u[i]).powi(2))
+                    .sum::<f64>();
+                let scale: f64 =
+                    (0..256).filter(|&i| state.contact[i]).map(|i| (state.h[i] - state.approach).powi(2)).sum::<f64>();
+                assert!(distances.sqrt() <= Options::default().tolerance * scale.sqrt(), "{mx} x {my} {load:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_circulant_of_one_row_is_one_row_long() {
+    for (mx, my) in [(24, 1), (1, 24), (1, 1)] {
+        let grid = grid(mx, my);
+        let coefficients = table(&grid, &Bodies::same(1.0, 0.3), |_| 1.0).into();
+        let (px, py) = Operator::<f64>::circulant_period(&coefficients, &grid);
+        assert!((mx > 1 || px == 1) && (my > 1 || py == 1), "{mx} x {my}: period {px} x {py}");
+        // Of a uniform pressure on a whole period the inverse makes one over the sum of the circulant's coefficients.
+        let inverse = Operator::<f64>::inverse_circulant(&coefficients, &grid, (px, py), &Threads::One).unwrap();
+        assert!(inverse.is_some(), "{mx} x {my}: not positive");
+    }
+}
