@@ -28,8 +28,8 @@
 
 use std::f64::consts::PI;
 
-use crate::influence::HalfSpace;
-use crate::operator::fft::Complex;
+use contact_normal::influence::HalfSpace;
+use contact_normal::operator::fft::Complex;
 
 /// Step of the trapezoidal rule in s: e^(-pi^2/H) = 7e-18.
 const H: f64 = 0.25;

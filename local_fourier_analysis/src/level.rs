@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::symbol::{Symbol, Value};
-use crate::methods::multigrid::SmootherKind;
-use crate::operator::fft::Complex;
+use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::operator::fft::Complex;
 
 /// The symbols at the frequencies `t = pi (2 j + 1)/n`, `j = 0..n`, in each direction.
 pub struct Level {

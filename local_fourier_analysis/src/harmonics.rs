@@ -2,7 +2,7 @@
 
 use super::level::{is_low, Left, Level};
 use super::spectral_radius::spectral_radius;
-use crate::operator::fft::Complex;
+use contact_normal::operator::fft::Complex;
 
 /// A cycle V(n1, n2) on waves.
 pub(super) struct Cycle<'a> {

@@ -1,7 +1,7 @@
 """Draws docs/local_fourier_analysis.png: `make analysis`, or
 
-    cargo run --release --example local_fourier_analysis FOLDER
-    python3 benches/local_fourier_analysis.py FOLDER docs/local_fourier_analysis.png
+    cargo run --release -p local_fourier_analysis FOLDER
+    python3 local_fourier_analysis/picture.py FOLDER docs/local_fourier_analysis.png
 """
 
 import os

@@ -1,11 +1,11 @@
-//! What benches/local_fourier_analysis.py draws, as comma-separated values.
+//! What picture.py draws, as comma-separated values.
 
 use std::fs::File;
 use std::io::{BufWriter, Result, Write};
 use std::path::Path;
 
-use contact_normal::methods::multigrid::analysis::Analysis;
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
+use local_fourier_analysis::Analysis;
 
 fn create(folder: &Path, name: &str, header: &str) -> Result<BufWriter<File>> {
     let mut file = BufWriter::new(File::create(folder.join(name))?);

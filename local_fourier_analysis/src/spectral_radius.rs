@@ -1,6 +1,6 @@
 //! The spectral radius of a small matrix, by Gelfand's formula: the limit of |M^q|^(1/q).
 
-use crate::operator::fft::Complex;
+use contact_normal::operator::fft::Complex;
 
 /// q = 2^SQUARINGS: |M^q|^(1/q) is above the spectral radius by a factor of at most k^(1/q), k a condition number of the
 /// eigenvectors: 1e-5 for k = 1e4, and less than that for defective eigenvalues of a 256 x 256 matrix too.

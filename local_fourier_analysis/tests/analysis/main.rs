@@ -1,21 +1,18 @@
 //! Local Fourier analysis: the symbols against sums of coefficients, the cycles against matrices, the factors against what
 //! actual sweeps and cycles do.
 
-#[path = "local_fourier_analysis/antiperiodic.rs"]
 mod antiperiodic;
-#[path = "../examples/local_fourier_analysis/measured.rs"]
-mod measured;
 
 use antiperiodic::{window, Antiperiodic};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
-use contact_normal::methods::multigrid::analysis::{Analysis, Symbol};
 use contact_normal::methods::multigrid::smoother::Smoother;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::Complex;
 use contact_normal::operator::Toeplitz;
 use contact_normal::threads::Threads;
+use local_fourier_analysis::{measured, Analysis, Symbol};
 
 fn half_space(grid: &Grid) -> Influence {
     Influence::HalfSpace(HalfSpace::new(grid.dx, grid.dy, 1.0))

@@ -1,21 +1,20 @@
 //! Local Fourier analysis beside measurement: smoothing factors, convergence factors of two and three grids, and those of
 //! actual cycles on the paper's ellipse (the set {h <= approach}) and on a full rectangle, from a random error.
 //!
-//! `cargo run --release --example local_fourier_analysis [-- FOLDER]`; what the picture is drawn from goes into FOLDER
+//! `cargo run --release -p local_fourier_analysis [-- FOLDER]`; what the picture is drawn from goes into FOLDER
 //! (target/local_fourier_analysis): `make analysis` does both.
 
-#[path = "../paper_tables/case.rs"]
+#[path = "../../examples/paper_tables/case.rs"]
 #[allow(dead_code)] // the paper's runs, of which this example uses table 1
 mod case;
-mod measured;
 mod picture;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
-use contact_normal::methods::multigrid::analysis::Analysis;
 use contact_normal::methods::multigrid::CycleShape;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{Method, Stop};
+use local_fourier_analysis::{measured, Analysis};
 
 /// Sizes of the paper's problem, m x m elements.
 const SIZES: [usize; 3] = [32, 64, 128];

@@ -53,7 +53,7 @@
 //! has tables and measurements.
 //!
 //! ```
-//! use contact_normal::methods::multigrid::analysis::Analysis;
+//! use local_fourier_analysis::Analysis;
 //! use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 //!
 //! // Square elements, 32 x 32 across the contact area, two grids, V(1,1) with Gauss-Seidel and omega = 0.8.
@@ -66,13 +66,14 @@
 
 mod harmonics;
 mod level;
+pub mod measured;
 mod spectral_radius;
 mod symbol;
 
 pub use symbol::{Symbol, Value};
 
-use super::{CycleShape, SmootherKind};
-use crate::error::{invalid, require, Result};
+use contact_normal::error::{Error, Result};
+use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use harmonics::Cycle;
 use level::{frequency, Level};
 
@@ -81,6 +82,10 @@ const MOST_LEVELS: usize = 5;
 
 /// Sizes that can be analysed in seconds to minutes.
 const MOST_ACROSS: usize = 4096;
+
+fn invalid<T>(message: String) -> Result<T> {
+    Err(Error::InvalidArgument(message))
+}
 
 /// The analysis on one element size and one size of the contact area.
 pub struct Analysis {
@@ -93,7 +98,9 @@ impl Analysis {
     /// multiple of `2^levels`.
     pub fn new(dx: f64, dy: f64, across: [usize; 2], levels: usize) -> Result<Analysis> {
         for (name, d) in [("dx", dx), ("dy", dy)] {
-            require(d > 0.0 && d.is_finite(), name, d, "an element size must be positive and finite")?;
+            if !(d > 0.0 && d.is_finite()) {
+                return invalid(format!("{name} is {d}; an element size must be positive and finite"));
+            }
         }
         if !(0.5..=2.0).contains(&(dx / dy)) {
             return invalid(format!("dx/dy is {}; both directions are coarsened between 1/2 and 2 only", dx / dy));
