@@ -1,6 +1,6 @@
 //! A panic in the core comes back as INTERNAL, with its text, untouched outputs and nothing on stderr; the next call works.
 
-#[path = "bad_input/call.rs"]
+#[path = "abi/call.rs"]
 #[allow(dead_code)] // of the bad input, the call
 mod call;
 

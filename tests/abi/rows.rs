@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use super::call::{Call, MX};
+use crate::call::{Call, MX};
 use contact_normal::ffi::*;
 
 pub const NULL: i32 = CONTACT_NORMAL_NULL_POINTER;

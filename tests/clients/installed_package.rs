@@ -1,12 +1,10 @@
 //! `make install` gives what pkg-config says: a program compiled with its flags runs, with the shared and with the static
 //! library, and the version is the same wherever it stands.
 
-mod clients;
-
 use std::path::Path;
 use std::process::Command;
 
-use clients::{root, run, scratch};
+use crate::support::{root, run, scratch};
 use contact_normal::ffi::CONTACT_NORMAL_ABI_VERSION;
 
 const PROGRAM: &str = r#"

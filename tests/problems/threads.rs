@@ -1,8 +1,7 @@
 //! Whole solves have the same bits for any number of threads: pressures, displacements, contact area, approach, and the way there.
 
 #[allow(dead_code)] // the benchmark's cases, of which this takes some
-#[path = "../benches/performance/case.rs"]
-mod case;
+use crate::performance as case;
 
 use case::{ellipse, rough, wheel_rail, Case};
 use contact_normal::methods::multigrid::SmootherKind;

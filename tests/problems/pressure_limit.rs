@@ -1,13 +1,11 @@
 //! Effect `pressure_limit`: the conditions of both sides with a direct sum, nothing where the limit is not reached, forces that
 //! cannot be carried, and an independent method.
 
-mod solved;
-
+use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Report, Solver, Stop};
-use solved::run;
 
 fn ball(grid: &Grid) -> Vec<f64> {
     let (mx, my) = (grid.mx, grid.my);

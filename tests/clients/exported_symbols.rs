@@ -1,11 +1,9 @@
 //! The dynamic symbols of the shared library are those of include/exported_symbols.txt, and the header declares each with the
 //! version that it came with.
 
-mod clients;
-
 use std::process::Command;
 
-use clients::{root, run, scratch};
+use crate::support::{root, run, scratch};
 
 /// The committed list.
 fn committed() -> Vec<String> {

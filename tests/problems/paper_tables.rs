@@ -1,8 +1,6 @@
 //! Tables 1, 2 and 3 of the paper. "Measured" is what an exact, independent implementation of the paper's recipe gives.
 
-#[path = "../examples/paper_tables/case.rs"]
-#[allow(dead_code)] // the tables' runs, of which this test uses some
-mod case;
+use crate::paper as case;
 
 use case::{linear_system, whole_problem};
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};

@@ -2,12 +2,8 @@
 //! superposition. The scenes are the same at every run.
 
 #[allow(dead_code)] // of the hard cases, the certificate
-#[path = "hard_cases/case.rs"]
-mod case;
+use crate::families::{case, certificate};
 #[allow(dead_code)]
-#[path = "hard_cases/certificate.rs"]
-mod certificate;
-
 use case::{centre, distance, Case};
 use certificate::{assert_certified, assert_sound, recompute, run_with, Found};
 use contact_normal::grid::Grid;

@@ -1,12 +1,9 @@
 //! The owner of a callback may write into its own arrays while a solve lasts: what the solve needs of them it has taken.
 
-#[path = "bad_input/call.rs"]
-#[allow(dead_code)] // of the bad input, the call
-mod call;
 
 use std::ptr::null_mut;
 
-use call::{Call, Through};
+use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 
 /// The arrays that a callback spoils.

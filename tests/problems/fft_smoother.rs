@@ -1,10 +1,7 @@
 //! V-cycles with the FFT smoother converge on contact areas of every shape, to the pressures that NORM finds.
 
-#[path = "../examples/paper_tables/case.rs"]
-#[allow(dead_code)] // the paper's runs, of which this test uses some
-mod case;
-#[path = "../examples/smoothers/rough.rs"]
-mod rough;
+use crate::paper as case;
+use crate::rough;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};

@@ -1,12 +1,10 @@
 //! A host keeps what is its own: floating-point environment, standard output and error, and its right to fork.
 
-mod clients;
-
 use std::process::Command;
 
-use clients::{root, run, run_linked, scratch};
+use crate::support::{root, run, run_linked, scratch};
 
-/// Compiles tests/host_environment.c and runs one of its parts, which must succeed and print nothing (`run` refuses a word on
+/// Compiles tests/clients/host_environment.c and runs one of its parts, which must succeed and print nothing (`run` refuses a word on
 /// stderr).
 fn host(part: &str) {
     let folder = scratch(&format!("host_{part}"));
@@ -14,7 +12,11 @@ fn host(part: &str) {
     let mut cc = Command::new("cc");
     // No constant folding across a change of the rounding mode.
     cc.args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror", "-O1", "-frounding-math"]);
-    cc.arg("-I").arg(root().join("include")).arg(root().join("tests/host_environment.c")).arg("-o").arg(&program);
+    cc.arg("-I")
+        .arg(root().join("include"))
+        .arg(root().join("tests/clients/host_environment.c"))
+        .arg("-o")
+        .arg(&program);
     run(cc.arg("-L").arg(&folder).args(["-lcontact_normal", "-lm"]));
     assert_eq!(run_linked(&program, &[part], &folder), "", "something was printed");
 }
@@ -34,13 +36,13 @@ fn nothing_is_printed_when_a_call_is_refused() {
     host("silent");
 }
 
-/// Compiles tests/host_threads.c as hosts are that want speed, and runs one of its parts.
+/// Compiles tests/clients/host_threads.c as hosts are that want speed, and runs one of its parts.
 fn host_with_threads(part: &str) {
     let folder = scratch(&format!("host_threads_{part}"));
     let program = folder.join("host_threads");
     let mut cc = Command::new("cc");
     cc.args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror", "-Ofast", "-fopenmp"]);
-    cc.arg("-I").arg(root().join("include")).arg(root().join("tests/host_threads.c")).arg("-o").arg(&program);
+    cc.arg("-I").arg(root().join("include")).arg(root().join("tests/clients/host_threads.c")).arg("-o").arg(&program);
     run(cc.arg("-L").arg(&folder).args(["-lcontact_normal", "-lm", "-lpthread"]));
     let mut host = Command::new(&program);
     host.arg(part).env("LD_LIBRARY_PATH", &folder).env("OMP_WAIT_POLICY", "active").current_dir(&folder);

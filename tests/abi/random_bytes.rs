@@ -1,10 +1,9 @@
 //! Random bytes through the C ABI: every call returns a known status, untouched outputs when it refuses, and the truth when it is OK.
 //! The bytes are the same at every run; fuzz/ has the same targets for cargo-fuzz.
 
-#[path = "random_bytes/target.rs"]
-mod target;
+use crate::target;
 
-/// Segments a target on so many strings of bytes.
+/// Runs a target on so many strings of bytes.
 fn run(runs: u64, target: fn(&[u8])) {
     let mut state = 1u64;
     let mut next = move || {

@@ -29,7 +29,7 @@ pub fn scratch(test: &str) -> PathBuf {
     folder
 }
 
-/// Segments a command to its end; it must succeed. Returns what it printed.
+/// Runs a command to its end; it must succeed. Returns what it printed.
 pub fn run(command: &mut Command) -> String {
     let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
@@ -38,12 +38,12 @@ pub fn run(command: &mut Command) -> String {
     out.into_owned()
 }
 
-/// Segments a program that was linked with the library in `folder`.
+/// Runs a program that was linked with the library in `folder`.
 pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
-/// Segments a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
+/// Runs a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
 /// reachable, or possibly lost, the run-time library of Fortran keeps for its units, and the library's threads for their transforms.
 /// Returns what it printed.
 pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> String {

@@ -1,13 +1,11 @@
 //! The C and C++ clients: the header alone, every example with its expected output and a certificate recomputed from what it
 //! wrote, the layout of every struct, a C++ program, the examples under valgrind.
 
-mod clients;
-
 use std::mem::{offset_of, size_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
+use crate::support::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
@@ -195,11 +193,11 @@ fn the_header_alone_is_clean_c99_and_cxx11() {
 #[test]
 fn a_cxx11_client() {
     let folder = scratch("cxx_client");
-    let program = compile(compiler("g++", "c++11"), "tests/cxx_client.cpp", &folder);
+    let program = compile(compiler("g++", "c++11"), "tests/clients/cxx_client.cpp", &folder);
     assert_eq!(run_linked(&program, &[], &folder), "C++ client: all as expected\n");
 }
 
-/// Lines "struct size" and "struct.member offset", as tests/abi_sizes.c prints them.
+/// Lines "struct size" and "struct.member offset", as tests/clients/abi_sizes.c prints them.
 macro_rules! layout {
     ($($name:ident { $($member:ident),+ $(,)? })+) => {{
         let mut lines = Vec::new();
@@ -266,7 +264,7 @@ fn c_and_rust_agree_on_every_struct() {
         }
     };
     let folder = scratch("abi_sizes");
-    let program = compile(compiler("cc", "c99"), "tests/abi_sizes.c", &folder);
+    let program = compile(compiler("cc", "c99"), "tests/clients/abi_sizes.c", &folder);
     let c: Vec<String> = run_linked(&program, &[], &folder).lines().map(String::from).collect();
     assert_eq!(c, rust);
     let compared: Vec<&str> = c.iter().map(|line| line.split(' ').next().expect("a name")).collect();

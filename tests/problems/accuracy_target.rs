@@ -1,9 +1,7 @@
 //! An accuracy instead of a grid: the true error of the ellipse meets what was asked for, limits end the refinement with the
 //! best result, callbacks cancel it, and what cannot be reached is said.
 
-#[path = "../examples/paper_tables/case.rs"]
-#[allow(dead_code)] // the tables' runs, of which this test uses the problem
-mod case;
+use crate::paper as case;
 
 use contact_normal::analytic::{hertz, hertz_by_force, Hertz};
 use contact_normal::grid::Grid;

@@ -1,15 +1,10 @@
 //! The table of bad input: each row gets its status, a message that names the argument and its value, and untouched outputs.
 
-#[path = "bad_input/call.rs"]
-mod call;
-#[path = "bad_input/rows.rs"]
-mod rows;
-
 use std::ptr::{null, null_mut};
 
-use call::{initialised, last_error, Call, Through, CX, CY};
+use crate::call::{initialised, last_error, Call, Through, CX, CY};
+use crate::rows::*;
 use contact_normal::ffi::*;
-use rows::*;
 
 fn refused(row: &Row, through: Through, handle: *mut contact_normal_solver) {
     let (words, status, change) = row;

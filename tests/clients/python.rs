@@ -1,15 +1,13 @@
 //! Python by ctypes: the example prints what is expected and its solution holds; structs have the layout of the library's;
 //! a process forked after a solve with threads solves too.
 
-mod clients;
-
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, scratch, Recomputed};
+use crate::support::{assert_certified, recompute, root, run, scratch, Recomputed};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};

@@ -1,15 +1,13 @@
 //! Effect `row_tables`: the half-space's tables are no effect, products are those of the direct sum, tables that scale rows have the
 //! solution of plain ones, and the conditions hold with the direct sum, symmetric or not.
 
-mod solved;
-
+use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, RowTables};
 use contact_normal::operator::Toeplitz;
 use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
-use solved::run;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 

@@ -1,8 +1,6 @@
 //! The exact Hertz solution, and the numerical one that converges to it.
 
-#[path = "../examples/paper_tables/case.rs"]
-#[allow(dead_code)] // the tables' runs, of which this test uses some
-mod case;
+use crate::paper as case;
 
 use contact_normal::analytic::{hertz, hertz_by_force};
 use contact_normal::scene::{Bodies, Load, Scene};

@@ -1,12 +1,10 @@
 //! The Fortran module and examples, compiled with gfortran and run: layouts, constants, expected output, certificates,
 //! norm_solve.
 
-mod clients;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clients::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
+use crate::support::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence};
 
@@ -140,7 +138,7 @@ fn norm_solve_keeps_its_promises() {
     ];
     for (i, flags) in all.into_iter().enumerate() {
         let folder = scratch(&format!("fortran_norm_solve_{i}"));
-        let program = compile("tests/norm_solve_cases.f90", flags, &folder);
+        let program = compile("tests/clients/norm_solve_cases.f90", flags, &folder);
         let output = run_linked(&program, &[], &folder);
         // The program stops at the first case that fails; this is its last one.
         assert_eq!(output.lines().last(), Some("the external subroutine"), "{flags:?}\n{output}");
@@ -150,7 +148,7 @@ fn norm_solve_keeps_its_promises() {
 #[test]
 fn the_wrappers_of_the_module_work() {
     let folder = scratch("fortran_module");
-    let program = compile("tests/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);
+    let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);
     assert_eq!(run_linked(&program, &[], &folder), format!("{}\nall hold\n", env!("CARGO_PKG_VERSION")));
 }
 
@@ -173,7 +171,7 @@ fn arrays_that_are_no_targets_are_refused_at_compile_time() {
     }
 }
 
-/// `name offset` lines as tests/fortran_layout.f90 prints them. The pattern without `..` makes sure that no member is
+/// `name offset` lines as tests/clients/fortran_layout.f90 prints them. The pattern without `..` makes sure that no member is
 /// left out.
 macro_rules! layout {
     ($($name:ident: $($member:ident),+;)+) => {{
@@ -194,7 +192,7 @@ macro_rules! layout {
 #[test]
 fn derived_types_are_laid_out_as_the_structs() {
     let folder = scratch("fortran_layout");
-    let program = compile("tests/fortran_layout.f90", &[], &folder);
+    let program = compile("tests/clients/fortran_layout.f90", &[], &folder);
     let expected = layout! {
         contact_normal_influence: struct_size, cx, cy, coefficients;
         contact_normal_layer: struct_size, compliance, compliances;

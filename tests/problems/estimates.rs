@@ -7,9 +7,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, DiscretisationError, LedgerRow, Limit, Method, Options, Report, Stop};
 
-#[path = "../benches/performance/case.rs"]
-#[allow(dead_code)]
-mod case;
+use crate::performance as case;
 
 /// E* = 1.
 const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };

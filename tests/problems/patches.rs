@@ -1,12 +1,10 @@
 //! Effect `patches`: independent ones are scenes of their own, factors of 1 are none, and the equations hold with the direct sum.
 
-mod solved;
-
+use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Patches, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
-use solved::run;
 
 /// Two or three bumps side by side, and whose element is whose: thirds of the grid in x.
 fn bumps(grid: &Grid) -> (Vec<f64>, Vec<i32>) {

@@ -1,8 +1,7 @@
 //! The self-affine rough surface of the benchmarks: many spots of contact.
 
 #[allow(dead_code)]
-#[path = "../benches/performance/case.rs"]
-mod case;
+use crate::performance as case;
 
 use contact_normal::scene::Load;
 use contact_normal::solver::{solve, Options, Stop};
