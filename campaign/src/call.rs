@@ -7,14 +7,14 @@ use std::ptr::{null, null_mut};
 use contact_normal::ffi::*;
 
 use crate::case::{Case, How, Load};
-use crate::effects::Values;
+use crate::effects::{Effects, Values};
 
 /// What outputs hold before a call.
 const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
 
 /// A struct as its `_init` fills it.
-fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
+pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.
     unsafe {
@@ -30,11 +30,12 @@ struct Scene {
     _effects: Box<EffectStructs>,
 }
 
-struct EffectStructs {
+/// A struct for each effect.
+pub struct EffectStructs {
     influence: contact_normal_influence,
     layer: contact_normal_layer,
     limit: contact_normal_pressure_limit,
-    period: contact_normal_period,
+    pub period: contact_normal_period,
     patches: contact_normal_patches,
     row_tables: contact_normal_row_tables,
 }
@@ -47,7 +48,8 @@ fn pointer_if<T>(named: bool, to: &T) -> *const T {
     }
 }
 
-fn effect_structs(case: &Case) -> Box<EffectStructs> {
+/// Structs that point into these effects.
+pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
     let mut structs = Box::new(EffectStructs {
         influence: initialised(contact_normal_influence_init),
         layer: initialised(contact_normal_layer_init),
@@ -56,7 +58,6 @@ fn effect_structs(case: &Case) -> Box<EffectStructs> {
         patches: initialised(contact_normal_patches_init),
         row_tables: initialised(contact_normal_row_tables_init),
     });
-    let effects = &case.effects;
     if let Some(own) = &effects.influence {
         (structs.influence.cx, structs.influence.cy) = (own.cx as i32, own.cy as i32);
         structs.influence.coefficients = own.values.as_ptr();
@@ -85,9 +86,21 @@ fn effect_structs(case: &Case) -> Box<EffectStructs> {
     structs
 }
 
+impl EffectStructs {
+    /// The effects that are there become those of the scene.
+    pub fn point_from(&self, scene: &mut contact_normal_scene, effects: &Effects) {
+        scene.influence = pointer_if(effects.influence.is_some(), &self.influence);
+        scene.layer = pointer_if(effects.layer.is_some(), &self.layer);
+        scene.pressure_limit = pointer_if(effects.limit.is_some(), &self.limit);
+        scene.period = pointer_if(effects.period.is_some(), &self.period);
+        scene.patches = pointer_if(effects.patches.is_some(), &self.patches);
+        scene.row_tables = pointer_if(effects.row_tables.is_some(), &self.row_tables);
+    }
+}
+
 impl Scene {
     fn of(case: &Case) -> Scene {
-        let (effects, structs) = (&case.effects, effect_structs(case));
+        let structs = effect_structs(&case.effects);
         let mut scene = initialised(contact_normal_scene_init);
         (scene.mx, scene.my) = (case.grid.mx as i32, case.grid.my as i32);
         (scene.dx, scene.dy) = (case.grid.dx, case.grid.dy);
@@ -99,12 +112,7 @@ impl Scene {
             }
             Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
         }
-        scene.influence = pointer_if(effects.influence.is_some(), &structs.influence);
-        scene.layer = pointer_if(effects.layer.is_some(), &structs.layer);
-        scene.pressure_limit = pointer_if(effects.limit.is_some(), &structs.limit);
-        scene.period = pointer_if(effects.period.is_some(), &structs.period);
-        scene.patches = pointer_if(effects.patches.is_some(), &structs.patches);
-        scene.row_tables = pointer_if(effects.row_tables.is_some(), &structs.row_tables);
+        structs.point_from(&mut scene, &case.effects);
         Scene { scene, _effects: structs }
     }
 }

@@ -118,7 +118,13 @@ impl Case {
         let how = How::any(random, &scales, &next.h, next.load, self.effects.limit.is_some());
         let set_up = &self.how;
         // What a handle was set up with.
-        next.how = How { smoother: set_up.smoother, threads: set_up.threads, coarsest: set_up.coarsest, ..how };
+        next.how = How {
+            smoother: set_up.smoother,
+            threads: set_up.threads,
+            coarsest: set_up.coarsest,
+            precision: set_up.precision,
+            ..how
+        };
         next
     }
 
@@ -165,8 +171,8 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
         u if u < 0.17 => (1, random.integer(2, if row_tables { 40 } else { 120 })),
         u if u < 0.45 => (random.integer(2, 12), random.integer(2, 12)),
         u if u < 0.94 => (random.integer(8, 24), random.integer(8, 24)),
-        u if u < 0.995 || row_tables => (random.integer(24, 48), random.integer(24, 48)),
-        _ => (random.integer(64, 128), random.integer(64, 128)),
+        u if u < 0.98 || row_tables => (random.integer(24, 48), random.integer(24, 48)),
+        _ => (random.integer(64, 112), random.integer(64, 112)),
     };
     let dx = unit * random.decades(0.1, 1.0);
     // A period's sums take time where elements are slender; 1e4 is what the closed form's rounding allows without one.

@@ -1,10 +1,11 @@
 //! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
 //!
 //! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
-//! `rules` has the promises, `sequence` what a handle promises beyond them, `account` what was run and what failed. Nothing of the
+//! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and what failed. Nothing of the
 //! library is used but the C ABI's functions: a change of its core does not touch this.
 
 pub mod account;
+pub mod bytes;
 pub mod call;
 pub mod case;
 pub mod effects;

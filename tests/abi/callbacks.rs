@@ -1,6 +1,5 @@
 //! The owner of a callback may write into its own arrays while a solve lasts: what the solve needs of them it has taken.
 
-
 use std::ptr::null_mut;
 
 use crate::call::{Call, Through};

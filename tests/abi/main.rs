@@ -3,6 +3,4 @@
 mod bad_input;
 mod call;
 mod callbacks;
-mod random_bytes;
 mod rows;
-mod target;

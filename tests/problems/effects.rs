@@ -1,8 +1,9 @@
 //! Pairs of effects: solved, and then the conditions hold, or refused by names; none silently ignored.
 
+use contact_normal::contact::State;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, RowTables, Table};
+use contact_normal::influence::{HalfSpace, Periodic, RowTables, Table};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
@@ -12,6 +13,36 @@ const EFFECTS: [&str; 7] =
 /// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
 const REFUSED: [(&str, &str); 4] =
     [("influence", "period"), ("period", "patches"), ("influence", "row_tables"), ("period", "row_tables")];
+
+/// The contact conditions, by a direct sum over the coefficients.
+fn assert_conditions(
+    scene: &Scene<'_>,
+    state: &State,
+    coefficient: &dyn Fn(&Scene<'_>, usize, usize) -> f64,
+    names: &[&str; 2],
+) {
+    let (mut residual, mut distance, mut count, mut violation) = (0.0, 0.0, 0.0, 0.0f64);
+    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.at(0));
+    for (i, &h) in scene.undeformed_distance.iter().enumerate() {
+        let p = state.p[i];
+        assert!(p >= 0.0 && p <= limit && (h.is_finite() || p == 0.0), "{names:?}: p = {p}");
+        let u: f64 =
+            (0..state.p.len()).filter(|&j| state.p[j] != 0.0).map(|j| coefficient(scene, i, j) * state.p[j]).sum();
+        let e = h - state.approach + u;
+        if p == limit {
+            violation = violation.max(e);
+        } else if p > 0.0 {
+            (residual, distance, count) = (residual + e * e, distance + (h - state.approach).powi(2), count + 1.0);
+        } else {
+            violation = violation.max(-e);
+        }
+    }
+    // The default tolerance, and round-off of sums of 360 terms.
+    assert!(residual.sqrt() <= (1e-6 + 1e-12) * distance.sqrt(), "{names:?}: {residual:e} of {distance:e}");
+    assert!(violation <= (1e-6 + 1e-12) * f64::sqrt(distance / count), "{names:?}: {violation:e}");
+    let force = state.p.iter().sum::<f64>() * scene.grid.element_area();
+    assert!((force - 0.1).abs() <= 1e-12, "{names:?}: force {force}");
+}
 
 #[test]
 fn every_pair_is_solved_or_refused_and_each_effect_tells() {
@@ -23,12 +54,9 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
     let mut hole = h.clone();
     hole[8 * 20 + 9] = f64::INFINITY;
     let half_space = HalfSpace::new(0.1, 0.1, Bodies::same(1.0, 0.3).compliance());
-    let table: Vec<f64> = (0..4 * grid.len())
-        .map(|i| {
-            let (kx, ky) = ((i % 40) as i64 - 20, (i / 40) as i64 - 18);
-            half_space.at(kx, ky) * (-0.3 * ((kx * kx + ky * ky) as f64).sqrt()).exp()
-        })
-        .collect();
+    let periodic = Periodic::new(half_space.clone(), (true, false), &grid);
+    let table_at = |kx: i64, ky: i64| half_space.at(kx, ky) * (-0.3 * ((kx * kx + ky * ky) as f64).sqrt()).exp();
+    let table: Vec<f64> = (0..4 * grid.len() as i64).map(|i| table_at(i % 40 - 20, i / 40 - 18)).collect();
     let table = Table::new(20, 18, &table, &grid).unwrap();
     // Rows that answer less and less.
     let answers = |iy: i64| 1.0 - 0.03 * iy as f64;
@@ -56,12 +84,24 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             )
         }
     };
+    let coefficient = |scene: &Scene<'_>, i: usize, j: usize| {
+        let (ix, iy, jx, jy) = (i as i64 % 20, i as i64 / 20, j as i64 % 20, j as i64 / 20);
+        let base = match (&scene.influence, &scene.row_tables, scene.period) {
+            (Some(_), ..) => table_at(ix - jx, iy - jy),
+            (_, Some(_), _) => half_space.at(ix - jx, iy - jy) * answers(iy) * answers(jy),
+            (.., Some(_)) => periodic.at(ix - jx, iy - jy),
+            _ => half_space.at(ix - jx, iy - jy),
+        };
+        let factor = if scene.patches.is_some() && patch[i] != patch[j] { 0.2 } else { 1.0 };
+        let layer = if scene.layer.is_some() && i == j { 0.05 } else { 0.0 };
+        factor * base + layer
+    };
     let solved = |names: [&str; 2]| {
-        let (solver, stop, report) =
-            solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
+        let (solver, stop, _) = solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
         assert_eq!(stop, Stop::Converged, "{names:?}");
-        assert!(report.measures.certificate.residual <= 1e-6, "{names:?}");
-        solver.state().p.clone()
+        let state = solver.state();
+        assert_conditions(&with(names), state, &coefficient, &names);
+        state.p.clone()
     };
     for (k, one) in EFFECTS.into_iter().enumerate() {
         let alone = solved([one, one]);

@@ -109,9 +109,24 @@ fn estimating(method: Method) -> Options {
     Options { estimates: true, method, ..Options::default() }
 }
 
+/// Estimates that held their bound, and those that the library refused to give.
+#[derive(Debug, Default)]
+struct Judged {
+    held: usize,
+    refused: usize,
+}
+
+impl Judged {
+    /// An estimate may be refused on grids of odd counts only, which are 2 of 9; and by no more than half of them.
+    fn assert_mostly_given(&self) {
+        assert!(self.held >= 8 * self.refused && self.held > 0, "{self:?}");
+    }
+}
+
 /// The bounds that the project sets itself: an estimate is right to a factor of 3 or so, here on every level from 64 up.
 #[test]
 fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3() {
+    let (mut forces, mut pressures) = (Judged::default(), Judged::default());
     for exact in [ellipse(), sphere(), cone()] {
         for (by_force, method) in [false, true].into_iter().flat_map(|by| METHODS.map(|method| (by, method))) {
             for m in if method == Method::Auto { [64, 96, 128, 200, 256, 512].iter() } else { [64, 128, 256].iter() } {
@@ -119,6 +134,7 @@ fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3()
                 // Rims and peaks lie on coarser grids of odd counts as on no other: then an estimate may be refused.
                 if !m.is_power_of_two() && report.error.untrusted & DiscretisationError::FORCE != 0 {
                     assert_eq!(report.limit, Limit::Unknown);
+                    forces.refused += 1;
                     continue;
                 }
                 assert_eq!(report.limit, Limit::Grid);
@@ -126,14 +142,17 @@ fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3()
                     let what = format!("{} {m}, by force: {by_force}, {method:?}, level {}", exact.name, row.mx);
                     let force = row.error.force / exact.error(row, by_force);
                     assert!((0.3..=3.0).contains(&force), "{what}: {force}");
+                    forces.held += 1;
                     assert_eq!(row.error.untrusted & DiscretisationError::FORCE, 0, "{what}");
                     if let Some(p) = exact.max_pressure {
                         // Centres of elements lie beside the peak on some of the coarser grids and on it on others.
                         if !m.is_power_of_two() && row.error.untrusted & DiscretisationError::MAX_PRESSURE != 0 {
+                            pressures.refused += 1;
                             continue;
                         }
                         let pressure = row.error.max_pressure / (row.measures.max_pressure - p).abs();
                         assert!((0.3..=3.0).contains(&pressure), "{what}: max pressure {pressure}");
+                        pressures.held += 1;
                     } else if m.is_power_of_two() && *m >= 128 {
                         // infinite: there is no estimate, and the report says so
                         assert!(row.error.max_pressure < 0.0, "{what}");
@@ -143,6 +162,8 @@ fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3()
             }
         }
     }
+    forces.assert_mostly_given();
+    pressures.assert_mostly_given();
 }
 
 /// The corrected area is the better one in the mean of many grids, and its correction the error of the area by counting.

@@ -1,7 +1,6 @@
 //! Hard cases: the right answer or a clear status, never a NaN. One file per family in hard_cases/; what is here asks one method, or
 //! one option, for one thing.
 
-
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Influence, Table};

@@ -1,10 +1,15 @@
 //! What random bytes do to the C ABI: they become a scene, options, guesses and a table of coefficients, and whatever comes of that keeps
-//! the promises of the ABI. tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ call this.
+//! the promises of the ABI. campaign/tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ call this.
 
 use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
+
+use crate::call::{effect_structs, initialised, EffectStructs, Outputs};
+use crate::case::{Case, Grid, How, Load};
+use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::rules::is_true;
 
 /// Arrays have room for so many elements.
 const ROOM: usize = 256;
@@ -74,18 +79,13 @@ struct Call {
     displacement: Vec<f64>,
     scene: contact_normal_scene,
     influence: contact_normal_influence,
+    /// The other effects, which the scene points to.
+    effects: Effects,
+    structs: Box<EffectStructs>,
+    distance: Vec<f64>,
     options: contact_normal_options,
     fields: contact_normal_fields,
     report: contact_normal_report,
-}
-
-fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
-    let mut value = std::mem::MaybeUninit::uninit();
-    // SAFETY: `_init` fills a whole struct.
-    unsafe {
-        init(value.as_mut_ptr());
-        value.assume_init()
-    }
 }
 
 impl Call {
@@ -98,6 +98,9 @@ impl Call {
             displacement: vec![SENTINEL; ROOM],
             scene: initialised(contact_normal_scene_init),
             influence: initialised(contact_normal_influence_init),
+            effects: Effects::default(),
+            structs: effect_structs(&Effects::default()),
+            distance: vec![SENTINEL; ROOM],
             options: initialised(contact_normal_options_init),
             fields: initialised(contact_normal_fields_init),
             report: initialised(contact_normal_report_init),
@@ -121,6 +124,7 @@ impl Call {
         call.fields.pressure = call.pressure.as_mut_ptr();
         call.fields.contact = call.contact.as_mut_ptr();
         call.fields.displacement = call.displacement.as_mut_ptr();
+        call.fields.deformed_distance = call.distance.as_mut_ptr();
         if with_table {
             call.set_table(bytes);
         }
@@ -130,6 +134,7 @@ impl Call {
                 *size = (*size).min(bytes.word() as i64);
             }
         }
+        call.set_effects(bytes);
         call
     }
 
@@ -179,15 +184,67 @@ impl Call {
         self.scene.influence = &raw const self.influence;
     }
 
+    /// The other effects: none, one or two of them, of usual values or any. Read last: so bytes that are older than this name none.
+    fn set_effects(&mut self, bytes: &mut Bytes<'_>) {
+        let named = bytes.byte();
+        let n = self.h.len();
+        let values = |bytes: &mut Bytes<'_>, usual: f64| match bytes.byte() % 2 {
+            0 => Values::Uniform(bytes.sometimes(usual)),
+            _ => Values::PerElement((0..n).map(|_| bytes.sometimes(usual)).collect()),
+        };
+        if named & 1 != 0 {
+            self.effects.layer = Some(values(bytes, 0.3));
+        }
+        if named & 2 != 0 {
+            self.effects.limit = Some(values(bytes, 0.2));
+        }
+        if named & 12 == 4 {
+            let count = 1 + usize::from(bytes.byte() % 3);
+            let patch = (0..n).map(|_| bytes.integer(count as u8)).collect();
+            let mut factors: Vec<f64> = (0..count * count).map(|_| bytes.sometimes(0.5)).collect();
+            (0..count).for_each(|a| factors[a * count + a] = bytes.sometimes(1.0));
+            self.effects.patches = Some(Patches { count, patch, factors });
+        }
+        if named & 48 == 16 && self.has_room() {
+            self.set_row_tables(bytes);
+        }
+        self.structs = effect_structs(&self.effects);
+        let scene = &mut self.scene;
+        self.structs.point_from(scene, &self.effects);
+        if named & 192 == 64 {
+            (self.structs.period.x, self.structs.period.y) = (bytes.integer(2), bytes.integer(2));
+            self.effects.period = Some((self.structs.period.x != 0, self.structs.period.y != 0));
+            scene.period = &raw const self.structs.period;
+        }
+        if self.influence.cx > 0 {
+            let (cx, cy) = (self.influence.cx as usize, self.influence.cy as usize);
+            self.effects.influence = Some(OwnCoefficients { cx, cy, values: self.table.clone() });
+            scene.influence = &raw const self.influence;
+        }
+    }
+
+    /// Rows of the half-space's coefficients, of which some become any number.
+    fn set_row_tables(&mut self, bytes: &mut Bytes<'_>) {
+        let (cx, my) = (self.scene.mx as usize, self.scene.my as usize);
+        let quadrant = crate::half_space::free(cx + 1, my, 0.5, 0.25, 0.2);
+        let rows = (0..my * my).flat_map(|k| (-(cx as i64)..cx as i64).map(move |kx| (kx, (k % my).abs_diff(k / my))));
+        let mut values: Vec<f64> = rows.map(|(kx, ky)| quadrant.at(kx, ky as i64)).collect();
+        for _ in 0..bytes.byte() % 8 {
+            let at = bytes.word() as usize % values.len();
+            values[at] = bytes.number();
+        }
+        self.effects.row_tables = Some(OwnCoefficients { cx, cy: my, values });
+    }
+
     /// What a call may write, as bits.
     fn outputs(&self) -> Vec<u64> {
-        let numbers = self.pressure.iter().chain(&self.displacement).map(|value| value.to_bits());
+        let numbers = self.pressure.iter().chain(&self.displacement).chain(&self.distance).map(|value| value.to_bits());
         let report = [self.report.force.to_bits(), self.report.cycles as u64];
         numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).collect()
     }
 
     /// What holds after a call.
-    fn check(&self, status: i32, before: &[u64]) {
+    fn check(&self, status: i32, before: &[u64], fixed: &[i32]) {
         // SAFETY: never NULL, valid until the next call.
         let message = unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().expect("UTF-8");
         assert!((-8..=3).contains(&status), "status {status}: {message}");
@@ -197,64 +254,58 @@ impl Call {
             return;
         }
         let n = (self.scene.mx * self.scene.my) as usize;
-        let (p, u) = (&self.pressure[..n], &self.displacement[..n]);
-        let contact = &self.contact[..n];
-        let fixed = self.options.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
-        assert!(p.iter().all(|p| p.is_finite() && (fixed || *p >= 0.0)), "status {status}: {p:?}");
-        assert!(u.iter().all(|u| u.is_finite()), "status {status}: {u:?}");
-        assert!(contact.iter().all(|&c| c == 0 || c == 1));
-        let options = &self.options;
-        let how = (options.method, options.active_set, options.initial_guess, self.scene.load, options.max_cycles);
-        let outside: Vec<_> = (0..n).filter(|&i| contact[i] == 0 && p[i] != 0.0).map(|i| (p[i], self.h[i])).collect();
-        assert!(outside.is_empty(), "status {status}, {how:?}: pressures outside, and h: {outside:?}");
         assert!(self.pressure[n..].iter().all(|&p| p.to_bits() == SENTINEL.to_bits()), "written beyond the grid");
-        let (approach, force) = (self.report.approach, self.report.force);
-        assert!(
-            approach.is_finite() && force.is_finite(),
-            "status {status}, {how:?}: approach {approach}, force {force}"
-        );
-        let by_residual = self.options.criterion == CONTACT_NORMAL_CRITERION_RESIDUAL;
-        if status == CONTACT_NORMAL_OK && by_residual && self.options.error_ratio == 0.0 {
-            self.certify(p, contact, fixed);
+        let failures = is_true(&self.case(fixed), &self.found(status));
+        assert!(failures.is_empty(), "status {status}: {failures:?}");
+    }
+
+    /// The scene that was accepted.
+    fn case(&self, fixed: &[i32]) -> Case {
+        let (scene, options) = (&self.scene, &self.options);
+        let grid = Grid { mx: scene.mx as usize, my: scene.my as usize, dx: scene.dx, dy: scene.dy };
+        let load = if scene.load == 0 { Load::Approach(scene.approach) } else { Load::Force(scene.force) };
+        let is_fixed = options.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
+        let how = How {
+            method: options.method,
+            smoother: options.smoother,
+            // A discretisation error that is met instead of the tolerance is judged as an update is: by 1e-2.
+            criterion: if options.error_ratio > 0.0 { CONTACT_NORMAL_CRITERION_UPDATE } else { options.criterion },
+            tolerance: options.tolerance,
+            precision: options.precision,
+            threads: options.threads,
+            coarsest: options.coarsest,
+            max_cycles: options.max_cycles,
+            cancel_at: None,
+            fixed: is_fixed.then(|| fixed[..grid.len()].to_vec()),
+            given: None,
+        };
+        Case {
+            seed: 0,
+            grid,
+            shear_modulus: scene.shear_modulus,
+            poisson_ratio: scene.poisson_ratio,
+            surface: "bytes",
+            h: self.h[..grid.len()].to_vec(),
+            load,
+            effects: self.effects.clone(),
+            how,
+            through_handle: false,
         }
     }
 
-    /// Status OK: the residual is within the tolerance, by a product of our own.
-    fn certify(&self, p: &[f64], contact: &[i32], fixed: bool) {
-        let (mx, my) = (self.scene.mx, self.scene.my);
-        let mut table = vec![0.0; (4 * mx * my) as usize];
-        if self.scene.influence.is_null() {
-            let scene = &self.scene;
-            let (g, nu) = (scene.shear_modulus.as_ptr(), scene.poisson_ratio.as_ptr());
-            // SAFETY: two values each, and room for 2 my by 2 mx.
-            let status =
-                unsafe { contact_normal_influence_half_space(mx, my, scene.dx, scene.dy, g, nu, table.as_mut_ptr()) };
-            assert_eq!(status, CONTACT_NORMAL_OK);
-        } else {
-            table.copy_from_slice(&self.table);
+    /// What was returned.
+    fn found(&self, status: i32) -> Outputs {
+        let n = (self.scene.mx * self.scene.my) as usize;
+        Outputs {
+            status,
+            message: String::new(),
+            p: self.pressure[..n].to_vec(),
+            u: self.displacement[..n].to_vec(),
+            e: self.distance[..n].to_vec(),
+            contact: self.contact[..n].to_vec(),
+            report: self.report,
+            written: true,
         }
-        let (mx, my) = (mx as usize, my as usize);
-        let (mut rr, mut dd, mut outside, mut largest, mut count) = (0.0, 0.0, 0.0f64, 0.0f64, 0.0);
-        for i in 0..p.len() {
-            let at = |k: usize| table[(i / mx + my - k / mx) * 2 * mx + i % mx + mx - k % mx];
-            let (u, terms) = (0..p.len())
-                .filter(|&k| p[k] != 0.0)
-                .fold((0.0, 0.0), |(u, terms), k| (u + at(k) * p[k], terms + (at(k) * p[k]).abs()));
-            let distance = self.h[i] - self.report.approach;
-            largest = largest.max(terms);
-            if contact[i] == 1 {
-                (rr, dd, count) = (rr + (distance + u).powi(2), dd + distance * distance, count + 1.0);
-                largest = largest.max(self.h[i].abs()).max(self.report.approach.abs());
-            } else {
-                outside = outside.max(-(distance + u));
-            }
-        }
-        // The FFT rounds to some units of its largest sum, n of them.
-        let rounding = 64.0 * f64::EPSILON * p.len() as f64 * largest;
-        let tolerance = self.options.tolerance;
-        assert!(rr.sqrt() <= tolerance * dd.sqrt() + rounding * f64::sqrt(count), "OK with {rr} of {dd}");
-        let scale = (dd / f64::max(count, 1.0)).sqrt();
-        assert!(fixed || outside <= tolerance * scale + rounding, "OK with {outside} of {scale} outside");
     }
 }
 
@@ -280,21 +331,22 @@ fn solve(data: &[u8], with_table: bool) {
     // SAFETY: structs with the arrays that they declare.
     unsafe {
         if !through_handle {
+            let fixed = call.contact.clone();
             let status = contact_normal_solve(&call.scene, &call.options, &mut call.fields, &mut call.report);
-            call.check(status, &before);
+            call.check(status, &before, &fixed);
             return;
         }
         let mut handle = null_mut();
         let status = contact_normal_solver_new(&call.scene, &call.options, &mut handle);
         if status == CONTACT_NORMAL_OK {
             for _ in 0..2 {
-                let before = call.outputs();
+                let (before, fixed) = (call.outputs(), call.contact.clone());
                 let (options, fields) = (&call.options, &mut call.fields);
                 let status = contact_normal_solver_solve(handle, &call.scene, options, fields, &mut call.report);
-                call.check(status, &before);
+                call.check(status, &before, &fixed);
             }
         } else {
-            call.check(status, &before);
+            call.check(status, &before, &[]);
             assert!(handle.is_null());
         }
         contact_normal_solver_free(handle);
