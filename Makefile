@@ -70,9 +70,9 @@ demo: tools all
 
 # Optimised, with debug assertions and overflow checks on; the feature is for tests/panics.rs.
 test: tools
-	$(CARGO) test --profile checked --locked --features test-panics --lib --tests
-	$(CARGO) build --profile checked --locked --features test-panics --examples
-	$(CARGO) test --profile checked --locked --features test-panics --doc
+	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --lib --bins --tests
+	$(CARGO) build --profile checked --locked --workspace --features contact-normal/test-panics --examples
+	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --doc
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
 SOAK ?= 100000
@@ -110,8 +110,8 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 
 # Local Fourier analysis beside measurement, and docs/local_fourier_analysis.png.
 analysis: tools
-	$(CARGO) run --release --locked --example local_fourier_analysis target/local_fourier_analysis
-	"$(find_python)" benches/local_fourier_analysis.py target/local_fourier_analysis docs/local_fourier_analysis.png
+	$(CARGO) run --release --locked -p local_fourier_analysis target/local_fourier_analysis
+	"$(find_python)" local_fourier_analysis/picture.py target/local_fourier_analysis docs/local_fourier_analysis.png
 
 # What accuracy costs: build/accuracy.csv, the tables of docs/accuracy.md on the screen, its pictures. ACCURACY="--quick".
 ACCURACY ?=

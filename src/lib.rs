@@ -47,7 +47,7 @@
 //! | [`effects`] | one file per effect, and the list of them |
 //! | [`solver`] | how: options, the loops of the methods as prose, the report and its ledger; an accuracy instead of a grid |
 //! | [`projected_cg`] | projected preconditioned conjugate gradients on one grid, and its window |
-//! | [`multigrid`] | section 4.2: grids, transfers, smoothers, the V-cycle; local Fourier analysis of them |
+//! | [`multigrid`] | section 4.2: grids, transfers, smoothers, the V-cycle |
 //! | [`active_set`] | steps 4.1 and 4.2, the guard against cycling, the certificate |
 //! | [`norm`] | section 3: the inner solves of NORM |
 //! | [`operator`] | u = A p by FFT, and by direct summation |

@@ -3,7 +3,7 @@
 //! `cargo run --release --locked --example reliability_table`
 
 #[allow(dead_code)] // the tests' cases, of which this takes a part
-#[path = "../../tests/hard_cases/mod.rs"]
+#[path = "../../tests/problems/families/mod.rs"]
 mod families;
 
 use contact_normal::error::Error;

@@ -1,7 +1,3 @@
 #![no_main]
 
-#[allow(dead_code)]
-#[path = "../../tests/random_bytes/target.rs"]
-mod target;
-
-libfuzzer_sys::fuzz_target!(|data: &[u8]| target::scene_and_options(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| campaign::bytes::scene_and_options(data));

@@ -1,7 +1,5 @@
-//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle; and [local Fourier analysis](analysis) of
-//! them.
+//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle.
 
-pub mod analysis;
 mod coarsest;
 mod cycle;
 mod hierarchy;

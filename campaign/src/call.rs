@@ -1,0 +1,275 @@
+//! Calls of the C ABI.
+
+use std::ffi::{c_void, CStr};
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+
+use contact_normal::ffi::*;
+
+use crate::case::{Case, How, Load};
+use crate::effects::{Effects, Values};
+
+/// What outputs hold before a call.
+const SENTINEL: f64 = -12345.678;
+const SENTINEL_CONTACT: i32 = -77;
+
+/// A struct as its `_init` fills it.
+pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
+    let mut value = MaybeUninit::uninit();
+    // SAFETY: `_init` fills a whole struct.
+    unsafe {
+        init(value.as_mut_ptr());
+        value.assume_init()
+    }
+}
+
+/// A scene whose effects point into a case.
+struct Scene {
+    scene: contact_normal_scene,
+    // Boxed: the scene points to them.
+    _effects: Box<EffectStructs>,
+}
+
+/// A struct for each effect.
+pub struct EffectStructs {
+    influence: contact_normal_influence,
+    layer: contact_normal_layer,
+    limit: contact_normal_pressure_limit,
+    pub period: contact_normal_period,
+    patches: contact_normal_patches,
+    row_tables: contact_normal_row_tables,
+}
+
+fn pointer_if<T>(named: bool, to: &T) -> *const T {
+    if named {
+        to
+    } else {
+        null()
+    }
+}
+
+/// Structs that point into these effects.
+pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
+    let mut structs = Box::new(EffectStructs {
+        influence: initialised(contact_normal_influence_init),
+        layer: initialised(contact_normal_layer_init),
+        limit: initialised(contact_normal_pressure_limit_init),
+        period: initialised(contact_normal_period_init),
+        patches: initialised(contact_normal_patches_init),
+        row_tables: initialised(contact_normal_row_tables_init),
+    });
+    if let Some(own) = &effects.influence {
+        (structs.influence.cx, structs.influence.cy) = (own.cx as i32, own.cy as i32);
+        structs.influence.coefficients = own.values.as_ptr();
+    }
+    if let Some(own) = &effects.row_tables {
+        (structs.row_tables.cx, structs.row_tables.rows) = (own.cx as i32, own.cy as i32);
+        structs.row_tables.coefficients = own.values.as_ptr();
+    }
+    match &effects.layer {
+        Some(Values::Uniform(value)) => structs.layer.compliance = *value,
+        Some(Values::PerElement(values)) => structs.layer.compliances = values.as_ptr(),
+        None => {}
+    }
+    match &effects.limit {
+        Some(Values::Uniform(value)) => structs.limit.limit = *value,
+        Some(Values::PerElement(values)) => structs.limit.limits = values.as_ptr(),
+        None => {}
+    }
+    if let Some((x, y)) = effects.period {
+        (structs.period.x, structs.period.y) = (i32::from(x), i32::from(y));
+    }
+    if let Some(patches) = &effects.patches {
+        structs.patches.count = patches.count as i32;
+        (structs.patches.patch, structs.patches.factors) = (patches.patch.as_ptr(), patches.factors.as_ptr());
+    }
+    structs
+}
+
+impl EffectStructs {
+    /// The effects that are there become those of the scene.
+    pub fn point_from(&self, scene: &mut contact_normal_scene, effects: &Effects) {
+        scene.influence = pointer_if(effects.influence.is_some(), &self.influence);
+        scene.layer = pointer_if(effects.layer.is_some(), &self.layer);
+        scene.pressure_limit = pointer_if(effects.limit.is_some(), &self.limit);
+        scene.period = pointer_if(effects.period.is_some(), &self.period);
+        scene.patches = pointer_if(effects.patches.is_some(), &self.patches);
+        scene.row_tables = pointer_if(effects.row_tables.is_some(), &self.row_tables);
+    }
+}
+
+impl Scene {
+    fn of(case: &Case) -> Scene {
+        let structs = effect_structs(&case.effects);
+        let mut scene = initialised(contact_normal_scene_init);
+        (scene.mx, scene.my) = (case.grid.mx as i32, case.grid.my as i32);
+        (scene.dx, scene.dy) = (case.grid.dx, case.grid.dy);
+        scene.undeformed_distance = case.h.as_ptr();
+        (scene.shear_modulus, scene.poisson_ratio) = (case.shear_modulus, case.poisson_ratio);
+        match case.load {
+            Load::Approach(approach) => {
+                (scene.load, scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, approach);
+            }
+            Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
+        }
+        structs.point_from(&mut scene, &case.effects);
+        Scene { scene, _effects: structs }
+    }
+}
+
+/// Cancels in a given call.
+struct Canceller {
+    calls: u32,
+    at: u32,
+}
+
+unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
+    // SAFETY: `user` is the canceller of this call.
+    let canceller = unsafe { &mut *user.cast::<Canceller>() };
+    canceller.calls += 1;
+    i32::from(canceller.calls >= canceller.at)
+}
+
+fn options(how: &How, previous: bool, canceller: &mut Canceller) -> contact_normal_options {
+    let mut options = initialised(contact_normal_options_init);
+    (options.method, options.smoother, options.criterion) = (how.method, how.smoother, how.criterion);
+    (options.tolerance, options.precision, options.threads) = (how.tolerance, how.precision, how.threads);
+    (options.coarsest, options.max_cycles) = (how.coarsest, how.max_cycles);
+    options.active_set = i32::from(how.fixed.is_some());
+    options.initial_guess = match (previous, &how.given) {
+        (true, _) => CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS,
+        (_, Some(_)) => CONTACT_NORMAL_INITIAL_GUESS_GIVEN,
+        _ => CONTACT_NORMAL_INITIAL_GUESS_NONE,
+    };
+    if let Some(at) = how.cancel_at {
+        *canceller = Canceller { calls: 0, at };
+        options.progress = Some(cancel);
+        options.user = (&raw mut *canceller).cast();
+    }
+    options
+}
+
+/// What a call returned.
+pub struct Outputs {
+    pub status: i32,
+    pub message: String,
+    pub p: Vec<f64>,
+    pub u: Vec<f64>,
+    pub e: Vec<f64>,
+    pub contact: Vec<i32>,
+    pub report: contact_normal_report,
+    /// Whether something was written.
+    pub written: bool,
+}
+
+impl Outputs {
+    /// Bits that have to be the same where the same is asked for twice.
+    pub fn bits(&self) -> Vec<u64> {
+        let numbers = self.p.iter().chain(&self.u).chain(&self.e).map(|value| value.to_bits());
+        let counts = [self.report.approach.to_bits(), self.report.cycles as u64, self.status as u64];
+        numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(counts).collect()
+    }
+}
+
+/// Arrays full of sentinels, with what is read from them.
+fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
+    let n = case.grid.len();
+    let given = case.how.given.clone();
+    let fixed = case.how.fixed.clone();
+    // With a guess the area is read too.
+    let of_guess = |p: &Vec<f64>| p.iter().map(|&p| i32::from(p > 0.0)).collect();
+    let contact = fixed.or_else(|| given.as_ref().map(of_guess)).unwrap_or_else(|| vec![SENTINEL_CONTACT; n]);
+    let mut outputs = Outputs {
+        status: 0,
+        message: String::new(),
+        p: given.unwrap_or_else(|| vec![SENTINEL; n]),
+        u: vec![SENTINEL; n],
+        e: vec![SENTINEL; n],
+        contact,
+        report: initialised(contact_normal_report_init),
+        written: false,
+    };
+    let mut fields = initialised(contact_normal_fields_init);
+    (fields.pressure, fields.displacement) = (outputs.p.as_mut_ptr(), outputs.u.as_mut_ptr());
+    (fields.deformed_distance, fields.contact) = (outputs.e.as_mut_ptr(), outputs.contact.as_mut_ptr());
+    (outputs.report.force, outputs.report.cycles) = (SENTINEL, -1);
+    (outputs, fields)
+}
+
+/// A handle of the library's.
+pub struct Handle(*mut contact_normal_solver);
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        // SAFETY: made by `contact_normal_solver_new`, or NULL.
+        unsafe { contact_normal_solver_free(self.0) }
+    }
+}
+
+fn last_error() -> String {
+    // SAFETY: never NULL, valid until the next call.
+    unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_string_lossy().into_owned()
+}
+
+impl Handle {
+    /// Set up for a case, or the status and why not.
+    pub fn new(case: &Case) -> Result<Handle, (i32, String)> {
+        let mut canceller = Canceller { calls: 0, at: 0 };
+        let (scene, options) = (Scene::of(case), options(&case.how, false, &mut canceller));
+        let mut handle = null_mut();
+        // SAFETY: structs with the arrays that they declare.
+        let status = unsafe { contact_normal_solver_new(&scene.scene, &options, &mut handle) };
+        match status {
+            CONTACT_NORMAL_OK => Ok(Handle(handle)),
+            _ => Err((status, last_error())),
+        }
+    }
+
+    /// Solves a case with this handle.
+    pub fn solve(&mut self, case: &Case, previous: bool) -> Outputs {
+        run(case, previous, |scene, options, fields, report| {
+            // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
+            unsafe { contact_normal_solver_solve(self.0, scene, options, fields, report) }
+        })
+    }
+
+    /// The pressures that it holds, if it says that it does.
+    pub fn pressures(&self, n: usize) -> Option<Vec<f64>> {
+        let mut p = vec![SENTINEL; n];
+        let mut fields = initialised(contact_normal_fields_init);
+        fields.pressure = p.as_mut_ptr();
+        // SAFETY: room for n values.
+        let status = unsafe { contact_normal_solver_fields(self.0, &mut fields) };
+        (status == CONTACT_NORMAL_OK).then_some(p)
+    }
+}
+
+/// Solves a case on its own.
+pub fn solve(case: &Case) -> Outputs {
+    run(case, false, |scene, options, fields, report| {
+        // SAFETY: structs with the arrays that they declare.
+        unsafe { contact_normal_solve(scene, options, fields, report) }
+    })
+}
+
+fn run(
+    case: &Case,
+    previous: bool,
+    call: impl FnOnce(
+        *const contact_normal_scene,
+        *const contact_normal_options,
+        *mut contact_normal_fields,
+        *mut contact_normal_report,
+    ) -> i32,
+) -> Outputs {
+    let (mut outputs, mut fields) = outputs(case);
+    let mut canceller = Canceller { calls: 0, at: 0 };
+    let (scene, options) = (Scene::of(case), options(&case.how, previous, &mut canceller));
+    let before = outputs.bits();
+    let force = outputs.report.force.to_bits();
+    let status = call(&scene.scene, &options, &mut fields, &mut outputs.report);
+    outputs.written = outputs.bits() != before || outputs.report.force.to_bits() != force;
+    outputs.status = status;
+    outputs.message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
+    outputs
+}

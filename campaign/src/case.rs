@@ -1,0 +1,276 @@
+//! One case: a scene with its effects and how it is to be solved, made from a seed.
+
+use contact_normal::ffi::*;
+
+use crate::effects::{self, Effects};
+use crate::half_space::compliance;
+use crate::operator::Operator;
+use crate::random::Random;
+use crate::surface;
+
+/// The elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    pub mx: usize,
+    pub my: usize,
+    pub dx: f64,
+    pub dy: f64,
+}
+
+impl Grid {
+    pub fn len(&self) -> usize {
+        self.mx * self.my
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub fn element_area(&self) -> f64 {
+        self.dx * self.dy
+    }
+}
+
+/// What is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    Approach(f64),
+    Force(f64),
+}
+
+/// How it is to be solved.
+#[derive(Clone, Debug)]
+pub struct How {
+    pub method: i32,
+    pub smoother: i32,
+    pub criterion: i32,
+    pub tolerance: f64,
+    pub precision: i32,
+    pub threads: i32,
+    pub coarsest: i32,
+    pub max_cycles: i32,
+    /// Cancelled by the callback in this call of it.
+    pub cancel_at: Option<u32>,
+    /// The contact area, where it is fixed.
+    pub fixed: Option<Vec<i32>>,
+    /// Pressures to start from.
+    pub given: Option<Vec<f64>>,
+}
+
+/// A scene and how it is to be solved.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub seed: u64,
+    pub grid: Grid,
+    pub shear_modulus: [f64; 2],
+    pub poisson_ratio: [f64; 2],
+    pub surface: &'static str,
+    pub h: Vec<f64>,
+    pub load: Load,
+    pub effects: Effects,
+    pub how: How,
+    /// Solved through a handle, by a sequence of calls.
+    pub through_handle: bool,
+}
+
+impl Case {
+    /// The case of a seed.
+    pub fn new(seed: u64) -> Case {
+        let mut random = Random::new(seed);
+        let random = &mut random;
+        let unit = if random.chance(0.3) { 10f64.powi(random.integer(0, 12) as i32 - 6) } else { 1.0 };
+        let modulus = if random.chance(0.3) { 10f64.powi(random.integer(0, 20) as i32 - 8) } else { 1.0 };
+        let kinds = effects::kinds(random);
+        let grid = elements(random, kinds.period.is_some(), kinds.row_tables, unit);
+        let shear_modulus =
+            [modulus, if random.chance(0.3) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) }];
+        let poisson_ratio = [random.between(-0.9, 0.5), 0.3];
+        let (surface, mut h) = surface::any(random, grid.mx, grid.my);
+        let height = unit * random.decades(1e-4, 1.0);
+        let offset = if random.chance(0.04) { 1e9 * unit } else { 0.0 };
+        h.iter_mut().for_each(|h| *h = *h * height + offset);
+        let c = compliance(shear_modulus, poisson_ratio);
+        let mut effects = effects::make(random, &kinds, &grid, c);
+        let scales = Scales::of(&h, &effects, &grid, c);
+        let load = load(random, &scales, &grid);
+        if kinds.limit {
+            effects.limit = Some(effects::limit(random, &scales, load, &h, &grid));
+        }
+        let how = How::any(random, &scales, &h, load, kinds.limit);
+        let through_handle = random.chance(0.2);
+        Case { seed, grid, shear_modulus, poisson_ratio, surface, h, load, effects, how, through_handle }
+    }
+
+    /// The same with another surface and load, as the next call of a sequence has it.
+    pub fn next(&self, random: &mut Random) -> Case {
+        let mut next = self.clone();
+        let c = compliance(self.shear_modulus, self.poisson_ratio);
+        let before = Scales::of(&self.h, &self.effects, &self.grid, c);
+        if random.chance(0.5) {
+            let (name, h) = surface::any(random, self.grid.mx, self.grid.my);
+            (next.surface, next.h) = (name, h.iter().map(|h| h * before.depth).collect());
+        }
+        let scales = Scales::of(&next.h, &self.effects, &self.grid, c);
+        next.load = load(random, &scales, &self.grid);
+        if self.effects.limit.is_some() {
+            next.effects.limit = Some(effects::limit(random, &scales, next.load, &next.h, &self.grid));
+        }
+        let how = How::any(random, &scales, &next.h, next.load, self.effects.limit.is_some());
+        let set_up = &self.how;
+        // What a handle was set up with.
+        next.how = How {
+            smoother: set_up.smoother,
+            threads: set_up.threads,
+            coarsest: set_up.coarsest,
+            precision: set_up.precision,
+            ..how
+        };
+        next
+    }
+
+    /// u = A p, by the test's own coefficients.
+    pub fn operator(&self) -> Operator<'_> {
+        Operator::new(&self.grid, compliance(self.shear_modulus, self.poisson_ratio), &self.effects)
+    }
+
+    /// The method's name.
+    pub fn method(&self) -> &'static str {
+        ["AUTO", "NORM", "MULTIGRID", "FULL_MULTIGRID", "PROJECTED_CG"][self.how.method as usize]
+    }
+
+    /// What the scene is, in one line.
+    pub fn describe(&self) -> String {
+        let Grid { mx, my, dx, dy } = self.grid;
+        let how = &self.how;
+        let load = match self.load {
+            Load::Approach(_) => "approach",
+            Load::Force(_) => "force",
+        };
+        let start = match (&how.fixed, &how.given) {
+            (Some(_), _) => ", fixed area",
+            (_, Some(_)) => ", given",
+            _ => "",
+        };
+        let criterion = if how.criterion == CONTACT_NORMAL_CRITERION_UPDATE { ", update" } else { "" };
+        let handle = if self.through_handle { ", handle" } else { "" };
+        format!(
+            "{mx} x {my} of {dx:.2e} x {dy:.2e}, {}, {}, {load}, {} {:.0e}{criterion}{start}{handle}",
+            self.surface,
+            self.effects.name(),
+            self.method(),
+            how.tolerance
+        )
+    }
+}
+
+/// The grid.
+fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) -> Grid {
+    let (mx, my) = match random.uniform() {
+        u if u < 0.03 => (1, 1),
+        u if u < 0.10 => (random.integer(2, 120), 1),
+        u if u < 0.17 => (1, random.integer(2, if row_tables { 40 } else { 120 })),
+        u if u < 0.45 => (random.integer(2, 12), random.integer(2, 12)),
+        u if u < 0.94 => (random.integer(8, 24), random.integer(8, 24)),
+        u if u < 0.98 || row_tables => (random.integer(24, 48), random.integer(24, 48)),
+        _ => (random.integer(64, 112), random.integer(64, 112)),
+    };
+    let dx = unit * random.decades(0.1, 1.0);
+    // A period's sums take time where elements are slender; 1e4 is what the closed form's rounding allows without one.
+    let slenderness: f64 = if periodic { 8.0 } else { 1e4 };
+    let dy = match random.uniform() {
+        u if u < 0.4 => dx,
+        u if u < 0.9 => dx * random.decades(0.25, 4.0),
+        _ => dx * random.decades(1.0 / slenderness, slenderness),
+    };
+    Grid { mx, my, dx, dy }
+}
+
+/// Of what size a scene's distances and pressures are.
+pub struct Scales {
+    pub lowest: f64,
+    /// Between the lowest and the highest point, or what a flat surface has instead.
+    pub depth: f64,
+    pub pressure: f64,
+}
+
+impl Scales {
+    pub fn of(h: &[f64], effects: &Effects, grid: &Grid, c: f64) -> Scales {
+        let finite = || h.iter().copied().filter(|h| h.is_finite());
+        let (lowest, highest) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        let own = Operator::new(grid, c, effects).diagonal();
+        let size = (grid.mx as f64 * grid.dx).max(grid.my as f64 * grid.dy);
+        let depth = if highest > lowest { highest - lowest } else { 1e-3 * size };
+        Scales { lowest, depth, pressure: depth / (own * (grid.len() as f64).sqrt()) }
+    }
+}
+
+fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
+    if random.chance(0.5) {
+        let part = match random.uniform() {
+            u if u < 0.05 => -0.1,
+            u if u < 0.1 => 0.0,
+            u if u < 0.2 => 3.0,
+            u if u < 0.6 => random.between(0.3, 1.0),
+            _ => random.decades(1e-3, 1.0),
+        };
+        return Load::Approach(scales.lowest + part * scales.depth);
+    }
+    let part = if random.chance(0.02) { 0.0 } else { random.decades(1e-3, 30.0) };
+    Load::Force(part * scales.pressure * grid.element_area() * grid.len() as f64)
+}
+
+impl How {
+    fn any(random: &mut Random, scales: &Scales, h: &[f64], load: Load, limited: bool) -> How {
+        let method = if random.chance(0.5) { CONTACT_NORMAL_METHOD_AUTO } else { random.integer(1, 4) as i32 };
+        let fixed = random.chance(if limited { 0.01 } else { 0.08 }).then(|| contact_area(random, scales, h, load));
+        let given = random.chance(0.2).then(|| guess(random, scales, h.len()));
+        How {
+            method,
+            smoother: if random.chance(0.6) { 0 } else { random.integer(1, 4) as i32 },
+            criterion: i32::from(random.chance(0.25)),
+            tolerance: if random.chance(0.05) { 0.1 } else { 10f64.powi(-(random.integer(4, 8) as i32)) },
+            precision: random.integer(0, 2) as i32,
+            threads: if random.chance(0.05) { 2 } else { 1 },
+            coarsest: if random.chance(0.8) { 4 } else { random.integer(1, 9) as i32 },
+            max_cycles: if random.chance(0.08) { random.integer(1, 6) as i32 } else { 1000 },
+            cancel_at: random.chance(0.05).then(|| random.integer(1, 4) as u32),
+            fixed,
+            given,
+        }
+    }
+
+    /// Whether it may go on as long as the defaults let it.
+    pub fn is_unhindered(&self) -> bool {
+        self.max_cycles == 1000 && self.cancel_at.is_none()
+    }
+}
+
+/// A contact area of at least one element, all of them with a surface.
+fn contact_area(random: &mut Random, scales: &Scales, h: &[f64], load: Load) -> Vec<i32> {
+    let level = match load {
+        Load::Approach(approach) => approach,
+        Load::Force(_) => scales.lowest + 0.5 * scales.depth,
+    };
+    let scattered = random.chance(0.3);
+    let inside = |h: f64, chosen: bool| h.is_finite() && if scattered { chosen } else { h <= level };
+    let mut contact: Vec<i32> = h.iter().map(|&h| i32::from(inside(h, random.chance(0.5)))).collect();
+    if contact.iter().all(|&c| c == 0) {
+        contact[h.iter().position(|h| h.is_finite()).unwrap_or(0)] = 1;
+    }
+    contact
+}
+
+/// Pressures of every kind: none, noise, far too large, one element.
+fn guess(random: &mut Random, scales: &Scales, n: usize) -> Vec<f64> {
+    let kind = random.integer(0, 4);
+    let only = random.integer(0, n - 1);
+    let value = |i: usize, random: &mut Random| match kind {
+        0 => 0.0,
+        1 => scales.pressure * random.uniform(),
+        2 => scales.pressure * 1e12 * random.uniform(),
+        3 => scales.pressure * random.between(-1.0, 1.0),
+        _ if i == only => scales.pressure,
+        _ => 0.0,
+    };
+    (0..n).map(|i| value(i, random)).collect()
+}

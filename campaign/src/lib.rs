@@ -1,0 +1,64 @@
+//! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
+//!
+//! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
+//! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and what failed. Nothing of the
+//! library is used but the C ABI's functions: a change of its core does not touch this.
+
+pub mod account;
+pub mod bytes;
+pub mod call;
+pub mod case;
+pub mod effects;
+pub mod half_space;
+pub mod operator;
+pub mod random;
+pub mod rules;
+pub mod sequence;
+pub mod surface;
+
+use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::time::Instant;
+
+use case::Case;
+use rules::Failure;
+
+/// What came of one case.
+pub struct Run {
+    pub case: Case,
+    pub statuses: Vec<i32>,
+    pub failures: Vec<Failure>,
+    pub seconds: f64,
+}
+
+/// A case of the campaign's sizes that takes longer hangs. (The largest take a second, with all cores busy.)
+const TOO_LONG: f64 = 20.0;
+
+/// Runs the case of a seed.
+pub fn run(seed: u64) -> Run {
+    let case = Case::new(seed);
+    let began = Instant::now();
+    let outcome = catch_unwind(AssertUnwindSafe(|| if case.through_handle { sequence(&case) } else { single(&case) }));
+    let (statuses, mut failures) = outcome.unwrap_or_else(|panic| {
+        let details = panic.downcast_ref::<String>().cloned().unwrap_or_default();
+        (Vec::new(), vec![Failure { promise: "no panic", details }])
+    });
+    let seconds = began.elapsed().as_secs_f64();
+    if seconds > TOO_LONG {
+        failures.push(Failure { promise: "bounded time", details: format!("{seconds:.1} s") });
+    }
+    Run { case, statuses, failures, seconds }
+}
+
+fn sequence(case: &Case) -> (Vec<i32>, Vec<Failure>) {
+    let found = sequence::run(case);
+    (found.statuses, found.failures)
+}
+
+fn single(case: &Case) -> (Vec<i32>, Vec<Failure>) {
+    let found = call::solve(case);
+    let mut failures = rules::check(case, &found);
+    if call::solve(case).bits() != found.bits() {
+        failures.push(Failure { promise: "the same call twice has the same bits", details: String::new() });
+    }
+    (vec![found.status], failures)
+}

@@ -1,0 +1,178 @@
+//! u = A p by direct summation, for every effect, and what rounding may do to it.
+
+use crate::case::Grid;
+use crate::effects::{Effects, OwnCoefficients, Values};
+use crate::half_space::{free, periodic, Quadrant};
+
+/// Where the coefficients come from.
+enum Coefficients<'a> {
+    HalfSpace(Quadrant),
+    Table(&'a OwnCoefficients),
+    RowTables(&'a OwnCoefficients),
+}
+
+/// A.
+pub struct Operator<'a> {
+    grid: Grid,
+    effects: &'a Effects,
+    coefficients: Coefficients<'a>,
+    /// 2-norm of all coefficients that a transform of the operator holds.
+    norm: f64,
+}
+
+impl<'a> Operator<'a> {
+    /// Of a scene's effects; `c` is the bodies' compliance over pi.
+    pub fn new(grid: &Grid, c: f64, effects: &'a Effects) -> Operator<'a> {
+        let Grid { mx, my, dx, dy } = *grid;
+        let coefficients = match (&effects.influence, &effects.row_tables, effects.period) {
+            (Some(own), ..) => Coefficients::Table(own),
+            (_, Some(own), _) => Coefficients::RowTables(own),
+            (.., Some(period)) => Coefficients::HalfSpace(periodic(mx, my, dx, dy, c, period)),
+            _ => Coefficients::HalfSpace(free(mx, my, dx, dy, c)),
+        };
+        let values = match &coefficients {
+            Coefficients::HalfSpace(quadrant) => &quadrant.values,
+            Coefficients::Table(own) | Coefficients::RowTables(own) => &own.values,
+        };
+        // Four quadrants.
+        let norm = 2.0 * values.iter().map(|v| v * v).sum::<f64>().sqrt();
+        Operator { grid: *grid, effects, coefficients, norm }
+    }
+
+    /// The coefficient of the middle element on itself, with its layer.
+    pub fn diagonal(&self) -> f64 {
+        let (ix, iy) = (self.grid.mx / 2, self.grid.my / 2);
+        let layer = self.effects.layer.as_ref().map_or(0.0, |layer| layer.at(iy * self.grid.mx + ix));
+        let mut row = vec![0.0; self.grid.mx];
+        self.add(ix, iy, iy, 1.0, &mut row);
+        let own = row[ix] + layer;
+        // A single element of two periods displaces nothing.
+        if own > 0.0 {
+            own
+        } else {
+            free(1, 1, self.grid.dx, self.grid.dy, 1.0).at(0, 0)
+        }
+    }
+
+    /// Adds what a pressure on `(jx, jy)` displaces in row iy.
+    fn add(&self, jx: usize, jy: usize, iy: usize, pressure: f64, row: &mut [f64]) {
+        let mx = self.grid.mx;
+        match &self.coefficients {
+            Coefficients::HalfSpace(quadrant) => {
+                let values = &quadrant.values[iy.abs_diff(jy) * mx..][..mx];
+                let (left, right) = row.split_at_mut(jx);
+                left.iter_mut().zip(values[..=jx].iter().rev()).for_each(|(u, a)| *u += a * pressure);
+                right.iter_mut().zip(values).for_each(|(u, a)| *u += a * pressure);
+            }
+            Coefficients::Table(own) => {
+                let start = (iy + own.cy - jy) * 2 * own.cx + own.cx - jx;
+                row.iter_mut().zip(&own.values[start..]).for_each(|(u, a)| *u += a * pressure);
+            }
+            Coefficients::RowTables(own) => {
+                let start = (jy * own.cy + iy) * 2 * own.cx + own.cx - jx;
+                row.iter_mut().zip(&own.values[start..]).for_each(|(u, a)| *u += a * pressure);
+            }
+        }
+    }
+
+    /// u = A p.
+    pub fn displace(&self, p: &[f64]) -> Vec<f64> {
+        let Grid { mx, my, .. } = self.grid;
+        let mut u = vec![0.0; p.len()];
+        let mut row = vec![0.0; mx];
+        for j in (0..p.len()).filter(|&j| p[j] != 0.0) {
+            for iy in 0..my {
+                let to = &mut u[iy * mx..][..mx];
+                let Some(patches) = &self.effects.patches else {
+                    self.add(j % mx, j / mx, iy, p[j], to);
+                    continue;
+                };
+                row.fill(0.0);
+                self.add(j % mx, j / mx, iy, p[j], &mut row);
+                let factors = &patches.factors[patches.patch[j] as usize * patches.count..];
+                let of = &patches.patch[iy * mx..];
+                to.iter_mut().zip(&row).zip(of).for_each(|((u, v), &patch)| *u += factors[patch as usize] * v);
+            }
+        }
+        if let Some(layer) = &self.effects.layer {
+            u.iter_mut().zip(p).enumerate().for_each(|(i, (u, p))| *u += layer.at(i) * p);
+        }
+        u
+    }
+
+    /// What rounding may do to a displacement: of the coefficients here, `n` terms here, and of a product by FFT there, whose error
+    /// is at most some units of round-off times log2 of its length times the 2-norms of both factors (Higham, Accuracy and Stability
+    /// of Numerical Algorithms, section 24.1).
+    pub fn rounding(&self, p: &[f64]) -> f64 {
+        let (sum, squares) = p.iter().fold((0.0, 0.0), |(sum, squares), p| (sum + p.abs(), squares + p * p));
+        let coefficients = match &self.coefficients {
+            Coefficients::HalfSpace(quadrant) => quadrant.rounding,
+            _ => 0.0,
+        };
+        let layer = match &self.effects.layer {
+            Some(Values::Uniform(value)) => *value,
+            Some(Values::PerElement(values)) => values.iter().fold(0.0, |largest: f64, v| largest.max(*v)),
+            None => 0.0,
+        };
+        let largest = p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
+        let steps = 4.0 + (4.0 * p.len() as f64).log2();
+        // A layer of the same value everywhere is a part of the coefficients.
+        let norms = (self.norm + layer) * squares.sqrt();
+        coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    const GRID: Grid = Grid { mx: 5, my: 4, dx: 0.5, dy: 0.7 };
+
+    /// A table and row tables of the half-space displace as the half-space does.
+    #[test]
+    fn the_three_kinds_of_coefficients_agree() {
+        let Grid { mx, my, dx, dy } = GRID;
+        let mut random = Random::new(1);
+        let p: Vec<f64> = (0..GRID.len()).map(|_| random.uniform()).collect();
+        let plain = Effects::default();
+        let expected = Operator::new(&GRID, 1.0, &plain).displace(&p);
+        let quadrant = free(mx + 2, my + 2, dx, dy, 1.0);
+        let (cx, cy) = (mx as i64 + 1, my as i64);
+        let offsets = (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky)));
+        let values = offsets.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
+        let table = OwnCoefficients { cx: mx + 1, cy: my, values };
+        let pairs = (0..my * my).flat_map(|k| (-cx..cx).map(move |kx| (kx, (k % my).abs_diff(k / my) as i64)));
+        let values = pairs.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
+        let row_tables = OwnCoefficients { cx: mx + 1, cy: my, values };
+        for effects in [
+            Effects { influence: Some(table), ..Effects::default() },
+            Effects { row_tables: Some(row_tables), ..Effects::default() },
+        ] {
+            let found = Operator::new(&GRID, 1.0, &effects).displace(&p);
+            // 20 terms.
+            assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 20.0 * f64::EPSILON * b), "{found:?}");
+        }
+    }
+
+    /// The sum as it is written, element by element.
+    #[test]
+    fn patches_and_a_layer_enter_as_their_formulas_say() {
+        let mut random = Random::new(2);
+        let patches = crate::effects::patches(&mut random, &GRID);
+        let layer = crate::effects::layer(&mut random, &GRID, 1.0);
+        let p: Vec<f64> = (0..GRID.len()).map(|_| random.uniform()).collect();
+        let quadrant = free(GRID.mx, GRID.my, GRID.dx, GRID.dy, 1.0);
+        let effects = Effects { patches: Some(patches.clone()), layer: Some(layer.clone()), ..Effects::default() };
+        let found = Operator::new(&GRID, 1.0, &effects).displace(&p);
+        for (i, found) in found.iter().enumerate() {
+            let term = |j: usize| {
+                let factor = patches.factors[patches.patch[i] as usize * patches.count + patches.patch[j] as usize];
+                let (kx, ky) = ((i % GRID.mx).abs_diff(j % GRID.mx), (i / GRID.mx).abs_diff(j / GRID.mx));
+                factor * quadrant.at(kx as i64, ky as i64) * p[j]
+            };
+            let expected = (0..p.len()).map(term).sum::<f64>() + layer.at(i) * p[i];
+            assert!((found - expected).abs() <= 40.0 * f64::EPSILON * expected, "{i}: {found}, {expected}");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! A handle through a sequence of calls: other surfaces and loads, refusals, cancellations, effects of other values.
+
+use contact_normal::ffi::*;
+
+use crate::call::{self, Handle, Outputs};
+use crate::case::{Case, Load};
+use crate::effects;
+use crate::random::Random;
+use crate::rules::{check, may_be_refused, Failure};
+
+/// What happened, and the statuses on the way.
+pub struct Found {
+    pub statuses: Vec<i32>,
+    pub failures: Vec<Failure>,
+}
+
+/// What the handle may say that it holds.
+#[derive(Default)]
+struct Held {
+    last: Option<Vec<f64>>,
+    last_solved: Option<Vec<f64>>,
+}
+
+/// Runs the sequence of a case.
+pub fn run(case: &Case) -> Found {
+    let mut random = Random::new(case.seed ^ 0x5eed);
+    let mut found = Found { statuses: Vec::new(), failures: Vec::new() };
+    let mut handle = match Handle::new(case) {
+        Ok(handle) => handle,
+        Err((status, message)) => {
+            found.statuses.push(status);
+            if !may_be_refused(case, status) {
+                let details = format!("{status}: {message}");
+                found.failures.push(Failure { promise: "refused without a reason", details });
+            }
+            return found;
+        }
+    };
+    let mut held = Held::default();
+    for step in 0..random.integer(2, 5) {
+        let next = if step == 0 { case.clone() } else { case.next(&mut random) };
+        let what = if step == 0 { 0 } else { random.integer(0, 5) };
+        match what {
+            1 => spoil(&next, &mut random, &mut handle, &mut found),
+            2 => change_effects(&next, &mut random, &mut handle, &mut held, &mut found),
+            3 => solve(&next, true, "previous: ", &mut handle, &mut held, &mut found),
+            _ => solve(&next, false, "", &mut handle, &mut held, &mut found),
+        }
+        holds(&handle, &held, case.grid.len(), &mut found);
+    }
+    found
+}
+
+fn remember(outputs: &Outputs, held: &mut Held, found: &mut Found) {
+    found.statuses.push(outputs.status);
+    if outputs.status >= 0 {
+        held.last = Some(outputs.p.clone());
+    }
+    if outputs.status == CONTACT_NORMAL_OK {
+        held.last_solved = Some(outputs.p.clone());
+    }
+}
+
+/// One call that is certified; one that starts anew gives the bits of a call without a handle.
+fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mut Held, found: &mut Found) {
+    let outputs = handle.solve(case, previous);
+    remember(&outputs, held, found);
+    let name = |failure: Failure| Failure { details: format!("handle, {what}{}", failure.details), ..failure };
+    found.failures.extend(check(case, &outputs).into_iter().map(name));
+    if !previous {
+        let fresh = call::solve(case);
+        if outputs.status != fresh.status || outputs.bits() != fresh.bits() {
+            let details = format!("status {} and {} after {:?}", outputs.status, fresh.status, found.statuses);
+            found.failures.push(Failure { promise: "a handle gives the bits of a fresh call", details });
+        }
+    }
+}
+
+/// A call that must be refused.
+fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Found) {
+    let mut spoiled = case.clone();
+    match random.integer(0, 3) {
+        0 => spoiled.h[case.grid.len() / 2] = f64::NAN,
+        1 => spoiled.load = Load::Force(-1.0),
+        2 => spoiled.how.tolerance = -1.0,
+        _ => spoiled.grid.dx *= 2.0,
+    }
+    let outputs = handle.solve(&spoiled, false);
+    found.statuses.push(outputs.status);
+    if outputs.status >= 0 || outputs.written {
+        let details = format!("status {}, written: {}", outputs.status, outputs.written);
+        found.failures.push(Failure { promise: "a handle refuses what is no scene", details });
+    }
+}
+
+/// The same effects with other values: used, or refused by name; never ignored.
+fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &mut Held, found: &mut Found) {
+    let mut changed = case.clone();
+    let own = case.operator().diagonal();
+    let effects = &mut changed.effects;
+    if effects.layer.is_some() {
+        effects.layer = Some(effects::layer(random, &case.grid, own));
+    } else if effects.patches.is_some() {
+        effects.patches = Some(effects::patches(random, &case.grid));
+    } else if let Some(table) = effects.influence.as_mut().or(effects.row_tables.as_mut()) {
+        table.values.iter_mut().for_each(|value| *value *= 2.0);
+    } else {
+        changed.shear_modulus[0] *= 2.0;
+    }
+    let outputs = handle.solve(&changed, false);
+    remember(&outputs, held, found);
+    if outputs.status >= 0 {
+        let name = |failure: Failure| Failure {
+            promise: "a handle uses what the scene names",
+            details: format!("{}: {}", failure.promise, failure.details),
+        };
+        found.failures.extend(check(&changed, &outputs).into_iter().take(1).map(name));
+    } else if outputs.written || outputs.message.is_empty() {
+        found.failures.push(Failure { promise: "refused: outputs untouched", details: outputs.message });
+    }
+}
+
+/// The handle holds the last complete result, or says that it has none.
+fn holds(handle: &Handle, held: &Held, n: usize, found: &mut Found) {
+    let Some(p) = handle.pressures(n) else { return };
+    let same = |of: &Option<Vec<f64>>| {
+        of.as_ref().is_some_and(|of| of.iter().zip(&p).all(|(a, b)| a.to_bits() == b.to_bits()))
+    };
+    if !same(&held.last) && !same(&held.last_solved) {
+        let details = format!("after {:?}", found.statuses);
+        found.failures.push(Failure { promise: "a handle holds the last complete result", details });
+    }
+}

@@ -1,0 +1,6 @@
+//! What the C ABI promises whatever comes in; called from Rust.
+
+mod bad_input;
+mod call;
+mod callbacks;
+mod rows;

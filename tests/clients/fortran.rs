@@ -1,0 +1,254 @@
+//! The Fortran module and examples, compiled with gfortran and run: layouts, constants, expected output, certificates,
+//! norm_solve.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::support::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
+use contact_normal::grid::Grid;
+use contact_normal::influence::{Coefficients, HalfSpace};
+
+/// Every warning is an error: the module must compile cleanly with the strictest users' flags.
+const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];
+
+/// Compiles the module and `source` with it; returns the program. `flags` for both.
+fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
+    let name = Path::new(source).file_stem().expect("a file name").to_string_lossy().into_owned();
+    let program = folder.join(name);
+    let mut gfortran = Command::new("gfortran");
+    gfortran.args(STRICT).args(flags).arg(root().join("include/contact_normal.f90")).arg(root().join(source));
+    gfortran.arg("-o").arg(&program).arg("-L").arg(folder).arg("-lcontact_normal").current_dir(folder);
+    run(&mut gfortran);
+    program
+}
+
+/// What a program prints, without the times.
+fn without_times(output: &str) -> String {
+    output.lines().filter(|line| !line.starts_with("time")).map(|line| format!("{line}\n")).collect()
+}
+
+/// Segments an example; it must print what stands beside it. Recomputes the certificate of the arrays that it wrote.
+fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64) {
+    let folder = scratch(&format!("fortran_{name}{}", flags.concat().replace(['=', ','], "_")));
+    let program = compile(&format!("fortran_examples/{name}.f90"), flags, &folder);
+    let output = run_linked(&program, &[arguments, &["arrays.txt"]].concat(), &folder);
+    let expected = std::fs::read_to_string(root().join(format!("fortran_examples/{name}.expected"))).expect("expected");
+    assert_eq!(without_times(&output), expected, "{name} {flags:?}");
+
+    let arrays = std::fs::read_to_string(folder.join("arrays.txt")).expect("the arrays");
+    let mut numbers = arrays.split_ascii_whitespace().map(|word| word.parse::<f64>().expect("a number"));
+    let mut next = || numbers.next().expect("one more number");
+    let (mx, my, dx, dy, approach) = (next() as usize, next() as usize, next(), next(), next());
+    let grid = Grid::new(mx, my, dx, dy).expect("a grid");
+    let (mut h, mut p, mut contact) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..grid.len() {
+        h.push(next());
+        p.push(next());
+        contact.push(next() != 0.0);
+    }
+    // Steel on steel, as in all examples: 1/E* = 2 (1 - nu) / (2 G).
+    let influence = Coefficients::from(HalfSpace::new(dx, dy, (1.0 - 0.28) / 82000.0));
+    let measures = recompute(&grid, &influence, &h, approach, &p, &contact);
+    assert_certified(&measures, tolerance);
+}
+
+#[test]
+fn hertz_prints_what_is_expected() {
+    // The tolerance that the example asks for.
+    check_example("hertz", &[], &["-O2"], 1e-8);
+}
+
+#[test]
+fn ledger_prints_what_is_expected() {
+    // The default tolerance.
+    check_example("ledger", &[], &["-O2"], 1e-6);
+}
+
+#[test]
+fn to_accuracy_prints_what_is_expected() {
+    check_example("to_accuracy", &[], &["-O2"], 1e-8);
+}
+
+fn wheel_rail_case() -> String {
+    root().join("data/wheel_rail/y0_10kN.txt").to_string_lossy().into_owned()
+}
+
+/// norm_solve stops at an rms update of eps rms(p). The errors dp that are left are at most 10 updates if they fall to
+/// 0.9 or less in an iteration. Smooth p displaces the most: `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
+const PER_UPDATE: f64 = 10.0;
+
+#[test]
+fn wheel_rail_prints_what_is_expected() {
+    check_example("wheel_rail", &[&wheel_rail_case()], &["-O2"], PER_UPDATE * 1e-8);
+}
+
+/// Their solutions are compared with closed forms and direct sums in tests of their own.
+#[test]
+fn the_effects_print_what_is_expected() {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
+        let folder = scratch(&format!("fortran_{name}"));
+        let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
+        let expected =
+            std::fs::read_to_string(root().join(format!("fortran_examples/{name}.expected"))).expect("expected");
+        assert_eq!(run_linked(&program, &[], &folder), expected, "{name}");
+    }
+}
+
+#[test]
+fn norm_drop_in_prints_what_is_expected() {
+    check_example("norm_drop_in", &[], &["-O2"], PER_UPDATE * 1e-9);
+}
+
+/// -ffast-math flushes denormals to zero, the traps kill a program at its first NaN: neither reaches into the library.
+#[test]
+fn a_host_with_its_own_floating_point_environment_gets_the_same() {
+    for flags in [&["-O3", "-ffast-math"][..], &["-O2", "-ffpe-trap=invalid,zero,overflow"]] {
+        check_example("hertz", &[], flags, 1e-8);
+        check_example("wheel_rail", &[&wheel_rail_case()], flags, PER_UPDATE * 1e-8);
+        check_example("norm_drop_in", &[], flags, PER_UPDATE * 1e-9);
+    }
+}
+
+/// All of them, as the folder has them.
+#[test]
+fn the_examples_under_valgrind() {
+    let folder = scratch("fortran_valgrind");
+    let mut count = 0;
+    for file in std::fs::read_dir(root().join("fortran_examples")).expect("the examples") {
+        let file = file.expect("a file").path();
+        if file.extension().is_none_or(|extension| extension != "f90") {
+            continue;
+        }
+        let program = compile(file.to_str().expect("a path in UTF-8"), &["-g", "-O1"], &folder);
+        let case = wheel_rail_case();
+        let arguments = if program.ends_with("wheel_rail") { vec![case.as_str()] } else { Vec::new() };
+        let printed = run_under_valgrind(&program, &arguments, &folder);
+        assert!(!printed.is_empty(), "{}", file.display());
+        count += 1;
+    }
+    assert!(count >= 9, "{count} examples");
+}
+
+#[test]
+fn norm_solve_keeps_its_promises() {
+    let all = [
+        &["-g", "-O1", "-fcheck=all"][..],
+        &["-O3", "-ffast-math"],
+        &["-g", "-O1", "-ffpe-trap=invalid,zero,overflow"],
+    ];
+    for (i, flags) in all.into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_norm_solve_{i}"));
+        let program = compile("tests/clients/norm_solve_cases.f90", flags, &folder);
+        let output = run_linked(&program, &[], &folder);
+        // The program stops at the first case that fails; this is its last one.
+        assert_eq!(output.lines().last(), Some("the external subroutine"), "{flags:?}\n{output}");
+    }
+}
+
+#[test]
+fn the_wrappers_of_the_module_work() {
+    let folder = scratch("fortran_module");
+    let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);
+    assert_eq!(run_linked(&program, &[], &folder), format!("{}\nall hold\n", env!("CARGO_PKG_VERSION")));
+}
+
+/// An array that is no target might be kept in registers while the library writes it: the compiler refuses to attach
+/// it.
+#[test]
+fn arrays_that_are_no_targets_are_refused_at_compile_time() {
+    let folder = scratch("fortran_no_target");
+    let source = |attribute: &str| {
+        format!(
+            "program attach\n  use contact_normal\n  use iso_c_binding\n  real(c_double){attribute} :: p(2, 2)\n  \
+             type(contact_normal_fields) :: fields\n  call contact_normal_set_fields(fields, pressure=p)\nend program\n"
+        )
+    };
+    for (attribute, compiles) in [(", target", true), ("", false)] {
+        std::fs::write(folder.join("attach.f90"), source(attribute)).expect("a source");
+        let mut gfortran = Command::new("gfortran");
+        gfortran.arg("-c").arg(root().join("include/contact_normal.f90")).arg("attach.f90").current_dir(&folder);
+        assert_eq!(gfortran.output().expect("gfortran").status.success(), compiles, "{attribute}");
+    }
+}
+
+/// `name offset` lines as tests/clients/fortran_layout.f90 prints them. The pattern without `..` makes sure that no member is
+/// left out.
+macro_rules! layout {
+    ($($name:ident: $($member:ident),+;)+) => {{
+        use contact_normal::ffi::*;
+        let mut lines = String::new();
+        $(
+            let _ = |$name { $($member: _),+ }: $name| ();
+            lines += &format!("{} {}\n", stringify!($name), size_of::<$name>());
+            $({
+                let offset = std::mem::offset_of!($name, $member);
+                lines += &format!("{}.{} {offset}\n", stringify!($name), stringify!($member));
+            })+
+        )+
+        lines
+    }};
+}
+
+#[test]
+fn derived_types_are_laid_out_as_the_structs() {
+    let folder = scratch("fortran_layout");
+    let program = compile("tests/clients/fortran_layout.f90", &[], &folder);
+    let expected = layout! {
+        contact_normal_influence: struct_size, cx, cy, coefficients;
+        contact_normal_layer: struct_size, compliance, compliances;
+        contact_normal_pressure_limit: struct_size, limit, limits;
+        contact_normal_period: struct_size, x, y;
+        contact_normal_patches: struct_size, count, reserved, patch, factors;
+        contact_normal_row_tables: struct_size, cx, rows, coefficients;
+        contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
+            poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
+            patches, row_tables;
+        contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
+            coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
+            threads, precision, reserved, progress, user;
+        contact_normal_progress: struct_size, mx, my, cycles, active_set_changes, seconds,
+            work_units, update, residual;
+        contact_normal_fields: struct_size, pressure, deformed_distance, displacement, contact;
+        contact_normal_ledger_row: mx, my, cycles, seconds, work_units, residual, approach, force,
+            max_pressure, contact_area, corrected_area, error_force, error_max_pressure, error_contact_area,
+            error_corrected_area, error_pressure, contact_count, untrusted, reserved;
+        contact_normal_report: struct_size, cycles, active_set_steps, active_set_changes,
+            matrix_products, work_units, update, residual, penetration, complementarity,
+            min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
+            error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
+            ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
+            untrusted, limited_by, halved_seconds, halved_error_force, edge_count;
+        contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
+            user, mx, my, dx, dy, reached, seconds;
+        contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
+            area;
+    };
+    assert_eq!(run_linked(&program, &[], &folder), expected);
+}
+
+#[test]
+fn the_module_has_every_constant_and_every_export_of_the_header() {
+    let read = |name: &str| std::fs::read_to_string(root().join("include").join(name)).expect("an include file");
+    let (header, module) = (read("contact_normal.h"), read("contact_normal.f90") + &read("contact_normal_exports.inc"));
+    let mut constants = 0;
+    for line in header.lines().filter_map(|line| line.strip_prefix("#define CONTACT_NORMAL_")) {
+        let Some((name, value)) = line.split_once(' ') else { continue };
+        let declared = ["", ","].iter().any(|end| {
+            module.lines().any(|line| {
+                format!("{} ", line.trim_end_matches(" &")).contains(&format!(" CONTACT_NORMAL_{name} = {value}{end} "))
+            })
+        });
+        assert!(declared, "CONTACT_NORMAL_{name} = {value} is not in the module");
+        constants += 1;
+    }
+    assert!(constants > 30, "{constants} constants in the header?");
+    let exports: Vec<&str> = header
+        .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '('))
+        .filter_map(|word| word.split_once('(').map(|(name, _)| name))
+        .filter(|name| name.starts_with("contact_normal_"))
+        .collect();
+    assert!(exports.contains(&"contact_normal_solve") && exports.len() > 15, "{exports:?}");
+    for name in exports {
+        assert!(module.contains(&format!("name=\"{name}\"")), "{name} has no interface in the module");
+    }
+}

@@ -1,0 +1,93 @@
+//! `make install` gives what pkg-config says: a program compiled with its flags runs, with the shared and with the static
+//! library, and the version is the same wherever it stands.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::{root, run, scratch};
+use contact_normal::ffi::CONTACT_NORMAL_ABI_VERSION;
+
+const PROGRAM: &str = r#"
+#include <contact_normal.h>
+#include <stdio.h>
+
+int main(void)
+{
+    const double shear_modulus[2] = {82000.0, 82000.0}, poisson_ratio[2] = {0.28, 0.28};
+    contact_normal_hertz_solution exact;
+    contact_normal_status status = contact_normal_hertz(0.0016681, 0.0030671, shear_modulus, poisson_ratio,
+                                                        CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.1091, &exact);
+    if (status != CONTACT_NORMAL_OK) {
+        return 1;
+    }
+    printf("%s %d %d %.0f\n", contact_normal_version(), (int)contact_normal_abi_version(), CONTACT_NORMAL_ABI_VERSION,
+           exact.force);
+    return 0;
+}
+"#;
+
+/// `pkg-config` on the installed package; what it says, split at blanks.
+fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
+    let mut command = Command::new("pkg-config");
+    command.args(arguments).arg("contact-normal").env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
+    run(&mut command).split_whitespace().map(str::to_owned).collect()
+}
+
+#[test]
+fn the_installed_package_is_what_pkg_config_says() {
+    let folder = scratch("installed_package");
+    let prefix = folder.join("prefix");
+    // The libraries that `cargo test` has built beside the test programs, not a second build.
+    let built = std::env::current_exe().expect("this test's path").parent().expect("its folder").to_owned();
+    let install = |variables: &[String]| {
+        let built = format!("LIBDIR_BUILT={}", built.display());
+        // Without the job server of a make that may run these tests.
+        let mut make = Command::new("make");
+        make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg("install").arg(built).args(variables);
+        run(&mut make)
+    };
+    install(&[format!("PREFIX={}", prefix.display())]);
+
+    let version = env!("CARGO_PKG_VERSION");
+    assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
+    let links = [
+        ("libcontact_normal.so", "libcontact_normal.so.0".to_owned()),
+        ("libcontact_normal.so.0", format!("libcontact_normal.so.{version}")),
+    ];
+    for (link, target) in links {
+        let to = std::fs::read_link(prefix.join("lib").join(link)).expect("a link");
+        assert_eq!(to, Path::new(&target), "{link}");
+    }
+    for name in [".h", ".f90", "_exports.inc", "_norm_solve.inc"] {
+        let file = &format!("include/contact_normal{name}");
+        let [ours, installed] = [root(), &prefix].map(|from| std::fs::read(from.join(file)).expect("a file"));
+        assert!(ours == installed, "{file}");
+    }
+
+    let source = folder.join("program.c");
+    std::fs::write(&source, PROGRAM).expect("a source file");
+    let compile = |name: &str, flags: Vec<String>| {
+        let program = folder.join(name);
+        run(Command::new("gcc").args(["-std=c99", "-Wall", "-o"]).arg(&program).arg(&source).args(flags));
+        program
+    };
+    // 81987 N: the paper's problem (tests/hertz.rs checks the closed form).
+    let expected = format!("{version} {CONTACT_NORMAL_ABI_VERSION} {CONTACT_NORMAL_ABI_VERSION} 81987\n");
+    let shared = compile("shared", pkg_config(&prefix, &["--cflags", "--libs"]));
+    let dynamic = run(Command::new("readelf").arg("-d").arg(&shared));
+    assert!(dynamic.contains("Shared library: [libcontact_normal.so.0]"), "{dynamic}");
+    assert_eq!(run(Command::new(&shared).env("LD_LIBRARY_PATH", prefix.join("lib"))), expected);
+
+    // With only the static library to be found, the flags of --static must do.
+    for name in ["libcontact_normal.so", "libcontact_normal.so.0"] {
+        std::fs::remove_file(prefix.join("lib").join(name)).expect("a link to remove");
+    }
+    let fixed = compile("static", pkg_config(&prefix, &["--static", "--cflags", "--libs"]));
+    assert_eq!(run(&mut Command::new(&fixed)), expected);
+
+    // A packager's staging folder takes the files, and leaves no trace in them.
+    let staged = folder.join("staged");
+    install(&[format!("DESTDIR={}", staged.display()), "PREFIX=/opt/contact".to_owned()]);
+    let described = std::fs::read_to_string(staged.join("opt/contact/lib/pkgconfig/contact-normal.pc")).expect("a .pc");
+    assert!(described.starts_with("prefix=/opt/contact\n") && !described.contains("staged"), "{described}");
+}

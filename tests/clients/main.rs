@@ -1,0 +1,10 @@
+//! The library as C, C++, Fortran and Python programs use it: header, symbols, the installed package, clients, hosts.
+
+mod c;
+mod exported_symbols;
+mod fortran;
+mod header;
+mod host_environment;
+mod installed_package;
+mod python;
+mod support;

@@ -1,0 +1,36 @@
+//! What the library computes: every number is compared with a closed form, a direct sum or a certificate recomputed.
+
+// Cases that the examples and benchmarks have too.
+#[path = "../../examples/paper_tables/case.rs"]
+#[allow(dead_code)]
+mod paper;
+#[path = "../../benches/performance/case.rs"]
+#[allow(dead_code)]
+mod performance;
+#[path = "../../examples/smoothers/rough.rs"]
+mod rough;
+
+mod accuracy_target;
+mod batch;
+mod effects;
+mod estimates;
+mod every_grid;
+mod families;
+mod fft_smoother;
+mod hard_cases;
+mod hertz;
+mod influence;
+mod layer;
+mod operator;
+mod paper_tables;
+mod patches;
+mod periodic;
+mod pressure_limit;
+mod properties;
+mod random_problems;
+mod rough_surface;
+mod row_tables;
+mod smoothers;
+mod support;
+mod threads;
+mod wheel_rail;

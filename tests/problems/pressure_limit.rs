@@ -1,0 +1,216 @@
+//! Effect `pressure_limit`: the conditions of both sides with a direct sum, nothing where the limit is not reached, forces that
+//! cannot be carried, and an independent method.
+
+use crate::support::run;
+use contact_normal::grid::Grid;
+use contact_normal::operator::dense;
+use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
+use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Report, Solver, Stop};
+
+fn ball(grid: &Grid) -> Vec<f64> {
+    let (mx, my) = (grid.mx, grid.my);
+    let at = |k: usize, m: usize| (2 * k + 1) as f64 / m as f64 - 1.0;
+    (0..grid.len()).map(|i| 0.4 * at(i % mx, mx).powi(2) + 0.5 * at(i / mx, my).powi(2)).collect()
+}
+
+fn rough(grid: &Grid) -> Vec<f64> {
+    let wave =
+        |i: usize, j: usize, k: usize| ((i * (k % grid.mx) + j * (k / grid.mx)) as f64 * 0.37 + (i * j) as f64).sin();
+    let waves = |k: usize| {
+        (1..5)
+            .flat_map(|i| (1..5).map(move |j| (i, j)))
+            .map(|(i, j)| 0.05 * wave(i, j, k) / (i * j) as f64)
+            .sum::<f64>()
+    };
+    ball(grid).iter().enumerate().map(|(k, h)| 0.2 * h + waves(k)).collect()
+}
+
+fn tight(method: Method) -> Options {
+    Options { method, tolerance: 1e-9, ..Options::default() }
+}
+
+/// The mixed complementarity conditions, with u by direct summation. Returns the number of elements at the limit.
+fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str) -> usize {
+    let (grid, state, limit) = (scene.grid, solver.state(), scene.pressure_limit.unwrap());
+    let mut u = vec![0.0; grid.len()];
+    let bodies = Scene { layer: None, ..scene.clone() }.coefficients().unwrap();
+    dense::apply(&bodies, &grid, &state.p, &mut u);
+    if let Some(Layer::Uniform(c)) = scene.layer {
+        u.iter_mut().zip(&state.p).for_each(|(u, p)| *u += c * p);
+    }
+    // The tolerance of 1e-9 is in the rms over some 1000 elements, one of which may have it all: 32 times that.
+    let allowed = 32.0 * 1e-9 * u.iter().copied().fold(0.0, f64::max);
+    let mut count = 0;
+    for (i, u) in u.iter().enumerate() {
+        let e = scene.undeformed_distance[i] - report.measures.approach + u;
+        let (p, most) = (state.p[i], limit.at(i));
+        let at_limit = state.at_limit.get(i).copied().unwrap_or(false);
+        let holds = match (at_limit, state.contact[i]) {
+            (true, false) => p == most && e <= allowed,
+            (false, true) => p >= 0.0 && p <= most && e.abs() <= allowed,
+            (false, false) => p == 0.0 && e >= -allowed,
+            (true, true) => false,
+        };
+        assert!(holds, "{what}, element {i}: p = {p} of {most}, e = {e}, at the limit {at_limit}");
+        count += usize::from(at_limit);
+    }
+    if let Load::Force(force) = scene.load {
+        // A sum of pressures, to round-off.
+        assert!((report.measures.force / force - 1.0).abs() <= 1e-12, "{what}: {}", report.measures.force);
+    }
+    count
+}
+
+#[test]
+fn the_conditions_hold_on_both_sides() {
+    let grid = Grid::new(36, 30, 0.05, 0.05).unwrap();
+    for (name, h) in [("ball", ball(&grid)), ("rough", rough(&grid))] {
+        let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+        let elastic = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(lowest + 0.15));
+        let (_, report) = run(&elastic, &Options::default());
+        let (greatest, force) = (report.measures.max_pressure, report.measures.force);
+        let uneven: Vec<f64> = (0..grid.len()).map(|i| greatest * (0.3 + 0.1 * (i % 5) as f64)).collect();
+        for share in [0.9, 0.5, 0.2] {
+            for limit in [PressureLimit::Uniform(share * greatest), PressureLimit::PerElement(&uneven)] {
+                for load in [elastic.load, Load::Force(0.5 * force)] {
+                    for method in [Method::Auto, Method::Norm] {
+                        let scene = Scene { pressure_limit: Some(limit), load, ..elastic.clone() };
+                        let (solver, report) = run(&scene, &tight(method));
+                        let what = format!("{name} {share} {load:?} {method:?}");
+                        let count = assert_holds(&scene, &solver, &report, &what);
+                        assert!(count > 0 || share > 0.8, "{what}");
+                        let in_contact = solver.state().p.iter().filter(|p| **p > 0.0).count();
+                        assert!(
+                            report.measures.contact_count >= in_contact && report.measures.max_pressure <= greatest
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_limit_that_is_not_reached_changes_not_a_bit() {
+    let grid = Grid::new(70, 80, 0.05, 0.05).unwrap();
+    let h = rough(&grid);
+    for load in [Load::Approach(0.05), Load::Force(0.3)] {
+        let elastic = Scene::new(grid, &h, Bodies::same(1.0, 0.3), load);
+        let (without, report) = run(&elastic, &Options::default());
+        for limit in [f64::INFINITY, report.measures.max_pressure] {
+            let (with, again) = run(
+                &Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..elastic.clone() },
+                &Options::default(),
+            );
+            let (a, b) = (without.state(), with.state());
+            assert_eq!((&a.p, &a.u, &a.contact, a.approach), (&b.p, &b.u, &b.contact, b.approach));
+            assert_eq!((report.matrix_products, report.bytes), (again.matrix_products, again.bytes));
+            assert!(b.at_limit.is_empty());
+        }
+    }
+}
+
+#[test]
+fn up_to_the_greatest_force_and_not_beyond() {
+    let grid = Grid::new(16, 12, 0.5, 0.25).unwrap();
+    let mut h = ball(&grid);
+    h[5] = f64::INFINITY;
+    let greatest = 2.0 * 191.0 * grid.element_area();
+    let scene = |force: f64| Scene {
+        pressure_limit: Some(PressureLimit::Uniform(2.0)),
+        ..Scene::new(grid, &h, Bodies::same(1e3, 0.3), Load::Force(force))
+    };
+    for share in [0.01, 0.3, 0.9, 0.999, 1.0] {
+        let scene = scene(share * greatest);
+        let (solver, report) = run(&scene, &tight(Method::Auto));
+        assert_holds(&scene, &solver, &report, &format!("{share}"));
+        let full = solver.state().p.iter().filter(|p| **p >= 2.0 * (1.0 - 1e-9)).count();
+        assert!(share < 1.0 || full == 191, "{full}");
+    }
+    let Err(error) = solve(&scene(1.001 * greatest), &Options::default()) else { panic!("carried") };
+    let message = error.to_string();
+    assert!(message.contains("pressure_limit") && message.contains(&format!("{greatest}")), "{message}");
+}
+
+#[test]
+fn with_a_layer_and_with_a_period() {
+    let grid = Grid::new(32, 24, 0.05, 0.05).unwrap();
+    let h = rough(&grid);
+    let elastic = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.1));
+    let limit = Some(PressureLimit::Uniform(0.4 * run(&elastic, &Options::default()).1.measures.max_pressure));
+    let c = elastic.coefficients().unwrap().at(0, 0);
+    for (layer, period) in [
+        (Some(Layer::Uniform(0.2 * c)), None),
+        (None, Some(Period { x: true, y: false })),
+        (None, Some(Period { x: true, y: true })),
+        (Some(Layer::Uniform(c)), Some(Period { x: true, y: true })),
+    ] {
+        let scene = Scene { pressure_limit: limit, layer, period, ..elastic.clone() };
+        let (solver, report) = run(&scene, &tight(Method::Auto));
+        assert_holds(&scene, &solver, &report, &format!("{layer:?} {period:?}"));
+    }
+}
+
+#[test]
+fn every_method_and_a_handle_find_the_same() {
+    let grid = Grid::new(40, 40, 0.05, 0.05).unwrap();
+    let h = ball(&grid);
+    let limit = Some(PressureLimit::Uniform(0.12));
+    let scene = Scene { pressure_limit: limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.1)) };
+    let (first, report) = run(&scene, &tight(Method::Auto));
+    assert!(assert_holds(&scene, &first, &report, "AUTO") > 20);
+    let close = |a: &[f64]| a.iter().zip(&first.state().p).all(|(a, b)| (a - b).abs() <= 1e-6 * 0.12);
+    for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
+        assert!(close(&run(&scene, &tight(method)).0.state().p), "{method:?}");
+    }
+    // The next solve, without and with a limit, from nothing and from the last.
+    let mut solver = Solver::new(&scene, &tight(Method::Auto)).unwrap();
+    solver.solve(&scene, &tight(Method::Auto), None, None).unwrap();
+    let plain = Scene { pressure_limit: None, ..scene.clone() };
+    let previous = Options { initial_guess: InitialGuess::Previous, ..tight(Method::Auto) };
+    let (stop, _) = solver.solve(&plain, &previous, None, None).unwrap();
+    assert!(stop == Stop::Converged && solver.state().at_limit.is_empty());
+    assert!(solver.state().p.iter().copied().fold(0.0, f64::max) > 0.13);
+    for options in [&previous, &tight(Method::Auto)] {
+        let (stop, report) = solver.solve(&scene, options, None, None).unwrap();
+        assert_eq!(stop, Stop::Converged);
+        assert_holds(&scene, &solver, &report, "handle");
+        assert!(close(&solver.state().p));
+    }
+    // Stopped early, pressures are still within the limit.
+    let (_, stop, _) = solve(&scene, &Options { max_cycles: 1, tolerance: 1e-13, ..Options::default() })
+        .map(|(s, stop, r)| {
+            assert!(s.state().p.iter().all(|p| (0.0..=0.12).contains(p)));
+            (s, stop, r)
+        })
+        .unwrap();
+    assert_eq!(stop, Stop::IterationLimit);
+}
+
+#[test]
+fn what_is_no_limit_is_refused_by_name() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).unwrap();
+    let h = ball(&grid);
+    let refuse = |limit: PressureLimit<'_>, load: Load, words: &[&str]| {
+        let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), load) };
+        let Err(error) = solve(&scene, &Options::default()) else { panic!("{words:?}: solved") };
+        assert!(words.iter().all(|word| error.to_string().contains(word)), "{error}");
+    };
+    let mut limits = [1.0; 64];
+    limits[9] = -3.0;
+    for load in [Load::Force(0.1), Load::Approach(0.1)] {
+        refuse(PressureLimit::Uniform(0.0), load, &["pressure_limit->limit", "0"]);
+        refuse(PressureLimit::Uniform(f64::NAN), load, &["pressure_limit->limit", "NaN"]);
+        refuse(PressureLimit::PerElement(&limits), load, &["pressure_limit->limits", "(1, 1)", "-3"]);
+        refuse(PressureLimit::PerElement(&limits[..63]), load, &["pressure_limit->limits", "63"]);
+    }
+    let scene = Scene {
+        pressure_limit: Some(PressureLimit::Uniform(1.0)),
+        ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.1))
+    };
+    let mut solver = Solver::new(&scene, &Options::default()).unwrap();
+    let fixed = Options { active_set: ActiveSet::Fixed, ..Options::default() };
+    let guess = Guess { pressure: &[0.0; 64], contact: &[true; 64] };
+    let error = solver.solve(&scene, &fixed, Some(guess), None).unwrap_err().to_string();
+    assert!(error.contains("FIXED") && error.contains("pressure_limit"), "{error}");
+}

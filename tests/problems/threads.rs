@@ -1,0 +1,74 @@
+//! Whole solves have the same bits for any number of threads: pressures, displacements, contact area, approach, and the way there.
+
+#[allow(dead_code)] // the benchmark's cases, of which this takes some
+use crate::performance as case;
+
+use case::{ellipse, rough, wheel_rail, Case};
+use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::scene::{Load, Scene};
+use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Precision, Solver, Stop};
+
+/// What a solve found, to the last bit: p, u and the approach; the contact area; cycles.
+type Found = (Vec<u64>, Vec<bool>, u64);
+
+fn found(solver: &Solver, cycles: u64) -> Found {
+    let state = solver.state();
+    let values = state.p.iter().chain(&state.u).chain([&state.approach]);
+    (values.map(|value| value.to_bits()).collect(), state.contact.clone(), cycles)
+}
+
+/// Of a cold solve, and of a next one from its result with 1 % more load.
+fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
+    let (mut solver, stop, report) = solve(scene, options).expect("a solve");
+    assert_eq!(stop, Stop::Converged, "{options:?}");
+    let cold = found(&solver, report.cycles);
+    let load = match scene.load {
+        Load::Approach(approach) => Load::Approach(1.01 * approach),
+        Load::Force(force) => Load::Force(1.01 * force),
+    };
+    let next = Options { initial_guess: InitialGuess::Previous, ..*options };
+    let (_, report) = solver.solve(&Scene { load, ..scene.clone() }, &next, None, None).expect("a step");
+    [cold, found(&solver, report.cycles)]
+}
+
+/// Approach and force prescribed, all methods, 1, 2 and 3 threads.
+fn same_for_any_number_of_threads(case: &Case) {
+    let (solver, _, report) = solve(&case.scene(), &Options::default()).expect("a solve");
+    let loads = [Load::Approach(solver.state().approach), Load::Force(report.measures.force)];
+    let all = Options { max_cycles: 5000, ..Options::default() };
+    let fft = Some(SmootherKind::Fft);
+    let ways = [
+        all,
+        Options { precision: Precision::Double, criterion: Criterion::Update, ..all },
+        Options { method: Method::ProjectedCg, ..all },
+        Options { method: Method::Norm, ..all },
+        Options { method: Method::Multigrid, ..all },
+        Options { method: Method::Multigrid, smoother: fft, ..all },
+        Options { method: Method::FullMultigrid, ..all },
+        Options { method: Method::FullMultigrid, smoother: fft, ..all },
+    ];
+    for load in loads {
+        for way in ways {
+            let one = cold_and_next(&case.scene_with(load), &way);
+            for threads in [2, 3] {
+                let several = cold_and_next(&case.scene_with(load), &Options { threads, ..way });
+                assert!(several == one, "{}, {load:?}, {threads} threads: {way:?}", case.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_ellipse() {
+    same_for_any_number_of_threads(&ellipse(100));
+}
+
+#[test]
+fn the_rough_surface() {
+    same_for_any_number_of_threads(&rough(128));
+}
+
+#[test]
+fn wheel_and_rail() {
+    same_for_any_number_of_threads(&wheel_rail("y0_10kN", 1));
+}
