@@ -190,12 +190,15 @@ pub struct contact_normal_report {
     pub halved_error_force: f64,
     /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
     pub edge_count: i64,
+    /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+    /// an accuracy asks for.
+    pub tolerance: f64,
 }
 
 // SAFETY: integers, floats and a raw pointer only, struct_size first.
 unsafe impl Versioned for contact_normal_report {
     const NAME: &'static str = "contact_normal_report";
-    const FIRST_SIZE: usize = 200;
+    const FIRST_SIZE: usize = 264;
     fn defaults() -> Self {
         Self {
             struct_size: size_of::<Self>() as i64,
@@ -231,6 +234,7 @@ unsafe impl Versioned for contact_normal_report {
             limited_by: CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
             halved_seconds: -1.0,
             halved_error_force: -1.0,
+            tolerance: 0.0,
         }
     }
 }
@@ -282,6 +286,7 @@ impl contact_normal_report {
             },
             halved_seconds: report.halving.seconds,
             halved_error_force: report.halving.force,
+            tolerance: report.tolerance,
         }
     }
 }

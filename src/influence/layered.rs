@@ -45,6 +45,17 @@ impl Layered {
         Layered { base: Box::new(base), least, more: Some(more), typical }
     }
 
+    /// The same layer on other coefficients.
+    pub fn on(&self, base: Influence) -> Layered {
+        match &self.more {
+            None => Layered::uniform(base, self.least),
+            Some(more) => {
+                let c: Vec<f64> = more.iter().map(|more| more + self.least).collect();
+                Layered::per_element(base, &c)
+            }
+        }
+    }
+
     /// The coefficients without the layer.
     pub fn base(&self) -> &Influence {
         &self.base

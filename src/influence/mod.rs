@@ -179,6 +179,25 @@ impl Influence {
         }
     }
 
+    /// The caller's own table.
+    pub fn table(&self) -> Option<&Table> {
+        match self {
+            Influence::Table(table) => Some(table),
+            Influence::Patches(patches) => patches.base().table(),
+            Influence::Layered(layered) => layered.base().table(),
+            _ => None,
+        }
+    }
+
+    /// The same coefficients from another table.
+    pub fn with_table(&self, table: Table) -> Influence {
+        match self {
+            Influence::Patches(patches) => Influence::Patches(patches.on(patches.base().with_table(table))),
+            Influence::Layered(layered) => Influence::Layered(layered.on(layered.base().with_table(table))),
+            _ => Influence::Table(table),
+        }
+    }
+
     /// Tables of loaded rows, and what a layer adds to all of them at offset (0, 0).
     pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
         match self {

@@ -31,6 +31,11 @@ impl Patches {
         Patches { base: Box::new(base), count, patch: patch.collect(), factors: factors.into() }
     }
 
+    /// The same patches of other coefficients.
+    pub fn on(&self, base: Influence) -> Patches {
+        Patches { base: Box::new(base), ..self.clone() }
+    }
+
     /// The coefficients without factors.
     pub fn base(&self) -> &Influence {
         &self.base

@@ -21,7 +21,7 @@
 use std::sync::Arc;
 
 use super::table::SYMMETRY;
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::reserve;
 
@@ -42,6 +42,12 @@ impl RowTables {
     /// Tables of `rows` by `rows` by `2 cx` coefficients, `values[jy][iy][kx + cx]`, that must fit `grid`: `rows` is my, cx >= mx.
     /// Column `-cx` never matters.
     pub fn new(cx: usize, rows: usize, values: &[f64], grid: &Grid) -> Result<RowTables> {
+        RowTables::scaled(cx, rows, values, 1.0, grid)
+    }
+
+    /// The same of `scale` times each value.
+    pub fn scaled(cx: usize, rows: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<RowTables> {
+        require(scale > 0.0 && scale.is_finite(), "row_tables->scale", scale, "it must be positive and finite")?;
         let Grid { mx, my, .. } = *grid;
         if cx < mx {
             return invalid(format!("row_tables->cx is {cx}; the tables must reach offsets of the grid, mx = {mx}"));
@@ -62,14 +68,14 @@ impl RowTables {
         for (k, row) in values.chunks_exact(2 * cx).enumerate() {
             let (jy, iy) = (k / my, k % my);
             let row = &row[cx + 1 - mx..cx + mx];
-            if let Some(i) = row.iter().position(|value| !value.is_finite()) {
+            if let Some(i) = row.iter().position(|value| !(scale * value).is_finite()) {
                 let kx = i as i64 - (mx as i64 - 1);
                 return Err(Error::NotFinite(format!(
                     "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
-                    row[i]
+                    scale * row[i]
                 )));
             }
-            if jy == iy && row[mx - 1] <= 0.0 {
+            if jy == iy && scale * row[mx - 1] <= 0.0 {
                 return Err(Error::NotPositiveDefinite(format!(
                     "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset 0 is {}; a pressure must displace its own \
                      element inwards",
@@ -82,7 +88,7 @@ impl RowTables {
         let mut kept = Vec::new();
         reserve(&mut kept, my * my * width(mx, even), TABLES)?;
         for row in values.chunks_exact(2 * cx) {
-            kept.extend_from_slice(&row[if even { cx } else { cx + 1 - mx }..cx + mx]);
+            kept.extend(row[if even { cx } else { cx + 1 - mx }..cx + mx].iter().map(|value| scale * value));
         }
         Ok(RowTables { mx, my, even, values: Arc::new(kept) })
     }

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{reserve, zeros};
 
@@ -31,6 +31,12 @@ pub struct Table {
 impl Table {
     /// A table of `2 cx` by `2 cy` coefficients that must cover `grid`.
     pub fn new(cx: usize, cy: usize, values: &[f64], grid: &Grid) -> Result<Table> {
+        Table::scaled(cx, cy, values, 1.0, grid)
+    }
+
+    /// The same of `scale` times each value.
+    pub fn scaled(cx: usize, cy: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<Table> {
+        require(scale > 0.0 && scale.is_finite(), "influence.scale", scale, "it must be positive and finite")?;
         for (name, c, count, m) in [("cx", cx, "mx", grid.mx), ("cy", cy, "my", grid.my)] {
             if c < m {
                 return invalid(format!(
@@ -47,7 +53,7 @@ impl Table {
         let mut kept = zeros(4 * kept_x * kept_y, TABLE)?;
         for ky in -(kept_y as i64) + 1..kept_y as i64 {
             for kx in -(kept_x as i64) + 1..kept_x as i64 {
-                let value = values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
+                let value = scale * values[(ky + cy as i64) as usize * 2 * cx + (kx + cx as i64) as usize];
                 if !value.is_finite() {
                     return Err(Error::NotFinite(format!(
                         "influence.coefficients at offset ({kx}, {ky}) is {value}; coefficients must be finite"

@@ -48,6 +48,8 @@ pub struct Monitor<'a> {
     pub active_set_steps: u64,
     /// rms over C of the last change of p.
     pub update: f64,
+    /// What the finest grid is solved to.
+    pub tolerance: f64,
     ledger: Vec<LedgerRow>,
     estimates: bool,
     /// Of the contact area of the last row.
@@ -70,6 +72,7 @@ impl<'a> Monitor<'a> {
             active_set_changes: 0,
             active_set_steps: 0,
             update: 0.0,
+            tolerance: 0.0,
             ledger,
             estimates,
             outline: Outline::default(),
@@ -173,6 +176,7 @@ impl<'a> Monitor<'a> {
             error: last.map(|row| row.error).unwrap_or_default(),
             limit: self.limit,
             halving: self.halving,
+            tolerance: self.tolerance,
             solve_seconds: self.began.elapsed().as_secs_f64(),
             ..Report::default()
         };

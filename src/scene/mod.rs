@@ -93,7 +93,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Checks each effect, and refuses pairs that are not solved.
-    fn check_effects(&self) -> Result<()> {
+    pub(crate) fn check_effects(&self) -> Result<()> {
         if let Some(period) = &self.period {
             period.check()?;
             if self.influence.is_some() {

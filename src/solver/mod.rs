@@ -22,7 +22,7 @@ pub use report::{DiscretisationError, Halving, LedgerRow, Limit, Measures, Repor
 use crate::contact::State;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::Influence;
+use crate::influence::{Influence, Table};
 use crate::methods::descent as descent_method;
 use crate::methods::multigrid::{nested as full_multigrid, step as multigrid_method};
 use crate::methods::multigrid::{CycleShape, Multigrid};
@@ -173,6 +173,7 @@ impl Solver {
             fixed: options.active_set == ActiveSet::Fixed,
             max_cycles: options.max_cycles as u64,
         };
+        monitor.tolerance = rule.tolerance;
         let start = self.start(scene, options, guess, monitor)?;
         let mut stop = if self.without_contact(scene.load, rule.fixed) {
             Stop::Converged
@@ -221,18 +222,29 @@ impl Solver {
         self.projected.influence()
     }
 
-    /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
-    pub fn has_own_influence(&self) -> bool {
-        self.has_own_influence
-    }
-
-    /// The same of tables per loaded row.
-    pub fn has_row_tables(&self) -> bool {
-        self.has_row_tables
+    /// All later solves use this table in the place of the one of the set-up. The last result stays.
+    pub fn set_influence(&mut self, table: Table) -> Result<()> {
+        if !self.has_own_influence {
+            return invalid("influence is given, but this solver was set up without".into());
+        }
+        let influence = self.influence().with_table(table);
+        self.projected = Projected::new(&self.grid, &influence, self.precision, &self.threads)?;
+        self.symmetric = influence.is_symmetric(&self.grid);
+        self.largest_influence = influence.largest(&self.grid);
+        self.multigrid = None;
+        self.states.truncate(1);
+        self.workers.clear();
+        self.u_is_product = false;
+        Ok(())
     }
 
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
         scene.check_distance_and_load()?;
+        scene.check_effects()?;
+        // Own coefficients know no bodies.
+        if !self.has_own_influence && !self.has_row_tables {
+            scene.bodies.check()?;
+        }
         self.check_options(options)?;
         if scene.grid != self.grid {
             return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, self.grid));
@@ -246,6 +258,15 @@ impl Solver {
         }
         if scene.row_tables.is_some() && !self.has_row_tables {
             return invalid("row_tables is given, but this solver was set up without".into());
+        }
+        if scene.influence.is_some() && scene.influence.as_ref() != self.influence().table() {
+            let rule = "use contact_normal_solver_set_influence (Solver::set_influence), or leave it out";
+            return invalid(format!("influence holds other coefficients than those of this solver; {rule}"));
+        }
+        if scene.row_tables.is_some() && scene.row_tables.as_ref() != self.influence().row_tables().map(|(own, _)| own)
+        {
+            let rule = "set up another solver, or leave it out";
+            return invalid(format!("row_tables holds other coefficients than those of this solver; {rule}"));
         }
         if scene.period != self.period {
             return invalid(format!("period is {:?}; this solver was set up for {:?}", scene.period, self.period));

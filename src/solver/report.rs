@@ -178,6 +178,8 @@ pub struct Report {
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,
+    /// The tolerance that the stop speaks of: that of the options, or a larger one where `error_ratio` allows it.
+    pub tolerance: f64,
 }
 
 impl Report {

@@ -76,6 +76,7 @@ pub fn solve(
         let mut level_rule = if l == 0 { *rule } else { coarse_rule };
         if l == 0 && error_ratio > 0.0 {
             level_rule.tolerance = level_rule.tolerance.max(error_ratio * discretisation_error(monitor, state));
+            monitor.tolerance = level_rule.tolerance;
         }
         stop = multigrid_method::solve(multigrid, l, state, &level_rule, &mut workspace.cycles, monitor);
     }

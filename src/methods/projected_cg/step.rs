@@ -137,6 +137,7 @@ impl Projected {
             }
             if error_ratio > 0.0 {
                 rule.tolerance = rule.tolerance.max(error_ratio * self.predicted_error(state, monitor)?);
+                monitor.tolerance = rule.tolerance;
             }
         }
         if monitor.is_cancelled() {
