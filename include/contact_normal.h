@@ -238,7 +238,8 @@
 
 /*
  Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
- used by different threads.
+ used by different threads. While a call uses a handle, any other call with it, from a callback or from another thread, is refused
+ (INVALID_ARGUMENT).
  */
 typedef struct contact_normal_solver contact_normal_solver;
 
@@ -269,6 +270,10 @@ typedef struct contact_normal_influence {
    of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
    */
   const double *coefficients;
+  /*
+   Every coefficient is multiplied by this, positive; default 1.
+   */
+  double scale;
 } contact_normal_influence;
 
 /*
@@ -376,6 +381,10 @@ typedef struct contact_normal_row_tables {
    element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
    */
   const double *coefficients;
+  /*
+   Every coefficient is multiplied by this, positive; default 1.
+   */
+  double scale;
 } contact_normal_row_tables;
 
 /*
@@ -500,7 +509,8 @@ typedef struct contact_normal_progress {
 } contact_normal_progress;
 
 /*
- Called after each cycle, on the calling thread; non-zero cancels.
+ Called after each cycle, on the calling thread, in its floating-point environment; non-zero cancels. The handle that is solving
+ refuses to be used.
  */
 typedef int32_t (*contact_normal_progress_callback)(const struct contact_normal_progress *progress,
                                                     void *user);
@@ -829,11 +839,17 @@ typedef struct contact_normal_report {
    Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
    */
   int64_t edge_count;
+  /*
+   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+   an accuracy asks for.
+   */
+  double tolerance;
 } contact_normal_report;
 
 /*
  Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
- `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread.
+ `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
+ in its floating-point environment.
  */
 typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
                                                    int32_t my,
@@ -932,8 +948,8 @@ typedef struct contact_normal_hertz_solution {
 } contact_normal_hertz_solution;
 
 /*
- Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, with
- no lock held.
+ Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
+ floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
 typedef void (*contact_normal_log_callback)(int32_t level, const char *message, void *user);
 
@@ -948,7 +964,7 @@ const char *contact_normal_status_text(contact_normal_status status);
 
 /*
  The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
- Valid until the next call of this library on this thread. Since 0.1.
+ Never NULL; valid until the next call of this library on this thread. Since 0.1.
  */
 const char *contact_normal_last_error(void);
 
@@ -968,12 +984,12 @@ int32_t contact_normal_abi_version(void);
 void contact_normal_scene_init(struct contact_normal_scene *scene);
 
 /*
- Fills an influence table with nothing. Since 0.1.
+ Fills an influence table with nothing, and a scale of 1. Since 0.1.
  */
 void contact_normal_influence_init(struct contact_normal_influence *influence);
 
 /*
- Fills row tables with nothing. Since 0.1.
+ Fills row tables with nothing, and a scale of 1. Since 0.1.
  */
 void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
 
@@ -1013,7 +1029,7 @@ void contact_normal_fields_init(struct contact_normal_fields *fields);
 void contact_normal_report_init(struct contact_normal_report *report);
 
 /*
- Solves one scene. `options` NULL: the defaults; `report` NULL: not wanted. Since 0.1.
+ Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
  */
 contact_normal_status contact_normal_solve(const struct contact_normal_scene *scene,
                                            const struct contact_normal_options *options,
@@ -1030,10 +1046,11 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
                                                 struct contact_normal_solver **solver);
 
 /*
- Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
- whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
- further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
+ Solves for the undeformed distance, the load and the pressure limit of `scene`. The rest of it must be what the solver was set up
+ for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
+ solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
+ `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
+ without coefficients to compare (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,
@@ -1042,7 +1059,23 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
                                                   struct contact_normal_report *report);
 
 /*
- Frees a solver; NULL is ignored. Since 0.1.
+ From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
+ `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
+ changes nothing. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
+                                                          const struct contact_normal_influence *influence);
+
+/*
+ Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
+ with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
+ leaves the result before as it is, or none. INVALID_ARGUMENT if there is none. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
+                                                   struct contact_normal_fields *fields);
+
+/*
+ Frees a solver; NULL is ignored. In a callback of a call that uses it nothing is freed: free it after that call. Since 0.1.
  */
 void contact_normal_solver_free(struct contact_normal_solver *solver);
 
@@ -1050,7 +1083,7 @@ void contact_normal_solver_free(struct contact_normal_solver *solver);
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
  solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
  structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
- not wanted. What one problem writes no other may read or write.
+ not wanted. What one problem writes no other may read or write, and it is refused.
 
  A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
  status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
@@ -1090,13 +1123,6 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_accuracy *accuracy,
                                                        struct contact_normal_solver **solver,
                                                        struct contact_normal_report *report);
-
-/*
- Copies the result of the last solve with a handle: of `contact_normal_solver_solve`, or the one that
- `contact_normal_solve_to_accuracy` made it with, whose grid has `accuracy->mx` x `accuracy->my` elements. Since 0.1.
- */
-contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
-                                                   struct contact_normal_fields *fields);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`

@@ -42,7 +42,7 @@ pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 pub const CONTACT_NORMAL_ABI_VERSION: i32 = 1;
 
 /// A refusal at the boundary.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Refusal {
     pub status: contact_normal_status,
     pub message: String,
