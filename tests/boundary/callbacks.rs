@@ -236,7 +236,11 @@ fn what_the_effects_hold_is_read_before_a_callback_runs() {
     for (k, effect) in effects.into_iter().enumerate() {
         for through in [Through::Solve, Through::ToAccuracy] {
             // An accuracy takes neither own coefficients nor values per element of one grid: the plain scene.
-            let change = |call: &mut Call| if through == Through::Solve { effect(call) };
+            let change = |call: &mut Call| {
+                if through == Through::Solve {
+                    effect(call)
+                }
+            };
             let mut undisturbed = Call::new();
             undisturbed.each.fill(1e-5);
             change(&mut undisturbed);

@@ -77,15 +77,7 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
         let mut fields = [calls[0].fields.known, calls[1].fields.known];
         // SAFETY: structs with their arrays.
         let status = unsafe {
-            contact_normal_solver_solve_batch(
-                handle.0,
-                2,
-                scenes.as_ptr(),
-                null(),
-                fields.as_mut_ptr(),
-                null_mut(),
-                at,
-            )
+            contact_normal_solver_solve_batch(handle.0, 2, scenes.as_ptr(), null(), fields.as_mut_ptr(), null_mut(), at)
         };
         (status, last_error())
     };

@@ -44,11 +44,9 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
 fn a_struct_of_version_0_1_is_accepted_and_a_shorter_one_is_not() {
     for (name, size) in SIZES {
         let through = if name == "accuracy" { Through::ToAccuracy } else { Through::Solve };
-        for (size, status) in [
-            (size, CONTACT_NORMAL_OK),
-            (size - 1, CONTACT_NORMAL_STRUCT_SIZE),
-            (size - 8, CONTACT_NORMAL_STRUCT_SIZE),
-        ] {
+        for (size, status) in
+            [(size, CONTACT_NORMAL_OK), (size - 1, CONTACT_NORMAL_STRUCT_SIZE), (size - 8, CONTACT_NORMAL_STRUCT_SIZE)]
+        {
             let mut call = Call::new();
             *declared(&mut call, name) = size;
             let (got, message) = call.run(through, null_mut());
