@@ -3,6 +3,8 @@
 #[path = "bad_input/call.rs"]
 #[allow(dead_code)] // of the bad input, the call
 mod call;
+#[path = "boundary/lack_of_memory.rs"]
+mod lack_of_memory;
 #[path = "boundary/limited_memory.rs"]
 mod limited_memory;
 
@@ -157,44 +159,6 @@ fn a_cancelled_solve_leaves_a_complete_result() {
     }
 }
 
-#[test]
-fn after_a_lack_of_memory_the_handle_works() {
-    let _alone = alone();
-    for (name, effect) in EFFECTS {
-        for method in [0, 1, 2, 3] {
-            // Some effects have no multigrid.
-            let mut probe = new_call(effect, method);
-            if probe.run(Through::Solve, std::ptr::null_mut()).0 == CONTACT_NORMAL_UNSUPPORTED {
-                continue;
-            }
-            let mut failures = 0;
-            for solved_before in [false, true] {
-                for allowed in 0.. {
-                    let what = format!("{name}, method {method}, {allowed} allocations");
-                    let handle = Handle(new_call(effect, method).new_handle());
-                    if solved_before {
-                        // By another method, so that this one still has to be set up.
-                        works(&handle, effect, 1, &what);
-                    }
-                    let before = held(&handle);
-                    let mut call = new_call(effect, method);
-                    let (status, message) =
-                        limited_memory::with(8 * MX * MY, allowed, || call.run(Through::SolverSolve, handle.0));
-                    if status == CONTACT_NORMAL_OK {
-                        break;
-                    }
-                    assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{what}: {message}");
-                    failures += 1;
-                    let after = held(&handle);
-                    assert!(after.is_none() || after == before, "{what}: half of a result");
-                    works(&handle, effect, method, &what);
-                }
-            }
-            assert!(failures > 0, "{name}, method {method}: nothing was allocated");
-        }
-    }
-}
-
 #[cfg(feature = "test-panics")]
 #[test]
 fn after_a_caught_panic_the_handle_works() {
@@ -298,7 +262,8 @@ fn limits_are_read_before_a_callback_runs() {
         assert_eq!(undisturbed.run(Through::Solve, std::ptr::null_mut()).0, CONTACT_NORMAL_OK);
         assert!(undisturbed.contact.contains(&2), "no element is at the limit");
         let mut call = new();
-        (call.options.known.progress, call.options.known.user) = (Some(spoil), call.each.as_mut_ptr().cast());
+        call.options.known.progress = Some(spoil);
+        call.options.known.user = call.each.as_mut_ptr().cast();
         assert_eq!(call.run(Through::Solve, std::ptr::null_mut()), (CONTACT_NORMAL_OK, String::new()));
         assert_eq!(call.each[0], 1e-300, "not called");
         assert_eq!(call.pressure, undisturbed.pressure);

@@ -40,7 +40,7 @@ pub struct contact_normal_accuracy {
     /// Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics through
     /// the four nearest centres in each direction.
     pub surface: contact_normal_surface_callback,
-    /// Passed to `surface`.
+    /// Passed to `surface`; default NULL.
     pub user: *mut c_void,
     /// Out: elements in x of the grid that was used; 0: cancelled before a grid was solved.
     pub mx: i32,

@@ -13,7 +13,7 @@ use crate::scene::{Layer, Patches, Period, PressureLimit};
 pub struct contact_normal_period {
     /// Set by `contact_normal_period_init`.
     pub struct_size: i64,
-    /// 1: it repeats itself in x; 0: it does not.
+    /// 1: it repeats itself in x; 0 (default): it does not.
     pub x: i32,
     /// The same in y.
     pub y: i32,
@@ -34,9 +34,9 @@ unsafe impl Versioned for contact_normal_period {
 pub struct contact_normal_layer {
     /// Set by `contact_normal_layer_init`.
     pub struct_size: i64,
-    /// c of all elements, a length per pressure, >= 0. Not read if there are `compliances`.
+    /// c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
     pub compliance: f64,
-    /// c of each element, `[my][mx]`, or NULL.
+    /// c of each element, `[my][mx]`, or NULL (default).
     pub compliances: *const f64,
 }
 
@@ -56,9 +56,9 @@ unsafe impl Versioned for contact_normal_layer {
 pub struct contact_normal_pressure_limit {
     /// Set by `contact_normal_pressure_limit_init`.
     pub struct_size: i64,
-    /// The limit of all elements, a pressure > 0; +infinity: none. Not read if there are `limits`.
+    /// The limit of all elements, a pressure > 0; +infinity (default): none. Not read if there are `limits`.
     pub limit: f64,
-    /// That of each element, `[my][mx]`, or NULL.
+    /// That of each element, `[my][mx]`, or NULL (default).
     pub limits: *const f64,
 }
 
@@ -77,13 +77,14 @@ unsafe impl Versioned for contact_normal_pressure_limit {
 pub struct contact_normal_patches {
     /// Set by `contact_normal_patches_init`.
     pub struct_size: i64,
-    /// Number of patches, 1 to 64. Each costs a product.
+    /// Number of patches, 1 to 64; default 0: to be set. Each costs a product.
     pub count: i32,
     /// Always 0.
     pub reserved: i32,
-    /// The patch of each element, `[my][mx]`: 0 to count - 1.
+    /// The patch of each element, `[my][mx]`: 0 to count - 1. Default NULL: to be set.
     pub patch: *const i32,
     /// `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+    /// Default NULL: to be set.
     pub factors: *const f64,
 }
 
@@ -168,8 +169,8 @@ impl contact_normal_pressure_limit {
     }
 }
 
-/// Patches of which the factors are looked at: more are refused by their count alone.
-const MOST_PATCHES: usize = 1024;
+/// Patches at most: of more the factors are not looked at, and the core refuses their count.
+const MOST_PATCHES: usize = 64;
 
 impl contact_normal_patches {
     /// The caller's arrays must live as long as the result is used.

@@ -13,12 +13,13 @@ use crate::influence::{RowTables, Table};
 pub struct contact_normal_influence {
     /// Set by `contact_normal_influence_init`.
     pub struct_size: i64,
-    /// The table covers offsets -cx..cx-1; cx >= mx.
+    /// The table covers offsets -cx..cx-1; cx >= mx. Default 0: to be set.
     pub cx: i32,
-    /// And -cy..cy-1; cy >= my.
+    /// And -cy..cy-1; cy >= my. Default 0: to be set.
     pub cy: i32,
     /// `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
     /// of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
+    /// Default NULL: to be set.
     pub coefficients: *const f64,
     /// Every coefficient is multiplied by this, positive; default 1.
     pub scale: f64,
@@ -41,12 +42,13 @@ unsafe impl Versioned for contact_normal_influence {
 pub struct contact_normal_row_tables {
     /// Set by `contact_normal_row_tables_init`.
     pub struct_size: i64,
-    /// The tables cover offsets -cx..cx-1 in x; cx >= mx.
+    /// The tables cover offsets -cx..cx-1 in x; cx >= mx. Default 0: to be set.
     pub cx: i32,
-    /// Number of tables, and rows of each: my.
+    /// Number of tables, and rows of each: my. Default 0: to be set.
     pub rows: i32,
     /// `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
-    /// element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
+    /// element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
+    /// NULL: to be set.
     pub coefficients: *const f64,
     /// Every coefficient is multiplied by this, positive; default 1.
     pub scale: f64,

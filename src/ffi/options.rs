@@ -86,7 +86,8 @@ pub struct contact_normal_options {
     pub criterion: i32,
     /// Of the criterion; default 1e-6.
     pub tolerance: f64,
-    /// > 0: may stop once the residual is below this part of the estimated discretisation error; default 0.
+    /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
+    /// that `report->tolerance` says. Default 0: the tolerance above.
     pub error_ratio: f64,
     /// Cycles (or iterations) on the finest grid at most; default 1000.
     pub max_cycles: i32,
@@ -96,9 +97,9 @@ pub struct contact_normal_options {
     pub precision: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Called after each cycle, or NULL.
+    /// Called after each cycle, or NULL (default).
     pub progress: contact_normal_progress_callback,
-    /// Passed to `progress`.
+    /// Passed to `progress`; default NULL.
     pub user: *mut c_void,
 }
 

@@ -3,7 +3,8 @@
 use super::structs::{self, Versioned};
 use crate::solver::{LedgerRow, Limit, Progress, Report};
 
-/// Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
+/// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
+/// array may overlap with another one, nor with anything that is read.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_fields {
@@ -170,9 +171,9 @@ pub struct contact_normal_report {
     pub bytes: i64,
     /// Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
     pub ledger_rows: i64,
-    /// In: room in `ledger`.
+    /// In: room in `ledger`; default 0.
     pub ledger_capacity: i64,
-    /// In: the caller's array, or NULL.
+    /// In: the caller's array, or NULL (default).
     pub ledger: *mut contact_normal_ledger_row,
     /// Contact area, corrected for the elements along its outline; < 0: not known.
     pub corrected_area: f64,

@@ -23,39 +23,39 @@ pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 1;
 pub struct contact_normal_scene {
     /// Set by `contact_normal_scene_init`.
     pub struct_size: i64,
-    /// Elements in x, >= 1.
+    /// Elements in x, >= 1; default 0: to be set.
     pub mx: i32,
-    /// Elements in y, >= 1.
+    /// Elements in y, >= 1; default 0: to be set.
     pub my: i32,
-    /// Element size in x: a length.
+    /// Element size in x: a length, positive; default 0: to be set.
     pub dx: f64,
-    /// Element size in y.
+    /// Element size in y; default 0: to be set.
     pub dy: f64,
-    /// h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior.
+    /// h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
-    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most).
+    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
     pub shear_modulus: [f64; 2],
-    /// nu of the two bodies, in (-1, 0.5].
+    /// nu of the two bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],
-    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE.
+    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
     pub load: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Prescribed approach (penetration): a length.
+    /// Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0.
+    /// Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
     pub force: f64,
-    /// Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
+    /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
-    /// Effect, or NULL: a thin compliant layer.
+    /// Effect, or NULL (default): a thin compliant layer.
     pub layer: *const contact_normal_layer,
-    /// Effect, or NULL: pressures do not exceed a limit.
+    /// Effect, or NULL (default): pressures do not exceed a limit.
     pub pressure_limit: *const contact_normal_pressure_limit,
-    /// Effect, or NULL: the scene repeats itself.
+    /// Effect, or NULL (default): the scene repeats itself.
     pub period: *const contact_normal_period,
-    /// Effect, or NULL: several contact patches, whose interaction is scaled.
+    /// Effect, or NULL (default): several contact patches, whose interaction is scaled.
     pub patches: *const contact_normal_patches,
-    /// Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+    /// Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
     pub row_tables: *const contact_normal_row_tables,
 }
 

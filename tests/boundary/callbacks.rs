@@ -190,7 +190,8 @@ fn a_handle_that_is_solving_refuses_to_be_used_or_freed() {
     let mut misused = Misuse { handle: handle.0, call: Call::new(), outcomes: Vec::new() };
     let mut call = Call::new();
     call.use_table();
-    (call.options.known.progress, call.options.known.user) = (Some(misuse), (&raw mut misused).cast());
+    call.options.known.progress = Some(misuse);
+    call.options.known.user = (&raw mut misused).cast();
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()));
     assert!(misused.outcomes.len() >= 5, "not called");
     for outcome in misused.outcomes {
@@ -252,7 +253,8 @@ fn what_the_effects_hold_is_read_before_a_callback_runs() {
             let mut numbers: Vec<_> = arrays.iter_mut().map(|array| (array.as_mut_ptr(), array.len())).collect();
             numbers.push((call.factors.as_mut_ptr(), 4));
             let mut spoilt = Spoilt { numbers, patch: (call.patch.as_mut_ptr(), call.patch.len()) };
-            (call.options.known.progress, call.options.known.user) = (Some(spoil), (&raw mut spoilt).cast());
+            call.options.known.progress = Some(spoil);
+            call.options.known.user = (&raw mut spoilt).cast();
             assert_eq!(call.run(through, null_mut()), (CONTACT_NORMAL_OK, String::new()), "effect {k}, {through:?}");
             assert!(call.h[0].is_nan(), "effect {k}: not called");
             assert_eq!(call.report.known.force, undisturbed.report.known.force, "effect {k}, {through:?}");

@@ -72,7 +72,7 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
     let mut calls = [Call::new(), Call::new()];
     let handle = Handle::of(&mut calls[0]);
     let mut statuses = [-77; 2];
-    let mut batch = |calls: &[Call; 2], at: *mut i32| {
+    let batch = |calls: &[Call; 2], at: *mut i32| {
         let scenes = [calls[0].scene.known, calls[1].scene.known];
         let mut fields = [calls[0].fields.known, calls[1].fields.known];
         // SAFETY: structs with their arrays.
