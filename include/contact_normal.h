@@ -258,16 +258,17 @@ typedef struct contact_normal_influence {
    */
   int64_t struct_size;
   /*
-   The table covers offsets -cx..cx-1; cx >= mx.
+   The table covers offsets -cx..cx-1; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   And -cy..cy-1; cy >= my.
+   And -cy..cy-1; cy >= my. Default 0: to be set.
    */
   int32_t cy;
   /*
    `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
    of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
+   Default NULL: to be set.
    */
   const double *coefficients;
   /*
@@ -285,11 +286,11 @@ typedef struct contact_normal_layer {
    */
   int64_t struct_size;
   /*
-   c of all elements, a length per pressure, >= 0. Not read if there are `compliances`.
+   c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
    */
   double compliance;
   /*
-   c of each element, `[my][mx]`, or NULL.
+   c of each element, `[my][mx]`, or NULL (default).
    */
   const double *compliances;
 } contact_normal_layer;
@@ -304,11 +305,11 @@ typedef struct contact_normal_pressure_limit {
    */
   int64_t struct_size;
   /*
-   The limit of all elements, a pressure > 0; +infinity: none. Not read if there are `limits`.
+   The limit of all elements, a pressure > 0; +infinity (default): none. Not read if there are `limits`.
    */
   double limit;
   /*
-   That of each element, `[my][mx]`, or NULL.
+   That of each element, `[my][mx]`, or NULL (default).
    */
   const double *limits;
 } contact_normal_pressure_limit;
@@ -323,7 +324,7 @@ typedef struct contact_normal_period {
    */
   int64_t struct_size;
   /*
-   1: it repeats itself in x; 0: it does not.
+   1: it repeats itself in x; 0 (default): it does not.
    */
   int32_t x;
   /*
@@ -341,7 +342,7 @@ typedef struct contact_normal_patches {
    */
   int64_t struct_size;
   /*
-   Number of patches, 1 to 64. Each costs a product.
+   Number of patches, 1 to 64; default 0: to be set. Each costs a product.
    */
   int32_t count;
   /*
@@ -349,11 +350,12 @@ typedef struct contact_normal_patches {
    */
   int32_t reserved;
   /*
-   The patch of each element, `[my][mx]`: 0 to count - 1.
+   The patch of each element, `[my][mx]`: 0 to count - 1. Default NULL: to be set.
    */
   const int32_t *patch;
   /*
    `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+   Default NULL: to be set.
    */
   const double *factors;
 } contact_normal_patches;
@@ -369,16 +371,17 @@ typedef struct contact_normal_row_tables {
    */
   int64_t struct_size;
   /*
-   The tables cover offsets -cx..cx-1 in x; cx >= mx.
+   The tables cover offsets -cx..cx-1 in x; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   Number of tables, and rows of each: my.
+   Number of tables, and rows of each: my. Default 0: to be set.
    */
   int32_t rows;
   /*
    `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
-   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
+   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
+   NULL: to be set.
    */
   const double *coefficients;
   /*
@@ -397,35 +400,35 @@ typedef struct contact_normal_scene {
    */
   int64_t struct_size;
   /*
-   Elements in x, >= 1.
+   Elements in x, >= 1; default 0: to be set.
    */
   int32_t mx;
   /*
-   Elements in y, >= 1.
+   Elements in y, >= 1; default 0: to be set.
    */
   int32_t my;
   /*
-   Element size in x: a length.
+   Element size in x: a length, positive; default 0: to be set.
    */
   double dx;
   /*
-   Element size in y.
+   Element size in y; default 0: to be set.
    */
   double dy;
   /*
-   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior.
+   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
    */
   const double *undeformed_distance;
   /*
-   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most).
+   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
    */
   double shear_modulus[2];
   /*
-   nu of the two bodies, in (-1, 0.5].
+   nu of the two bodies, in (-1, 0.5]; default 0.
    */
   double poisson_ratio[2];
   /*
-   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE.
+   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
    */
   int32_t load;
   /*
@@ -433,35 +436,35 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (penetration): a length.
+   Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0.
+   Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
    */
   double force;
   /*
-   Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
+   Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
    */
   const struct contact_normal_influence *influence;
   /*
-   Effect, or NULL: a thin compliant layer.
+   Effect, or NULL (default): a thin compliant layer.
    */
   const struct contact_normal_layer *layer;
   /*
-   Effect, or NULL: pressures do not exceed a limit.
+   Effect, or NULL (default): pressures do not exceed a limit.
    */
   const struct contact_normal_pressure_limit *pressure_limit;
   /*
-   Effect, or NULL: the scene repeats itself.
+   Effect, or NULL (default): the scene repeats itself.
    */
   const struct contact_normal_period *period;
   /*
-   Effect, or NULL: several contact patches, whose interaction is scaled.
+   Effect, or NULL (default): several contact patches, whose interaction is scaled.
    */
   const struct contact_normal_patches *patches;
   /*
-   Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+   Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
    */
   const struct contact_normal_row_tables *row_tables;
 } contact_normal_scene;
@@ -564,7 +567,8 @@ typedef struct contact_normal_options {
    */
   double tolerance;
   /*
-   > 0: may stop once the residual is below this part of the estimated discretisation error; default 0.
+   > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
+   that `report->tolerance` says. Default 0: the tolerance above.
    */
   double error_ratio;
   /*
@@ -584,17 +588,18 @@ typedef struct contact_normal_options {
    */
   int32_t reserved;
   /*
-   Called after each cycle, or NULL.
+   Called after each cycle, or NULL (default).
    */
   contact_normal_progress_callback progress;
   /*
-   Passed to `progress`.
+   Passed to `progress`; default NULL.
    */
   void *user;
 } contact_normal_options;
 
 /*
- Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
+ Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
+ array may overlap with another one, nor with anything that is read.
  */
 typedef struct contact_normal_fields {
   /*
@@ -800,11 +805,11 @@ typedef struct contact_normal_report {
    */
   int64_t ledger_rows;
   /*
-   In: room in `ledger`.
+   In: room in `ledger`; default 0.
    */
   int64_t ledger_capacity;
   /*
-   In: the caller's array, or NULL.
+   In: the caller's array, or NULL (default).
    */
   struct contact_normal_ledger_row *ledger;
   /*
@@ -888,7 +893,7 @@ typedef struct contact_normal_accuracy {
    */
   contact_normal_surface_callback surface;
   /*
-   Passed to `surface`.
+   Passed to `surface`; default NULL.
    */
   void *user;
   /*

@@ -66,6 +66,13 @@ impl Regions {
         self.problem = Some(problem);
     }
 
+    /// Drops what was added of the last problem: it is refused, so nothing of it is read or written.
+    pub fn leave_out_problem(&mut self) {
+        while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
+            self.list.pop();
+        }
+    }
+
     /// `count` values that are only read; none at NULL.
     pub fn input<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)

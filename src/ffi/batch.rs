@@ -142,7 +142,7 @@ impl Batch {
         }
     }
 
-    /// Adds all that is read and written: several threads do so at a time. What is refused for itself is neither.
+    /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
     fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
         for (i, outputs) in self.outputs.iter().enumerate() {
@@ -153,8 +153,9 @@ impl Batch {
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let named = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at))) };
             match named.and_then(|(named, at)| named.add_to(regions, at)) {
+                Ok(()) => {}
                 Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => return Err(refusal),
-                _ => {}
+                Err(_) => regions.leave_out_problem(),
             }
         }
         Ok(())
