@@ -60,6 +60,7 @@ module contact_normal
     integer(c_int64_t) :: struct_size = 0      ! 0 until _init: such a structure is refused, not misread
     integer(c_int32_t) :: cx = 0, cy = 0
     type(c_ptr) :: coefficients = c_null_ptr
+    real(c_double) :: scale = 1
   end type
 
   ! A thin compliant layer; filled by contact_normal_set_layer. Since 0.1.
@@ -94,6 +95,7 @@ module contact_normal
     integer(c_int64_t) :: struct_size = 0
     integer(c_int32_t) :: cx = 0, rows = 0
     type(c_ptr) :: coefficients = c_null_ptr
+    real(c_double) :: scale = 1
   end type
 
   ! What is simulated. Since 0.1.
@@ -217,6 +219,7 @@ module contact_normal
     real(c_double) :: halved_seconds = -1
     real(c_double) :: halved_error_force = -1
     integer(c_int64_t) :: edge_count = 0
+    real(c_double) :: tolerance = 0
   end type
 
   ! The accuracy that is asked for, what it may cost, and the grid that it took. Since 0.1.
@@ -283,7 +286,8 @@ module contact_normal
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
     contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
-    contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_free, norm_solve, &
+    contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
+    contact_normal_solver_free, norm_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
     contact_normal_set_row_tables
 
@@ -329,14 +333,16 @@ contains
     scene%undeformed_distance = c_loc(h)
   end subroutine
 
-  ! The scene uses own coefficients(-cx:cx-1, -cy:cy-1) instead of the half-space; `influence` keeps what is said about
-  ! them. Since 0.1.
-  subroutine contact_normal_set_influence(scene, influence, cx, cy, coefficients)
+  ! The scene uses own coefficients(-cx:cx-1, -cy:cy-1) instead of the half-space, times `scale` (1 if it is not given);
+  ! `influence` keeps what is said about them. Since 0.1.
+  subroutine contact_normal_set_influence(scene, influence, cx, cy, coefficients, scale)
     type(contact_normal_scene), intent(inout) :: scene
     type(contact_normal_influence), pointer, intent(in) :: influence
     integer(c_int32_t), intent(in) :: cx, cy
     real(c_double), pointer, contiguous, intent(in) :: coefficients(..)
+    real(c_double), intent(in), optional :: scale
     call contact_normal_influence_init(influence)
+    if (present(scale)) influence%scale = scale
     influence%cx = cx
     influence%cy = cy
     influence%coefficients = c_loc(coefficients)
@@ -391,13 +397,16 @@ contains
     scene%patches = c_loc(patches)
   end subroutine
 
-  ! The scene uses own coefficients(-cx:cx-1, my, my), of offset, row and loaded row, instead of the half-space. Since 0.1.
-  subroutine contact_normal_set_row_tables(scene, row_tables, cx, coefficients)
+  ! The scene uses own coefficients(-cx:cx-1, my, my), of offset, row and loaded row, instead of the half-space, times
+  ! `scale` (1 if it is not given). Since 0.1.
+  subroutine contact_normal_set_row_tables(scene, row_tables, cx, coefficients, scale)
     type(contact_normal_scene), intent(inout) :: scene
     type(contact_normal_row_tables), pointer, intent(in) :: row_tables
     integer(c_int32_t), intent(in) :: cx
     real(c_double), pointer, contiguous, intent(in) :: coefficients(:, :, :)
+    real(c_double), intent(in), optional :: scale
     call contact_normal_row_tables_init(row_tables)
+    if (present(scale)) row_tables%scale = scale
     row_tables%cx = cx
     row_tables%rows = size(coefficients, 3, kind=c_int32_t)
     row_tables%coefficients = c_loc(coefficients)
@@ -469,12 +478,21 @@ contains
     status = c_solver_new(scene, options, solver%handle)
   end function
 
+  ! All later solves with it use these coefficients: what contact_normal_set_influence has filled. Only for a solver that was
+  ! set up with coefficients of its own. Since 0.1.
+  function contact_normal_solver_set_influence(solver, influence) result(status)
+    type(contact_normal_solver), intent(in) :: solver
+    type(contact_normal_influence), intent(in) :: influence
+    integer(c_int32_t) :: status
+    status = c_solver_set_influence(solver%handle, influence)
+  end function
+
   ! Solves with it. Since 0.1.
   function contact_normal_solver_solve(solver, scene, options, fields, report) result(status)
     type(contact_normal_solver), intent(in) :: solver
     type(contact_normal_scene), intent(in) :: scene
     type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_fields), intent(inout) :: fields
+    type(contact_normal_fields), intent(inout), optional :: fields
     type(contact_normal_report), intent(inout), optional :: report
     integer(c_int32_t) :: status
     status = c_solver_solve(solver%handle, scene, options, fields, report)

@@ -238,7 +238,8 @@
 
 /*
  Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
- used by different threads.
+ used by different threads. While a call uses a handle, any other call with it, from a callback or from another thread, is refused
+ (INVALID_ARGUMENT).
  */
 typedef struct contact_normal_solver contact_normal_solver;
 
@@ -257,18 +258,23 @@ typedef struct contact_normal_influence {
    */
   int64_t struct_size;
   /*
-   The table covers offsets -cx..cx-1; cx >= mx.
+   The table covers offsets -cx..cx-1; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   And -cy..cy-1; cy >= my.
+   And -cy..cy-1; cy >= my. Default 0: to be set.
    */
   int32_t cy;
   /*
    `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
    of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
+   Default NULL: to be set.
    */
   const double *coefficients;
+  /*
+   Every coefficient is multiplied by this, positive; default 1.
+   */
+  double scale;
 } contact_normal_influence;
 
 /*
@@ -280,11 +286,11 @@ typedef struct contact_normal_layer {
    */
   int64_t struct_size;
   /*
-   c of all elements, a length per pressure, >= 0. Not read if there are `compliances`.
+   c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
    */
   double compliance;
   /*
-   c of each element, `[my][mx]`, or NULL.
+   c of each element, `[my][mx]`, or NULL (default).
    */
   const double *compliances;
 } contact_normal_layer;
@@ -299,11 +305,11 @@ typedef struct contact_normal_pressure_limit {
    */
   int64_t struct_size;
   /*
-   The limit of all elements, a pressure > 0; +infinity: none. Not read if there are `limits`.
+   The limit of all elements, a pressure > 0; +infinity (default): none. Not read if there are `limits`.
    */
   double limit;
   /*
-   That of each element, `[my][mx]`, or NULL.
+   That of each element, `[my][mx]`, or NULL (default).
    */
   const double *limits;
 } contact_normal_pressure_limit;
@@ -318,7 +324,7 @@ typedef struct contact_normal_period {
    */
   int64_t struct_size;
   /*
-   1: it repeats itself in x; 0: it does not.
+   1: it repeats itself in x; 0 (default): it does not.
    */
   int32_t x;
   /*
@@ -336,7 +342,7 @@ typedef struct contact_normal_patches {
    */
   int64_t struct_size;
   /*
-   Number of patches, 1 to 64. Each costs a product.
+   Number of patches, 1 to 64; default 0: to be set. Each costs a product.
    */
   int32_t count;
   /*
@@ -344,11 +350,12 @@ typedef struct contact_normal_patches {
    */
   int32_t reserved;
   /*
-   The patch of each element, `[my][mx]`: 0 to count - 1.
+   The patch of each element, `[my][mx]`: 0 to count - 1. Default NULL: to be set.
    */
   const int32_t *patch;
   /*
    `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
+   Default NULL: to be set.
    */
   const double *factors;
 } contact_normal_patches;
@@ -364,18 +371,23 @@ typedef struct contact_normal_row_tables {
    */
   int64_t struct_size;
   /*
-   The tables cover offsets -cx..cx-1 in x; cx >= mx.
+   The tables cover offsets -cx..cx-1 in x; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   Number of tables, and rows of each: my.
+   Number of tables, and rows of each: my. Default 0: to be set.
    */
   int32_t rows;
   /*
    `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
-   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read.
+   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
+   NULL: to be set.
    */
   const double *coefficients;
+  /*
+   Every coefficient is multiplied by this, positive; default 1.
+   */
+  double scale;
 } contact_normal_row_tables;
 
 /*
@@ -388,35 +400,35 @@ typedef struct contact_normal_scene {
    */
   int64_t struct_size;
   /*
-   Elements in x, >= 1.
+   Elements in x, >= 1; default 0: to be set.
    */
   int32_t mx;
   /*
-   Elements in y, >= 1.
+   Elements in y, >= 1; default 0: to be set.
    */
   int32_t my;
   /*
-   Element size in x: a length.
+   Element size in x: a length, positive; default 0: to be set.
    */
   double dx;
   /*
-   Element size in y.
+   Element size in y; default 0: to be set.
    */
   double dy;
   /*
-   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior.
+   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
    */
   const double *undeformed_distance;
   /*
-   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most).
+   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
    */
   double shear_modulus[2];
   /*
-   nu of the two bodies, in (-1, 0.5].
+   nu of the two bodies, in (-1, 0.5]; default 0.
    */
   double poisson_ratio[2];
   /*
-   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE.
+   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
    */
   int32_t load;
   /*
@@ -424,35 +436,35 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (penetration): a length.
+   Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0.
+   Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
    */
   double force;
   /*
-   Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
+   Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
    */
   const struct contact_normal_influence *influence;
   /*
-   Effect, or NULL: a thin compliant layer.
+   Effect, or NULL (default): a thin compliant layer.
    */
   const struct contact_normal_layer *layer;
   /*
-   Effect, or NULL: pressures do not exceed a limit.
+   Effect, or NULL (default): pressures do not exceed a limit.
    */
   const struct contact_normal_pressure_limit *pressure_limit;
   /*
-   Effect, or NULL: the scene repeats itself.
+   Effect, or NULL (default): the scene repeats itself.
    */
   const struct contact_normal_period *period;
   /*
-   Effect, or NULL: several contact patches, whose interaction is scaled.
+   Effect, or NULL (default): several contact patches, whose interaction is scaled.
    */
   const struct contact_normal_patches *patches;
   /*
-   Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+   Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
    */
   const struct contact_normal_row_tables *row_tables;
 } contact_normal_scene;
@@ -500,7 +512,8 @@ typedef struct contact_normal_progress {
 } contact_normal_progress;
 
 /*
- Called after each cycle, on the calling thread; non-zero cancels.
+ Called after each cycle, on the calling thread, in its floating-point environment; non-zero cancels. The handle that is solving
+ refuses to be used.
  */
 typedef int32_t (*contact_normal_progress_callback)(const struct contact_normal_progress *progress,
                                                     void *user);
@@ -554,7 +567,8 @@ typedef struct contact_normal_options {
    */
   double tolerance;
   /*
-   > 0: may stop once the residual is below this part of the estimated discretisation error; default 0.
+   > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
+   that `report->tolerance` says. Default 0: the tolerance above.
    */
   double error_ratio;
   /*
@@ -574,17 +588,18 @@ typedef struct contact_normal_options {
    */
   int32_t reserved;
   /*
-   Called after each cycle, or NULL.
+   Called after each cycle, or NULL (default).
    */
   contact_normal_progress_callback progress;
   /*
-   Passed to `progress`.
+   Passed to `progress`; default NULL.
    */
   void *user;
 } contact_normal_options;
 
 /*
- Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
+ Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
+ array may overlap with another one, nor with anything that is read.
  */
 typedef struct contact_normal_fields {
   /*
@@ -790,11 +805,11 @@ typedef struct contact_normal_report {
    */
   int64_t ledger_rows;
   /*
-   In: room in `ledger`.
+   In: room in `ledger`; default 0.
    */
   int64_t ledger_capacity;
   /*
-   In: the caller's array, or NULL.
+   In: the caller's array, or NULL (default).
    */
   struct contact_normal_ledger_row *ledger;
   /*
@@ -829,11 +844,17 @@ typedef struct contact_normal_report {
    Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
    */
   int64_t edge_count;
+  /*
+   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+   an accuracy asks for.
+   */
+  double tolerance;
 } contact_normal_report;
 
 /*
  Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
- `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread.
+ `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
+ in its floating-point environment.
  */
 typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
                                                    int32_t my,
@@ -872,7 +893,7 @@ typedef struct contact_normal_accuracy {
    */
   contact_normal_surface_callback surface;
   /*
-   Passed to `surface`.
+   Passed to `surface`; default NULL.
    */
   void *user;
   /*
@@ -932,8 +953,8 @@ typedef struct contact_normal_hertz_solution {
 } contact_normal_hertz_solution;
 
 /*
- Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, with
- no lock held.
+ Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
+ floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
 typedef void (*contact_normal_log_callback)(int32_t level, const char *message, void *user);
 
@@ -948,7 +969,7 @@ const char *contact_normal_status_text(contact_normal_status status);
 
 /*
  The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
- Valid until the next call of this library on this thread. Since 0.1.
+ Never NULL; valid until the next call of this library on this thread. Since 0.1.
  */
 const char *contact_normal_last_error(void);
 
@@ -968,12 +989,12 @@ int32_t contact_normal_abi_version(void);
 void contact_normal_scene_init(struct contact_normal_scene *scene);
 
 /*
- Fills an influence table with nothing. Since 0.1.
+ Fills an influence table with nothing, and a scale of 1. Since 0.1.
  */
 void contact_normal_influence_init(struct contact_normal_influence *influence);
 
 /*
- Fills row tables with nothing. Since 0.1.
+ Fills row tables with nothing, and a scale of 1. Since 0.1.
  */
 void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
 
@@ -1013,7 +1034,7 @@ void contact_normal_fields_init(struct contact_normal_fields *fields);
 void contact_normal_report_init(struct contact_normal_report *report);
 
 /*
- Solves one scene. `options` NULL: the defaults; `report` NULL: not wanted. Since 0.1.
+ Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
  */
 contact_normal_status contact_normal_solve(const struct contact_normal_scene *scene,
                                            const struct contact_normal_options *options,
@@ -1030,10 +1051,11 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
                                                 struct contact_normal_solver **solver);
 
 /*
- Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
- for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
- whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
- further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
+ Solves for the undeformed distance, the load and the pressure limit of `scene`. The rest of it must be what the solver was set up
+ for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
+ solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
+ `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
+ without coefficients to compare (README, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,
@@ -1042,7 +1064,23 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
                                                   struct contact_normal_report *report);
 
 /*
- Frees a solver; NULL is ignored. Since 0.1.
+ From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
+ `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
+ changes nothing. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
+                                                          const struct contact_normal_influence *influence);
+
+/*
+ Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
+ with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
+ leaves the result before as it is, or none. INVALID_ARGUMENT if there is none. Since 0.1.
+ */
+contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
+                                                   struct contact_normal_fields *fields);
+
+/*
+ Frees a solver; NULL is ignored. In a callback of a call that uses it nothing is freed: free it after that call. Since 0.1.
  */
 void contact_normal_solver_free(struct contact_normal_solver *solver);
 
@@ -1050,7 +1088,7 @@ void contact_normal_solver_free(struct contact_normal_solver *solver);
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
  solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
  structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
- not wanted. What one problem writes no other may read or write.
+ not wanted. What one problem writes no other may read or write, and it is refused.
 
  A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
  status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
@@ -1090,13 +1128,6 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_accuracy *accuracy,
                                                        struct contact_normal_solver **solver,
                                                        struct contact_normal_report *report);
-
-/*
- Copies the result of the last solve with a handle: of `contact_normal_solver_solve`, or the one that
- `contact_normal_solve_to_accuracy` made it with, whose grid has `accuracy->mx` x `accuracy->my` elements. Since 0.1.
- */
-contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
-                                                   struct contact_normal_fields *fields);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`

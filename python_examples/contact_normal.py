@@ -125,6 +125,23 @@ def _effect(scene, kept, name, number, array, value, shape):
     kept.append(effect)
 
 
+def _scaled(values):
+    """Coefficients and their scale, of `coefficients` or `(coefficients, scale)`."""
+    return values if isinstance(values, tuple) else (values, 1.0)
+
+
+def _influence(influence):
+    """A table of own coefficients, and the array that must live as long as it is used."""
+    table, scale = _scaled(influence)
+    table = _array("influence", table, np.float64)
+    if table.shape[0] % 2 or table.shape[1] % 2:
+        raise ValueError(f"influence has shape {table.shape}; it must be (2 cy, 2 cx)")
+    effect = _initialised("influence")
+    effect.cy, effect.cx, effect.scale = table.shape[0] // 2, table.shape[1] // 2, scale
+    effect.coefficients = _pointer(table)
+    return effect, table
+
+
 def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=None, layer=None, pressure_limit=None,
            period=None, patches=None, row_tables=None):
     """A scene, and the arrays that must live as long as it is used."""
@@ -142,12 +159,7 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=N
         scene.load, scene.force = PRESCRIBED_FORCE, force
     kept = [h]
     if influence is not None:
-        table = _array("influence", influence, np.float64)
-        if table.shape[0] % 2 or table.shape[1] % 2:
-            raise ValueError(f"influence has shape {table.shape}; it must be (2 cy, 2 cx)")
-        effect = _initialised("influence")
-        effect.cy, effect.cx = table.shape[0] // 2, table.shape[1] // 2
-        effect.coefficients = _pointer(table)
+        effect, table = _influence(influence)
         scene.influence = ctypes.pointer(effect)
         kept += [table, effect]
     if layer is not None:
@@ -170,11 +182,13 @@ def _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence=N
         scene.patches = ctypes.pointer(effect)
         kept += [patch, factors, effect]
     if row_tables is not None:
-        tables = np.ascontiguousarray(row_tables, np.float64)
+        tables, scale = _scaled(row_tables)
+        tables = np.ascontiguousarray(tables, np.float64)
         if tables.ndim != 3 or tables.shape[0] != tables.shape[1] or tables.shape[2] % 2:
             raise ValueError(f"row_tables has shape {tables.shape}; it must be (my, my, 2 cx)")
         effect = _initialised("row_tables")
         effect.rows, effect.cx, effect.coefficients = tables.shape[0], tables.shape[2] // 2, _pointer(tables)
+        effect.scale = scale
         scene.row_tables = ctypes.pointer(effect)
         kept += [tables, effect]
     return scene, kept
@@ -236,11 +250,12 @@ def solve(
 ):
     """Solves one scene: undeformed distance `h` (my, mx), prescribed approach or prescribed force.
 
-    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx); layer: compliance,
-    and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; patches: the patch of each element (my, mx), from 0
-    on, and the factors (count, count); row_tables: own coefficients of each loaded row, row and offset (my, my, 2 cx); pressure,
-    contact: initial guess, or the contact area of active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each
-    cycle, a true result cancels; options: the members of contact_normal_options (method, tolerance, threads, ...).
+    shear_modulus, poisson_ratio: one value, or one per body; influence: own coefficients (2 cy, 2 cx), or a pair of them and
+    their scale; layer: compliance, and pressure_limit: one value, or (my, mx); period: "x", "y" or "xy"; patches: the patch of
+    each element (my, mx), from 0 on, and the factors (count, count); row_tables: own coefficients of each loaded row, row and
+    offset (my, my, 2 cx), or a pair as for influence; pressure, contact: initial guess, or the contact area of
+    active_set=ACTIVE_SET_FIXED; progress: called with a Progress after each cycle, a true result cancels; options: the members
+    of contact_normal_options (method, tolerance, threads, ...).
     Raises ContactNormalError for a negative status; a positive one (stopped early) is the result's `status`.
     """
     scene, kept = _scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, influence, layer, pressure_limit, period,
@@ -409,6 +424,13 @@ class Solver:
             _check(status)
         text = [_library.contact_normal_status_text(status).decode() if status else "" for status in statuses]
         return [outputs[i].result(statuses[i], text[i], reports[i]) for i in range(count)]
+
+    def set_influence(self, influence):
+        """Later solves use these coefficients, (2 cy, 2 cx) or a pair of them and their scale, in place of the set-up's."""
+        if not self._handle:
+            raise ValueError("this solver is closed")
+        effect, _kept = _influence(influence)
+        _check(_library.contact_normal_solver_set_influence(self._handle, ctypes.byref(effect)))
 
     def close(self):
         """Frees the handle; a second call does nothing."""

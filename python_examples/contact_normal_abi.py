@@ -32,7 +32,13 @@ LIMITED_BY_UNKNOWN, LIMITED_BY_GRID, LIMITED_BY_TOLERANCE = 0, 1, 2
 class Influence(ctypes.Structure):
     """contact_normal_influence."""
 
-    _fields_ = [("struct_size", c_int64), ("cx", c_int32), ("cy", c_int32), ("coefficients", POINTER(c_double))]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("cx", c_int32),
+        ("cy", c_int32),
+        ("coefficients", POINTER(c_double)),
+        ("scale", c_double),
+    ]
 
 
 class Layer(ctypes.Structure):
@@ -73,6 +79,7 @@ class RowTables(ctypes.Structure):
         ("cx", c_int32),
         ("rows", c_int32),
         ("coefficients", POINTER(c_double)),
+        ("scale", c_double),
     ]
 
 
@@ -221,6 +228,7 @@ class Report(ctypes.Structure):
         ("halved_seconds", c_double),
         ("halved_error_force", c_double),
         ("edge_count", c_int64),
+        ("tolerance", c_double),
     ]
 
 
@@ -283,6 +291,7 @@ _PROTOTYPES = {
         c_int32,
         [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
     ),
+    "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
     "solver_free": (None, [c_void_p]),
     "accuracy_init": (None, [POINTER(Accuracy)]),

@@ -7,7 +7,7 @@ use super::state::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::{Operator, Workspace};
+use crate::operator::{Operator, SetUp, Workspace};
 use crate::threads::Threads;
 
 /// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
@@ -31,6 +31,8 @@ pub struct Problem {
     /// The threads of the solve.
     pub threads: Threads,
     workspace: Workspace<f64>,
+    /// Memory of set-ups.
+    set_up: SetUp,
     products: u64,
 }
 
@@ -52,7 +54,34 @@ impl Problem {
         let workspace = operator.workspace()?;
         let symmetric = coefficients.is_symmetric(&grid);
         let threads = threads.clone();
-        Ok(Problem { grid, coefficients, operator, symmetric, given: false, work, threads, workspace, products: 0 })
+        Ok(Problem {
+            grid,
+            coefficients,
+            operator,
+            symmetric,
+            given: false,
+            work,
+            threads,
+            workspace,
+            set_up: SetUp::default(),
+            products: 0,
+        })
+    }
+
+    /// Takes other coefficients, on the same grid; plans and memory are kept where nobody else uses the operator. Not to be used after
+    /// an error, before it is renewed again.
+    pub fn renew(&mut self, coefficients: Coefficients) -> Result<()> {
+        match Arc::get_mut(&mut self.operator) {
+            Some(operator) => operator.renew(&coefficients, 1.0, &self.grid, &mut self.set_up)?,
+            None => {
+                let threads = self.threads.suited_to(self.grid.len());
+                self.operator = Arc::new(Operator::new(&coefficients, &self.grid, &threads)?);
+            }
+        }
+        self.workspace.cover(self.operator.workspace()?);
+        self.symmetric = coefficients.is_symmetric(&self.grid);
+        self.coefficients = coefficients;
+        Ok(())
     }
 
     /// The influence of an element on itself.

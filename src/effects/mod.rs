@@ -97,6 +97,15 @@ fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn Effect> {
 
 /// Checks each effect of a scene, refuses pairs that are not solved, and the bodies if they matter.
 pub fn check(scene: &Scene<'_>) -> Result<()> {
+    check_effects(scene)?;
+    if replace_bodies(scene) {
+        return Ok(());
+    }
+    scene.bodies.check()
+}
+
+/// Checks each effect of a scene, and refuses pairs that are not solved.
+pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     for effect in effects(scene) {
         effect.check(&scene.grid)?;
         if let Some(other) = effects(scene).find(|other| effect.excludes().contains(&other.name())) {
@@ -107,10 +116,7 @@ pub fn check(scene: &Scene<'_>) -> Result<()> {
             )));
         }
     }
-    if replace_bodies(scene) {
-        return Ok(());
-    }
-    scene.bodies.check()
+    Ok(())
 }
 
 /// Checks what effects say about the load, which changes from solve to solve.

@@ -86,6 +86,14 @@ impl Named {
         Named { bodies, effects: list(scene).map(name_of_set_up), values }
     }
 
+    /// An effect of the set-up has other values from now on.
+    pub fn replace(&mut self, effect: &dyn Effect) {
+        effect.values(&mut |name, value| {
+            self.values.retain(|(known, _)| *known != name);
+            self.values.push((name, Kept::new(value)));
+        });
+    }
+
     /// What of another scene is not as at the set-up; none if all is.
     pub fn differs(&self, scene: &Scene<'_>) -> Option<String> {
         if let Some(bodies) = self.bodies.filter(|bodies| !replace_bodies(scene) && *bodies != scene.bodies) {
@@ -120,11 +128,10 @@ impl Named {
             (Some(Kept::Number(kept)), Value::Number(number)) => {
                 Some(format!("{name} is {number}; this solver was set up with {kept}"))
             }
-            (Some(Kept::Shared(kept)), Value::Shared(values)) => {
-                let other = kept.iter().zip(&**values).find(|(kept, now)| kept != now);
-                let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
-                Some(format!("{name} has the value {now} where this solver was set up with {kept}"))
-            }
+            (Some(Kept::Shared(_)), _) => Some(format!(
+                "{name} holds other coefficients than those of this solver; leave them out, or set up another solver (for influence: use \
+                 contact_normal_solver_set_influence)"
+            )),
             (Some(_), _) => Some(format!("{name} has other values than this solver was set up with")),
             (None, _) => Some(format!("{name} is given, but this solver was set up without")),
         }

@@ -2,11 +2,14 @@
 
 use libc::c_void;
 
+use super::arguments::Regions;
+use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
-use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::{self, contact_normal_scene, Known};
-use super::solve::{watcher, Outcome, Outputs};
+use super::outputs::Outputs;
+use super::report::contact_normal_report;
+use super::scene::{contact_normal_scene, Named};
+use super::solve::{watcher, Outcome};
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, Versioned};
@@ -14,7 +17,8 @@ use crate::grid::Grid;
 use crate::solver::{solve_to_accuracy, Accuracy, ProgressCallback, SurfaceCallback};
 
 /// Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
-/// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread.
+/// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
+/// in its floating-point environment.
 pub type contact_normal_surface_callback = Option<
     unsafe extern "C" fn(mx: i32, my: i32, dx: f64, dy: f64, undeformed_distance: *mut f64, user: *mut c_void) -> i32,
 >;
@@ -36,7 +40,7 @@ pub struct contact_normal_accuracy {
     /// Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics through
     /// the four nearest centres in each direction.
     pub surface: contact_normal_surface_callback,
-    /// Passed to `surface`.
+    /// Passed to `surface`; default NULL.
     pub user: *mut c_void,
     /// Out: elements in x of the grid that was used; 0: cancelled before a grid was solved.
     pub mx: i32,
@@ -100,18 +104,34 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let (mut given, options) =
-            unsafe { (structs::read(accuracy.cast_const(), "accuracy")?, options::translate(options)?) };
-        let known = Known { distance: given.surface.is_some(), ..Known::default() };
+        let (mut given, translated, named, outputs) = unsafe {
+            (
+                structs::read(accuracy.cast_const(), "accuracy")?,
+                options::translate(options)?,
+                Named::read(scene)?,
+                Outputs::of(std::ptr::null_mut(), report)?,
+            )
+        };
+        let mut regions = Regions::default();
+        named.add_to(&mut regions, scene)?;
+        translated.add_to(&mut regions, options)?;
+        outputs.add_to(&mut regions, 0)?;
+        regions.output_struct("accuracy", accuracy, &given)?;
+        regions.output("solver", solver, 1)?;
+        regions.check()?;
+        let options = translated;
+        // A copy: later grids are refined from it, and callbacks may write into the caller's.
         // SAFETY: as above.
-        let (scene, outputs) = unsafe { (scene::translate_for(scene, known)?, Outputs::report_only(report)?) };
+        let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
+        // SAFETY: as above.
+        let scene = unsafe { named.with_distance(&h)? };
         let (asked, user) = (translate(&given)?, given.user);
 
         let mut write = |grid: &Grid, h: &mut [f64]| match given.surface {
             // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
-            Some(surface) => unsafe {
+            Some(surface) => in_host_environment(|| unsafe {
                 surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
-            },
+            }),
             None => false,
         };
         let mut callback = watcher(&options);
@@ -146,26 +166,5 @@ fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Refusal> {
         max_seconds: given.max_seconds,
         max_bytes: limit("max_bytes", given.max_bytes)?,
         max_elements: limit("max_elements", given.max_elements)?,
-    })
-}
-
-/// Copies the result of the last solve with a handle: of `contact_normal_solver_solve`, or the one that
-/// `contact_normal_solve_to_accuracy` made it with, whose grid has `accuracy->mx` x `accuracy->my` elements. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_solver_fields(
-    solver: *const contact_normal_solver,
-    fields: *mut contact_normal_fields,
-) -> contact_normal_status {
-    guard(|| {
-        if solver.is_null() {
-            return Err(Refusal::null("solver"));
-        }
-        // SAFETY: not null: a handle of ours, used by one thread at a time; NULL or a struct that declares its size.
-        let (solver, outputs) = unsafe { (&(*solver).solver, Outputs::of(fields, std::ptr::null_mut())?) };
-        if !solver.has_solved() {
-            return Err(Refusal::invalid("solver has no result yet: nothing was solved with it".into()));
-        }
-        outputs.write_fields(solver);
-        Ok(super::status::CONTACT_NORMAL_OK)
     })
 }

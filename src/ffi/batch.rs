@@ -2,20 +2,25 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use super::arguments::Regions;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
+use super::outputs::{Buffers, Outputs};
 use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::contact_normal_scene;
-use super::solve::{run, GuessBuffer, Outcome, Outputs};
-use super::solver::{contact_normal_solver, scene_for};
-use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
+use super::scene::{contact_normal_scene, Named};
+use super::solve::{run, Outcome};
+use super::solver::{contact_normal_solver, Held, InUse};
+use super::status::{
+    contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
+};
 use super::structs::{self, Versioned};
+use crate::memory::reserve;
 use crate::solver::{Options, Solver};
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
 /// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
 /// structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
-/// not wanted. What one problem writes no other may read or write.
+/// not wanted. What one problem writes no other may read or write, and it is refused.
 ///
 /// A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
 /// status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
@@ -37,14 +42,13 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
     statuses: *mut contact_normal_status,
 ) -> contact_normal_status {
     guard(|| {
-        if solver.is_null() {
-            return Err(Refusal::null("solver"));
-        }
+        // SAFETY: NULL or a handle of ours.
+        let mut held = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = &mut *held;
         let Ok(count) = usize::try_from(count) else {
             return Err(Refusal::invalid(format!("count is {count}; it must not be negative")));
         };
-        // SAFETY: not null: made by contact_normal_solver_new and used by one thread at a time.
-        let solver = unsafe { &mut (*solver).solver };
+        let options_at = options;
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let options = unsafe { options::translate(options)? };
         if options.progress.is_some() {
@@ -60,7 +64,11 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         }
         // SAFETY: NULL or arrays of `count` structs, by the conventions of the ABI.
         let batch = unsafe { Batch::new(count, scenes, fields, reports, statuses)? };
-        batch.check_overlap(solver.state().p.len())?;
+        let regions = &mut buffers.regions;
+        regions.clear();
+        options.add_to(regions, options_at)?;
+        batch.add_to(regions, solver.grid().len())?;
+        regions.check()?;
         let worst = Mutex::new(Worst::default());
         solver.distribute(count, |i, worker| {
             // SAFETY: each problem is solved by one thread.
@@ -106,7 +114,7 @@ struct Batch {
 }
 
 // SAFETY: the pointers are the caller's, who leaves what they point to alone during the call. Scenes are read only, and what is
-// written for one problem no other reads or writes: by the conventions of the call, and `check_overlap`.
+// written for one problem no other reads or writes: by the conventions of the call, and `add_to`.
 unsafe impl Sync for Batch {}
 
 impl Batch {
@@ -124,30 +132,30 @@ impl Batch {
             let reports = if reports.is_null() { None } else { Some(Array::new(reports, "reports")?) };
             let outputs_of = |i: usize| {
                 let report = reports.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "report"))?;
-                match &fields {
-                    Some(array) => Outputs::of(array.at(i, "fields")?, report),
-                    None => Outputs::of(&mut contact_normal_fields::defaults(), report),
-                }
+                let fields = fields.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "fields"))?;
+                Outputs::of(fields, report)
             };
-            Ok(Batch { scenes, outputs: (0..count).map(outputs_of).collect(), statuses })
+            let mut outputs = Vec::new();
+            reserve(&mut outputs, count, "the outputs of a batch")?;
+            outputs.extend((0..count).map(outputs_of));
+            Ok(Batch { scenes, outputs, statuses })
         }
     }
 
-    /// Refuses output arrays that overlap: several threads would write to one.
-    fn check_overlap(&self, n: usize) -> Result<(), Refusal> {
-        let mut written: Vec<_> = Vec::new();
+    /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
+    fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
+        regions.output("statuses", self.statuses, self.outputs.len())?;
         for (i, outputs) in self.outputs.iter().enumerate() {
-            for (name, start, bytes) in outputs.iter().flat_map(|outputs| outputs.written(n)) {
-                written.push((start, start.saturating_add(bytes), i, name));
+            regions.enter_problem(i);
+            if let Ok(outputs) = outputs {
+                outputs.add_to(regions, n)?;
             }
-        }
-        written.sort_unstable();
-        for pair in written.windows(2) {
-            let [(_, end, i, name), (start, _, j, other)] = pair else { continue };
-            if start < end {
-                return Err(Refusal::invalid(format!(
-                    "{name} of problem {i} and {other} of problem {j} overlap; each output needs an array of its own"
-                )));
+            // SAFETY: a scene that declares its size, by the conventions of the ABI.
+            let named = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at))) };
+            match named.and_then(|(named, at)| named.add_to(regions, at)) {
+                Ok(()) => {}
+                Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => return Err(refusal),
+                Err(_) => regions.leave_out_problem(),
             }
         }
         Ok(())
@@ -158,8 +166,8 @@ impl Batch {
         let mut solved = || -> Result<Outcome, Refusal> {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
-            let scene = unsafe { scene_for(worker, self.scenes.at(i, "scene")?)? };
-            run(worker, &scene, options, None, outputs, &mut GuessBuffer::default())
+            let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
+            run(worker, &scene, options, None, outputs, &mut Buffers::default())
         };
         let outcome = solved().unwrap_or_else(|refusal| Outcome { status: refusal.status, message: refusal.message });
         if !self.statuses.is_null() {

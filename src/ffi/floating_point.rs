@@ -1,16 +1,26 @@
 //! The floating-point environment of the host: Fortran hosts flush denormals to zero, or trap; we compute in the default
-//! environment and give theirs back.
+//! environment and give theirs back. Their callbacks run in theirs, and what those change in it the host finds afterwards.
+
+use std::cell::Cell;
+
+thread_local! {
+    /// The host's environment, while a call of ours runs on this thread.
+    static HOST: Cell<Option<Register>> = const { Cell::new(None) };
+}
 
 /// Restores the host's environment when dropped.
 pub struct DefaultEnvironment {
-    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-    host: Register,
+    /// That of the call in whose callback this one is made.
+    outer: Option<Register>,
 }
 
 #[cfg(target_arch = "x86_64")]
 type Register = u32;
 #[cfg(target_arch = "aarch64")]
 type Register = u64;
+/// Unknown architectures keep the environment they have.
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+type Register = ();
 
 /// MXCSR: all exceptions masked, round to nearest, denormals kept.
 #[cfg(target_arch = "x86_64")]
@@ -18,6 +28,8 @@ const DEFAULT: Register = 0x1f80;
 /// FPCR: no traps, round to nearest, denormals kept.
 #[cfg(target_arch = "aarch64")]
 const DEFAULT: Register = 0;
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+const DEFAULT: Register = ();
 
 #[cfg(target_arch = "x86_64")]
 fn read() -> Register {
@@ -48,25 +60,36 @@ fn write(value: Register) {
     unsafe { std::arch::asm!("msr fpcr, {}", in(reg) value, options(nomem, nostack, preserves_flags)) };
 }
 
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn read() -> Register {}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn write(_: Register) {}
+
 impl DefaultEnvironment {
     /// Switches to the default environment.
-    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     pub fn enter() -> DefaultEnvironment {
-        let host = read();
+        let outer = HOST.replace(Some(read()));
         write(DEFAULT);
-        DefaultEnvironment { host }
-    }
-
-    /// Unknown architectures keep the environment they have.
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    pub fn enter() -> DefaultEnvironment {
-        DefaultEnvironment {}
+        DefaultEnvironment { outer }
     }
 }
 
 impl Drop for DefaultEnvironment {
     fn drop(&mut self) {
-        #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-        write(self.host);
+        if let Some(host) = HOST.replace(self.outer) {
+            write(host);
+        }
     }
+}
+
+/// Calls a function of the host's in the host's environment, then goes on in the default one.
+#[inline(never)]
+pub fn in_host_environment<R>(call: impl FnOnce() -> R) -> R {
+    let Some(host) = HOST.get() else { return call() };
+    write(host);
+    let result = call();
+    HOST.set(Some(read()));
+    write(DEFAULT);
+    result
 }

@@ -1,5 +1,6 @@
 //! The one guard that every export goes through: floating-point environment, panics, status, message.
 
+use std::any::Any;
 use std::cell::Cell;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::Once;
@@ -11,33 +12,44 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Segments `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
+/// Runs `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
 pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> contact_normal_status {
-    silence_our_panics();
     let _environment = DefaultEnvironment::enter();
     let nested = INSIDE.replace(true);
-    let outcome = catch_unwind(AssertUnwindSafe(body));
-    INSIDE.set(nested);
-    let (status, message) = match outcome {
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        silence_our_panics();
         // A status > 0 has its message from the body.
-        Ok(Ok(status)) => return status,
-        Ok(Err(refusal)) => (refusal.status, refusal.message),
-        Err(panic) => {
-            let text = panic.downcast_ref::<&str>().map(|s| s.to_string()).or(panic.downcast_ref::<String>().cloned());
-            let message = format!("internal error: {}; please report it", text.unwrap_or_default());
-            // Dropping a foreign payload might panic again.
-            std::mem::forget(panic);
-            (CONTACT_NORMAL_INTERNAL, message)
+        body().unwrap_or_else(|refusal| {
+            set_last_error(&refusal.message);
+            refusal.status
+        })
+    }));
+    let status = outcome.unwrap_or_else(|panic| {
+        // A message that cannot be formed is left out.
+        if let Err(another) = catch_unwind(AssertUnwindSafe(|| explain(&*panic))) {
+            std::mem::forget(another);
         }
-    };
-    set_last_error(&message);
+        // Dropping a foreign payload might panic again.
+        std::mem::forget(panic);
+        CONTACT_NORMAL_INTERNAL
+    });
+    INSIDE.set(nested);
     status
+}
+
+fn explain(panic: &(dyn Any + Send)) {
+    let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
+    set_last_error(&format!("internal error: {}; please report it", text.unwrap_or_default()));
 }
 
 /// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the
 /// process go to whatever hook was there.
 fn silence_our_panics() {
     static ONCE: Once = Once::new();
+    // A host that calls while it unwinds may not change the hook; its next call does.
+    if std::thread::panicking() {
+        return;
+    }
     ONCE.call_once(|| {
         let previous = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {

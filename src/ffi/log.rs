@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use libc::{c_char, c_void};
 use log::{LevelFilter, Log, Metadata, Record};
 
+use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
 
@@ -16,8 +17,8 @@ pub const CONTACT_NORMAL_LOG_WARNING: i32 = 1;
 /// Log level: what the library decided.
 pub const CONTACT_NORMAL_LOG_INFO: i32 = 2;
 
-/// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, with
-/// no lock held.
+/// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
+/// floating-point environment, with no lock held. A handle that is solving refuses to be used.
 pub type contact_normal_log_callback =
     Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
 
@@ -50,7 +51,7 @@ impl Log for Forward {
             if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
         if let (Some(callback), Ok(message)) = (target.callback, CString::new(record.args().to_string())) {
             // SAFETY: the caller's function with the caller's pointer.
-            unsafe { callback(level, message.as_ptr(), target.user) };
+            in_host_environment(|| unsafe { callback(level, message.as_ptr(), target.user) });
         }
     }
 

@@ -4,12 +4,15 @@
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
 mod accuracy;
+mod arguments;
 mod batch;
 mod effects;
 mod floating_point;
 mod guard;
+mod influence;
 mod log;
 mod options;
+mod outputs;
 mod report;
 mod scene;
 mod solve;
@@ -22,6 +25,7 @@ pub use self::log::*;
 pub use accuracy::*;
 pub use batch::*;
 pub use effects::*;
+pub use influence::*;
 pub use options::*;
 pub use report::*;
 pub use scene::*;

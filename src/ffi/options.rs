@@ -2,8 +2,8 @@
 
 use libc::c_void;
 
+use super::arguments::{count, not_negative, reserved, Regions};
 use super::report::contact_normal_progress;
-use super::scene::count;
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::methods::multigrid::SmootherKind;
@@ -55,7 +55,8 @@ pub const CONTACT_NORMAL_PRECISION_DOUBLE: i32 = 1;
 /// `precision`: single precision in the inner work, where it helps; never in the result.
 pub const CONTACT_NORMAL_PRECISION_MIXED: i32 = 2;
 
-/// Called after each cycle, on the calling thread; non-zero cancels.
+/// Called after each cycle, on the calling thread, in its floating-point environment; non-zero cancels. The handle that is solving
+/// refuses to be used.
 pub type contact_normal_progress_callback =
     Option<unsafe extern "C" fn(progress: *const contact_normal_progress, user: *mut c_void) -> i32>;
 
@@ -85,7 +86,8 @@ pub struct contact_normal_options {
     pub criterion: i32,
     /// Of the criterion; default 1e-6.
     pub tolerance: f64,
-    /// > 0: may stop once the residual is below this part of the estimated discretisation error; default 0.
+    /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
+    /// that `report->tolerance` says. Default 0: the tolerance above.
     pub error_ratio: f64,
     /// Cycles (or iterations) on the finest grid at most; default 1000.
     pub max_cycles: i32,
@@ -95,9 +97,9 @@ pub struct contact_normal_options {
     pub precision: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Called after each cycle, or NULL.
+    /// Called after each cycle, or NULL (default).
     pub progress: contact_normal_progress_callback,
-    /// Passed to `progress`.
+    /// Passed to `progress`; default NULL.
     pub user: *mut c_void,
 }
 
@@ -139,41 +141,27 @@ pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_norma
 
 /// Options and the callback with its user pointer.
 pub(super) struct Translated {
+    given: contact_normal_options,
     pub options: Options,
     pub progress: contact_normal_progress_callback,
     pub user: *mut c_void,
 }
 
+impl Translated {
+    /// Adds the struct, which stands at `at`, NULL or not.
+    pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_options) -> Result<(), Refusal> {
+        regions.input_struct("options", at, &self.given)
+    }
+}
+
 /// Translates options; NULL: the defaults.
 pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result<Translated, Refusal> {
-    let given = if options.is_null() {
-        contact_normal_options::defaults()
-    } else {
-        // SAFETY: not null: a struct that declares its size.
-        unsafe { structs::read(options, "options")? }
-    };
-    if given.reserved != 0 {
-        return Err(Refusal::invalid(format!("options->reserved is {}; it must be 0", given.reserved)));
-    }
+    // SAFETY: NULL or a struct that declares its size.
+    let given = unsafe { structs::read_optional(options, "options")? }.unwrap_or_else(contact_normal_options::defaults);
+    reserved("options->reserved", given.reserved)?;
     let options = Options {
-        method: match given.method {
-            CONTACT_NORMAL_METHOD_AUTO => Method::Auto,
-            CONTACT_NORMAL_METHOD_NORM => Method::Norm,
-            CONTACT_NORMAL_METHOD_MULTIGRID => Method::Multigrid,
-            CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Method::FullMultigrid,
-            CONTACT_NORMAL_METHOD_PROJECTED_CG => Method::ProjectedCg,
-            other => {
-                return unknown("method", other, "AUTO 0, NORM 1, MULTIGRID 2, FULL_MULTIGRID 3 or PROJECTED_CG 4")
-            }
-        },
-        smoother: match given.smoother {
-            CONTACT_NORMAL_SMOOTHER_AUTO => None,
-            CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => Some(SmootherKind::GaussSeidel),
-            CONTACT_NORMAL_SMOOTHER_RED_BLACK => Some(SmootherKind::RedBlack),
-            CONTACT_NORMAL_SMOOTHER_JACOBI => Some(SmootherKind::Jacobi),
-            CONTACT_NORMAL_SMOOTHER_FFT => Some(SmootherKind::Fft),
-            other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2, JACOBI 3 or FFT 4"),
-        },
+        method: method(given.method)?,
+        smoother: smoother(given.smoother)?,
         pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
         post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
         relaxation: given.relaxation,
@@ -208,13 +196,31 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
         estimates: false,
     };
     options.check()?;
-    Ok(Translated { options, progress: given.progress, user: given.user })
+    Ok(Translated { given, options, progress: given.progress, user: given.user })
+}
+
+fn method(value: i32) -> Result<Method, Refusal> {
+    Ok(match value {
+        CONTACT_NORMAL_METHOD_AUTO => Method::Auto,
+        CONTACT_NORMAL_METHOD_NORM => Method::Norm,
+        CONTACT_NORMAL_METHOD_MULTIGRID => Method::Multigrid,
+        CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Method::FullMultigrid,
+        CONTACT_NORMAL_METHOD_PROJECTED_CG => Method::ProjectedCg,
+        other => return unknown("method", other, "AUTO 0, NORM 1, MULTIGRID 2, FULL_MULTIGRID 3 or PROJECTED_CG 4"),
+    })
+}
+
+fn smoother(value: i32) -> Result<Option<SmootherKind>, Refusal> {
+    Ok(match value {
+        CONTACT_NORMAL_SMOOTHER_AUTO => None,
+        CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => Some(SmootherKind::GaussSeidel),
+        CONTACT_NORMAL_SMOOTHER_RED_BLACK => Some(SmootherKind::RedBlack),
+        CONTACT_NORMAL_SMOOTHER_JACOBI => Some(SmootherKind::Jacobi),
+        CONTACT_NORMAL_SMOOTHER_FFT => Some(SmootherKind::Fft),
+        other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2, JACOBI 3 or FFT 4"),
+    })
 }
 
 fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
     Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
-}
-
-fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
-    usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
 }

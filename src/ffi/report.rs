@@ -3,7 +3,8 @@
 use super::structs::{self, Versioned};
 use crate::solver::{LedgerRow, Limit, Progress, Report};
 
-/// Arrays of the caller's, `[my][mx]`, x fastest. NULL: not wanted. Written only when the status is >= 0.
+/// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
+/// array may overlap with another one, nor with anything that is read.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_fields {
@@ -170,9 +171,9 @@ pub struct contact_normal_report {
     pub bytes: i64,
     /// Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
     pub ledger_rows: i64,
-    /// In: room in `ledger`.
+    /// In: room in `ledger`; default 0.
     pub ledger_capacity: i64,
-    /// In: the caller's array, or NULL.
+    /// In: the caller's array, or NULL (default).
     pub ledger: *mut contact_normal_ledger_row,
     /// Contact area, corrected for the elements along its outline; < 0: not known.
     pub corrected_area: f64,
@@ -190,12 +191,15 @@ pub struct contact_normal_report {
     pub halved_error_force: f64,
     /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
     pub edge_count: i64,
+    /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+    /// an accuracy asks for.
+    pub tolerance: f64,
 }
 
 // SAFETY: integers, floats and a raw pointer only, struct_size first.
 unsafe impl Versioned for contact_normal_report {
     const NAME: &'static str = "contact_normal_report";
-    const FIRST_SIZE: usize = 200;
+    const FIRST_SIZE: usize = 264;
     fn defaults() -> Self {
         Self {
             struct_size: size_of::<Self>() as i64,
@@ -231,6 +235,7 @@ unsafe impl Versioned for contact_normal_report {
             limited_by: CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
             halved_seconds: -1.0,
             halved_error_force: -1.0,
+            tolerance: 0.0,
         }
     }
 }
@@ -282,6 +287,7 @@ impl contact_normal_report {
             },
             halved_seconds: report.halving.seconds,
             halved_error_force: report.halving.force,
+            tolerance: report.tolerance,
         }
     }
 }

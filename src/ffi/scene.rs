@@ -1,44 +1,20 @@
-//! `contact_normal_scene` and its effects.
+//! `contact_normal_scene`.
 
+use super::arguments::{self, Regions};
 use super::effects::{
-    self, contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
-    contact_normal_row_tables, Effects,
+    contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
+use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::{self, Versioned};
 use crate::grid::Grid;
-use crate::influence::Table;
+use crate::memory::reserve;
 use crate::scene::{Bodies, Load, Scene};
 
 /// `load`: the approach of the bodies is given.
 pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 0;
 /// `load`: the normal force is given, the approach is found.
 pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 1;
-
-/// Effect: the caller's own influence coefficients instead of the half-space. Nothing is assumed of them but that a pressure
-/// displaces its own element inwards: they need be neither symmetric nor positive.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct contact_normal_influence {
-    /// Set by `contact_normal_influence_init`.
-    pub struct_size: i64,
-    /// The table covers offsets -cx..cx-1; cx >= mx.
-    pub cx: i32,
-    /// And -cy..cy-1; cy >= my.
-    pub cy: i32,
-    /// `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
-    /// of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
-    pub coefficients: *const f64,
-}
-
-// SAFETY: integers and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_influence {
-    const NAME: &'static str = "contact_normal_influence";
-    const FIRST_SIZE: usize = 24;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, cx: 0, cy: 0, coefficients: std::ptr::null() }
-    }
-}
 
 /// What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
 /// system of units.
@@ -47,46 +23,46 @@ unsafe impl Versioned for contact_normal_influence {
 pub struct contact_normal_scene {
     /// Set by `contact_normal_scene_init`.
     pub struct_size: i64,
-    /// Elements in x, >= 1.
+    /// Elements in x, >= 1; default 0: to be set.
     pub mx: i32,
-    /// Elements in y, >= 1.
+    /// Elements in y, >= 1; default 0: to be set.
     pub my: i32,
-    /// Element size in x: a length.
+    /// Element size in x: a length, positive; default 0: to be set.
     pub dx: f64,
-    /// Element size in y.
+    /// Element size in y; default 0: to be set.
     pub dy: f64,
-    /// h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior.
+    /// h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
-    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most).
+    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
     pub shear_modulus: [f64; 2],
-    /// nu of the two bodies, in (-1, 0.5].
+    /// nu of the two bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],
-    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE.
+    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
     pub load: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Prescribed approach (penetration): a length.
+    /// Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0.
+    /// Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
     pub force: f64,
-    /// Effect, or NULL: own coefficients instead of the half-space. The elastic constants are then not used.
+    /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
-    /// Effect, or NULL: a thin compliant layer.
+    /// Effect, or NULL (default): a thin compliant layer.
     pub layer: *const contact_normal_layer,
-    /// Effect, or NULL: pressures do not exceed a limit.
+    /// Effect, or NULL (default): pressures do not exceed a limit.
     pub pressure_limit: *const contact_normal_pressure_limit,
-    /// Effect, or NULL: the scene repeats itself.
+    /// Effect, or NULL (default): the scene repeats itself.
     pub period: *const contact_normal_period,
-    /// Effect, or NULL: several contact patches, whose interaction is scaled.
+    /// Effect, or NULL (default): several contact patches, whose interaction is scaled.
     pub patches: *const contact_normal_patches,
-    /// Effect, or NULL: own coefficients, one table per loaded row. The elastic constants are then not used.
+    /// Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
     pub row_tables: *const contact_normal_row_tables,
 }
 
 // SAFETY: integers, floats and raw pointers only, struct_size first.
 unsafe impl Versioned for contact_normal_scene {
     const NAME: &'static str = "contact_normal_scene";
-    const FIRST_SIZE: usize = 104;
+    const FIRST_SIZE: usize = 144;
     fn defaults() -> Self {
         Self {
             struct_size: size_of::<Self>() as i64,
@@ -118,92 +94,120 @@ pub unsafe extern "C" fn contact_normal_scene_init(scene: *mut contact_normal_sc
     unsafe { structs::init(scene) }
 }
 
-/// Fills an influence table with nothing. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_influence_init(influence: *mut contact_normal_influence) {
-    // SAFETY: as above.
-    unsafe { structs::init(influence) }
+/// A scene and the effects that it names, as the caller's header has them; no array was looked at.
+pub(super) struct Named {
+    scene: contact_normal_scene,
+    grid: Grid,
+    influence: Option<contact_normal_influence>,
+    layer: Option<contact_normal_layer>,
+    pressure_limit: Option<contact_normal_pressure_limit>,
+    period: Option<contact_normal_period>,
+    patches: Option<contact_normal_patches>,
+    row_tables: Option<contact_normal_row_tables>,
 }
 
-/// A positive count from a C integer.
-pub(super) fn count(name: &str, value: i32) -> Result<usize, Refusal> {
-    match usize::try_from(value) {
-        Ok(value) if value > 0 => Ok(value),
-        _ => Err(Refusal::invalid(format!("{name} is {value}; it must be positive"))),
-    }
-}
-
-/// Translates a scene. The caller's arrays must live as long as the result is used.
-pub(super) unsafe fn translate<'a>(scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
-    // SAFETY: by the caller.
-    let scene = unsafe { translate_for(scene, Known::default())? };
-    scene.check()?;
-    Ok(scene)
-}
-
-/// What is known from elsewhere: that is not read.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Known {
-    /// A solver has a table of its own.
-    pub influence: bool,
-    /// Or one per loaded row.
-    pub row_tables: bool,
-    /// The undeformed distance comes from a callback: that of the scene is empty.
-    pub distance: bool,
-}
-
-/// The same without what is known. The caller checks the rest.
-pub(super) unsafe fn translate_for<'a>(scene: *const contact_normal_scene, known: Known) -> Result<Scene<'a>, Refusal> {
-    // SAFETY: NULL or a struct that declares its size.
-    let scene = unsafe { structs::read(scene, "scene")? };
-    let grid = Grid::new(count("mx", scene.mx)?, count("my", scene.my)?, scene.dx, scene.dy)?;
-    if scene.reserved != 0 {
-        return Err(Refusal::invalid(format!("scene->reserved is {}; it must be 0", scene.reserved)));
-    }
-    let load = match scene.load {
-        CONTACT_NORMAL_PRESCRIBED_APPROACH => Load::Approach(scene.approach),
-        CONTACT_NORMAL_PRESCRIBED_FORCE => Load::Force(scene.force),
-        other => {
-            return Err(Refusal::invalid(format!(
-                "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
-            )))
+impl Named {
+    pub unsafe fn read(scene: *const contact_normal_scene) -> Result<Named, Refusal> {
+        // SAFETY (all): NULL or structs that declare their size, by the conventions of the ABI.
+        unsafe {
+            let scene = structs::read(scene, "scene")?;
+            let (mx, my) = (arguments::count("mx", scene.mx)?, arguments::count("my", scene.my)?);
+            Ok(Named {
+                grid: Grid::new(mx, my, scene.dx, scene.dy)?,
+                influence: structs::read_optional(scene.influence, "scene->influence")?,
+                layer: structs::read_optional(scene.layer, "scene->layer")?,
+                pressure_limit: structs::read_optional(scene.pressure_limit, "scene->pressure_limit")?,
+                period: structs::read_optional(scene.period, "scene->period")?,
+                patches: structs::read_optional(scene.patches, "scene->patches")?,
+                row_tables: structs::read_optional(scene.row_tables, "scene->row_tables")?,
+                scene,
+            })
         }
-    };
-    let h: &[f64] = match (known.distance, scene.undeformed_distance.is_null()) {
-        (false, true) => return Err(Refusal::null("scene->undeformed_distance")),
-        // SAFETY: the caller passes my * mx values, by the conventions of the ABI.
-        (false, false) => unsafe { std::slice::from_raw_parts(scene.undeformed_distance, grid.len()) },
-        (true, _) => &[],
-    };
-    let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
-    let influence = if scene.influence.is_null() || known.influence {
-        None
-    } else {
-        // SAFETY: not null: a struct that declares its size.
-        Some(unsafe { translate_influence(scene.influence, &grid)? })
-    };
-    // SAFETY: as for the scene.
-    let Effects { period, layer, pressure_limit, patches, row_tables } =
-        unsafe { effects::translate(&scene, &grid, known.row_tables)? };
-    let undeformed_distance = h;
-    Ok(Scene { grid, undeformed_distance, bodies, load, influence, period, layer, pressure_limit, patches, row_tables })
-}
-
-/// Number of values in a table of coefficients.
-pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
-    let size = cx.checked_mul(cy).and_then(|n| n.checked_mul(4)).filter(|n| *n <= isize::MAX as usize / 8);
-    size.ok_or_else(|| Refusal::invalid(format!("cx * cy is {cx} * {cy}; no influence table is that large")))
-}
-
-unsafe fn translate_influence(influence: *const contact_normal_influence, grid: &Grid) -> Result<Table, Refusal> {
-    // SAFETY: by the caller.
-    let influence = unsafe { structs::read(influence, "scene->influence")? };
-    let (cx, cy) = (count("influence->cx", influence.cx)?, count("influence->cy", influence.cy)?);
-    if influence.coefficients.is_null() {
-        return Err(Refusal::null("scene->influence->coefficients"));
     }
-    let size = table_size(cx, cy)?;
-    // SAFETY: the caller passes 2 cy by 2 cx values, by the conventions of the ABI.
-    let values = unsafe { std::slice::from_raw_parts(influence.coefficients, size) };
-    Ok(Table::new(cx, cy, values, grid)?)
+
+    /// Elements of the grid.
+    pub fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// Adds all that is read of the scene, which stands at `at`.
+    pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
+        let (scene, grid) = (&self.scene, &self.grid);
+        regions.input_struct("scene", at, scene)?;
+        regions.input("undeformed_distance", scene.undeformed_distance, grid.len())?;
+        if let Some(influence) = &self.influence {
+            regions.input_struct("influence", scene.influence, influence)?;
+            influence.add_to(regions)?;
+        }
+        if let Some(layer) = &self.layer {
+            regions.input_struct("layer", scene.layer, layer)?;
+            layer.add_to(regions, grid)?;
+        }
+        if let Some(limit) = &self.pressure_limit {
+            regions.input_struct("pressure_limit", scene.pressure_limit, limit)?;
+            limit.add_to(regions, grid)?;
+        }
+        if let Some(period) = &self.period {
+            regions.input_struct("period", scene.period, period)?;
+        }
+        if let Some(patches) = &self.patches {
+            regions.input_struct("patches", scene.patches, patches)?;
+            patches.add_to(regions, grid)?;
+        }
+        if let Some(tables) = &self.row_tables {
+            regions.input_struct("row_tables", scene.row_tables, tables)?;
+            tables.add_to(regions, grid)?;
+        }
+        Ok(())
+    }
+
+    /// A copy of the undeformed distance.
+    pub unsafe fn copy_of_distance(&self) -> Result<Vec<f64>, Refusal> {
+        // SAFETY: by the caller.
+        let h = unsafe { self.distance()? };
+        let mut copy = Vec::new();
+        reserve(&mut copy, h.len(), "undeformed distances")?;
+        copy.extend_from_slice(h);
+        Ok(copy)
+    }
+
+    unsafe fn distance<'a>(&self) -> Result<&'a [f64], Refusal> {
+        let name = "scene->undeformed_distance";
+        // SAFETY: NULL or one value per element, by the conventions of the ABI.
+        unsafe { arguments::required(name, self.scene.undeformed_distance, self.grid.len()) }
+    }
+
+    /// The scene, which the core checks. The caller's arrays must live as long as it is used.
+    pub unsafe fn translate<'a>(&self) -> Result<Scene<'a>, Refusal> {
+        // SAFETY: by the caller.
+        unsafe { self.with_distance(self.distance()?) }
+    }
+
+    /// The same with another undeformed distance.
+    pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
+        let (scene, grid) = (&self.scene, &self.grid);
+        arguments::reserved("scene->reserved", scene.reserved)?;
+        let load = match scene.load {
+            CONTACT_NORMAL_PRESCRIBED_APPROACH => Load::Approach(scene.approach),
+            CONTACT_NORMAL_PRESCRIBED_FORCE => Load::Force(scene.force),
+            other => {
+                return Err(Refusal::invalid(format!(
+                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
+                )))
+            }
+        };
+        let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
+        // SAFETY (all): NULL or arrays of as many values as each says, by the conventions of the ABI.
+        unsafe {
+            Ok(Scene {
+                influence: self.influence.map(|influence| influence.translate(grid)).transpose()?,
+                layer: self.layer.map(|layer| layer.translate(grid)),
+                pressure_limit: self.pressure_limit.map(|limit| limit.translate(grid)),
+                period: self.period.map(|period| period.translate()).transpose()?,
+                patches: self.patches.map(|patches| patches.translate(grid)).transpose()?,
+                row_tables: self.row_tables.map(|tables| tables.translate(grid)).transpose()?,
+                ..Scene::new(*grid, undeformed_distance, bodies, load)
+            })
+        }
+    }
 }

@@ -1,25 +1,81 @@
 //! `contact_normal_solver`: a handle for many solves on one grid and one pair of bodies.
 
+use std::cell::UnsafeCell;
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::arguments::Regions;
 use super::guard::guard;
+use super::influence::contact_normal_influence;
 use super::options::{self, contact_normal_options};
+use super::outputs::{Buffers, Outputs};
 use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::{self, contact_normal_scene, Known};
-use super::solve::{run_watched, GuessBuffer, Outputs};
+use super::scene::{contact_normal_scene, Named};
+use super::solve::{run_watched, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
-use crate::scene::Scene;
+use super::structs;
 use crate::solver::Solver;
 
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
-/// used by different threads.
+/// used by different threads. While a call uses a handle, any other call with it, from a callback or from another thread, is refused
+/// (INVALID_ARGUMENT).
 pub struct contact_normal_solver {
-    pub(super) solver: Solver,
-    guess: GuessBuffer,
+    is_in_use: AtomicBool,
+    held: UnsafeCell<Held>,
+}
+
+/// What a handle holds.
+pub(super) struct Held {
+    pub solver: Solver,
+    pub buffers: Buffers,
 }
 
 impl contact_normal_solver {
     /// A handle for a solver that is set up; `contact_normal_solver_free` frees it.
     pub(super) fn holding(solver: Solver) -> *mut contact_normal_solver {
-        Box::into_raw(Box::new(contact_normal_solver { solver, guess: GuessBuffer::default() }))
+        let held = UnsafeCell::new(Held { solver, buffers: Buffers::default() });
+        Box::into_raw(Box::new(contact_normal_solver { is_in_use: AtomicBool::new(false), held }))
+    }
+}
+
+/// A handle that a call uses, until it is dropped.
+pub(super) struct InUse<'a> {
+    handle: &'a contact_normal_solver,
+}
+
+impl InUse<'_> {
+    /// `solver`: NULL or a handle that was not freed.
+    pub unsafe fn begin<'a>(solver: *const contact_normal_solver) -> Result<InUse<'a>, Refusal> {
+        // SAFETY: NULL or a handle of ours; what changes in it is behind an atomic or an UnsafeCell.
+        let handle = unsafe { solver.as_ref() }.ok_or_else(|| Refusal::null("solver"))?;
+        if handle.is_in_use.swap(true, Ordering::Acquire) {
+            return Err(Refusal::invalid(
+                "solver is in use by a call that has not returned; a callback (or another thread) must use a handle of its own"
+                    .into(),
+            ));
+        }
+        Ok(InUse { handle })
+    }
+}
+
+impl Deref for InUse<'_> {
+    type Target = Held;
+    fn deref(&self) -> &Held {
+        // SAFETY: `is_in_use` lets one InUse of a handle exist.
+        unsafe { &*self.handle.held.get() }
+    }
+}
+
+impl DerefMut for InUse<'_> {
+    fn deref_mut(&mut self) -> &mut Held {
+        // SAFETY: as above.
+        unsafe { &mut *self.handle.held.get() }
+    }
+}
+
+impl Drop for InUse<'_> {
+    fn drop(&mut self) {
+        self.handle.is_in_use.store(false, Ordering::Release);
     }
 }
 
@@ -37,18 +93,25 @@ pub unsafe extern "C" fn contact_normal_solver_new(
             return Err(Refusal::null("solver"));
         }
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let (scene, options) = unsafe { (scene::translate(scene)?, options::translate(options)?) };
-        let new = Solver::new(&scene, &options.options)?;
+        let (named, translated) = unsafe { (Named::read(scene)?, options::translate(options)?) };
+        let mut regions = Regions::default();
+        named.add_to(&mut regions, scene)?;
+        translated.add_to(&mut regions, options)?;
+        regions.output("solver", solver, 1)?;
+        regions.check()?;
+        // SAFETY: as above.
+        let new = Solver::new(&unsafe { named.translate()? }, &translated.options)?;
         // SAFETY: not null: room for a pointer.
         unsafe { solver.write(contact_normal_solver::holding(new)) };
         Ok(CONTACT_NORMAL_OK)
     })
 }
 
-/// Solves for the undeformed distance and the load of `scene`. Its grid and bodies must be those that the solver was set up
-/// for; `scene->influence` must be NULL for a solver of the half-space, and is not read again otherwise. So are the period and
-/// whether there are a layer and patches, whose values are those of the set-up; the pressure limit is the scene's. After a first solve,
-/// further ones of the same kind allocate nothing, with one thread (README, "Many solves"). Since 0.1.
+/// Solves for the undeformed distance, the load and the pressure limit of `scene`. The rest of it must be what the solver was set up
+/// for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
+/// solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
+/// `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
+/// without coefficients to compare (README, "Many solves"). Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(
     solver: *mut contact_normal_solver,
@@ -58,35 +121,69 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
     guard(|| {
-        if solver.is_null() {
-            return Err(Refusal::null("solver"));
-        }
-        // SAFETY: not null: made by contact_normal_solver_new and used by one thread at a time.
-        let contact_normal_solver { solver, guess } = unsafe { &mut *solver };
+        // SAFETY: NULL or a handle of ours.
+        let mut held = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = &mut *held;
         // SAFETY: as in contact_normal_solver_new.
-        let (scene, options, outputs) =
-            unsafe { (scene_for(solver, scene)?, options::translate(options)?, Outputs::of(fields, report)?) };
-        run_watched(solver, &scene, &options, &outputs, guess)
+        let Request { scene, options, outputs } = unsafe { Request::read(scene, options, fields, report, buffers)? };
+        run_watched(solver, &scene, &options, &outputs, buffers)
     })
 }
 
-/// Translates a scene for a solver that is set up.
-pub(super) unsafe fn scene_for<'a>(solver: &Solver, scene: *const contact_normal_scene) -> Result<Scene<'a>, Refusal> {
-    let known = Known { influence: solver.has_own_influence(), row_tables: solver.has_row_tables(), distance: false };
-    // SAFETY: by the caller.
-    let scene = unsafe { scene::translate_for(scene, known)? };
-    if !known.influence && !known.row_tables {
-        scene.check()?;
-    }
-    Ok(scene)
+/// From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
+/// `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
+/// changes nothing. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solver_set_influence(
+    solver: *mut contact_normal_solver,
+    influence: *const contact_normal_influence,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: NULL or a handle of ours.
+        let mut held = unsafe { InUse::begin(solver)? };
+        // SAFETY: NULL or a struct that declares its size, with a table of the size that it says.
+        let table = unsafe { structs::read(influence, "influence")?.translate(held.solver.grid())? };
+        held.solver.set_influence(table)?;
+        Ok(CONTACT_NORMAL_OK)
+    })
 }
 
-/// Frees a solver; NULL is ignored. Since 0.1.
+/// Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
+/// with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
+/// leaves the result before as it is, or none. INVALID_ARGUMENT if there is none. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solver_fields(
+    solver: *const contact_normal_solver,
+    fields: *mut contact_normal_fields,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: NULL or a handle of ours.
+        let mut held = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = &mut *held;
+        if fields.is_null() {
+            return Err(Refusal::null("fields"));
+        }
+        // SAFETY: not null: a struct that declares its size.
+        let outputs = unsafe { Outputs::of(fields, std::ptr::null_mut())? };
+        buffers.regions.clear();
+        outputs.add_to(&mut buffers.regions, solver.grid().len())?;
+        buffers.regions.check()?;
+        if !solver.has_solved() {
+            return Err(Refusal::invalid("solver has no result: no solve with it had a status >= 0".into()));
+        }
+        outputs.write_fields(solver);
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// Frees a solver; NULL is ignored. In a callback of a call that uses it nothing is freed: free it after that call. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) {
     guard(|| {
         if !solver.is_null() {
-            // SAFETY: made by contact_normal_solver_new, and not used after this.
+            // SAFETY: not null: a handle of ours. It stays in use, so that nothing else begins with it.
+            std::mem::forget(unsafe { InUse::begin(solver)? });
+            // SAFETY: made by `holding`, in no other use, and not used after this.
             drop(unsafe { Box::from_raw(solver) });
         }
         Ok(CONTACT_NORMAL_OK)

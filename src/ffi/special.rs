@@ -1,12 +1,14 @@
 //! Closed forms and coefficient tables.
 
+use super::arguments::count;
 use super::guard::guard;
-use super::scene::{count, table_size};
+use super::influence::table_size;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::analytic;
 use crate::error::require;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
+use crate::memory::zeros;
 use crate::scene::Bodies;
 
 /// The exact Hertz solution.
@@ -109,7 +111,7 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
             return Err(Refusal::null("coefficients"));
         }
         let half_space = HalfSpace::new(dx, dy, compliance);
-        let mut half_row = vec![0.0; grid.mx + 1];
+        let mut half_row = zeros(grid.mx + 1, "a row of coefficients")?;
         for row in 0..2 * grid.my {
             half_space.fill_row(0, row as i64 - grid.my as i64, &mut half_row);
             for column in 0..2 * grid.mx {

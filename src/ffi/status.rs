@@ -42,7 +42,7 @@ pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 pub const CONTACT_NORMAL_ABI_VERSION: i32 = 1;
 
 /// A refusal at the boundary.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Refusal {
     pub status: contact_normal_status,
     pub message: String,
@@ -97,7 +97,9 @@ thread_local! {
 
 pub(super) fn set_last_error(message: &str) {
     let text: Vec<u8> = message.bytes().filter(|&b| b != 0).collect();
-    LAST_ERROR.with_borrow_mut(|last| *last = CString::new(text).unwrap_or_default());
+    let message = CString::new(text).unwrap_or_default();
+    // A thread that is ending may have no such memory any more: then there is no message.
+    let _ = LAST_ERROR.try_with(|last| last.replace(message));
 }
 
 fn text_of(status: contact_normal_status) -> &'static CStr {
@@ -126,10 +128,10 @@ pub extern "C" fn contact_normal_status_text(status: contact_normal_status) -> *
 }
 
 /// The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
-/// Valid until the next call of this library on this thread. Since 0.1.
+/// Never NULL; valid until the next call of this library on this thread. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_last_error() -> *const c_char {
-    LAST_ERROR.with_borrow(|last| last.as_ptr())
+    LAST_ERROR.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
 /// The version of the library, as "0.1.0"; static storage. Since 0.1.

@@ -13,7 +13,7 @@ use super::status::{Refusal, CONTACT_NORMAL_STRUCT_SIZE};
 pub unsafe trait Versioned: Copy {
     /// Its name in C.
     const NAME: &'static str;
-    /// Its size in version 0.1.
+    /// Its size in the first version that had it: never changes again.
     const FIRST_SIZE: usize;
     /// What its `_init` writes.
     fn defaults() -> Self;
@@ -61,6 +61,19 @@ pub unsafe fn read<T: Versioned>(from: *const T, name: &str) -> Result<T, Refusa
     Ok(value)
 }
 
+/// The same where NULL means none.
+pub unsafe fn read_optional<T: Versioned>(from: *const T, name: &str) -> Result<Option<T>, Refusal> {
+    // SAFETY: by the caller.
+    (!from.is_null()).then(|| unsafe { read(from, name) }).transpose()
+}
+
+/// The size that the caller declares of a struct that was read.
+pub fn size_of_callers<T: Versioned>(value: &T) -> usize {
+    // SAFETY: a Versioned begins with its size, which `read` copied.
+    let declared = unsafe { (value as *const T).cast::<i64>().read() };
+    usize::try_from(declared).unwrap_or(0)
+}
+
 /// Writes the members that the caller's header has; `struct_size` stays.
 pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> {
     // SAFETY: as in `read`.
@@ -79,22 +92,10 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
 
 /// Writes the defaults: the body of every `_init`. NULL is ignored.
 pub unsafe fn init<T: Versioned>(to: *mut T) {
+    // Every struct has an `_init`, so every struct is checked here: it may grow, never shrink below its first size.
+    const { assert!(size_of::<T>() >= T::FIRST_SIZE && T::FIRST_SIZE % 8 == 0 && size_of::<T>() <= LARGEST) };
     if !to.is_null() {
         // SAFETY: not null, and `_init` is documented to fill a whole struct of this version.
         unsafe { to.write_unaligned(T::defaults()) };
     }
 }
-
-/// Sizes of version 0.1: a struct may grow, never change.
-const _: () = {
-    use super::{
-        contact_normal_accuracy, contact_normal_fields, contact_normal_influence, contact_normal_options,
-        contact_normal_report, contact_normal_scene,
-    };
-    assert!(size_of::<contact_normal_scene>() >= contact_normal_scene::FIRST_SIZE);
-    assert!(size_of::<contact_normal_influence>() >= contact_normal_influence::FIRST_SIZE);
-    assert!(size_of::<contact_normal_options>() >= contact_normal_options::FIRST_SIZE);
-    assert!(size_of::<contact_normal_fields>() >= contact_normal_fields::FIRST_SIZE);
-    assert!(size_of::<contact_normal_accuracy>() >= contact_normal_accuracy::FIRST_SIZE);
-    assert!(size_of::<contact_normal_report>() >= contact_normal_report::FIRST_SIZE);
-};

@@ -26,6 +26,11 @@ impl Coefficients {
         Coefficients { kernel, diagonal: None, coupling: None }
     }
 
+    /// The same with another kernel.
+    pub fn with_kernel(self, kernel: Arc<dyn Kernel>) -> Coefficients {
+        Coefficients { kernel, ..self }
+    }
+
     /// The same with a compliant layer.
     pub fn with_layer(self, layer: Layer) -> Coefficients {
         Coefficients { diagonal: Some(layer), ..self }

@@ -220,10 +220,10 @@ impl Methods {
         iterate(method, problem, state, set, goal, &mut self.best, monitor)
     }
 
-    /// The coefficients are others now: what was made of them is dropped.
-    pub fn forget_coefficients(&mut self, problem: &Problem, options: &Options) -> Result<()> {
-        *self = Methods::new(problem, options)?;
-        Ok(())
+    /// Lets go of the operator, which gets other coefficients: nothing is solved before [`new`](Self::new).
+    pub fn forget_operator(&mut self) {
+        self.projected_cg.forget_operator();
+        self.multigrid = None;
     }
 
     /// Bytes held.

@@ -15,6 +15,7 @@ mod range;
 mod report;
 mod take_over;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 pub use crate::operator::Precision;
@@ -24,11 +25,11 @@ pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use report::{Halving, Limit, Report};
 
-use crate::contact::{self, AdmissibleSet, Fixed, Limited, NonNegative, State};
-use crate::effects::{self, Named};
+use crate::contact::{self, AdmissibleSet, Fixed, Freshness, Limited, NonNegative, State};
+use crate::effects::{self, Effect, Named};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::Coefficients;
+use crate::influence::{Coefficients, Table};
 use crate::memory::{reserve, zeros};
 use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
@@ -279,14 +280,23 @@ impl Solver {
         &self.problem.coefficients
     }
 
-    /// Whether the coefficients were given with the set-up: then those of later scenes, and their bodies, do not matter.
-    pub fn has_own_influence(&self) -> bool {
-        self.set_up.has_own_influence
-    }
-
-    /// The same of tables per loaded row.
-    pub fn has_row_tables(&self) -> bool {
-        self.set_up.has_row_tables
+    /// All later solves use this table in the place of the one of the set-up; memory and plans of the operator are kept. The last result
+    /// stays. After an error the solver has no table until another one is set.
+    pub fn set_influence(&mut self, table: Table) -> Result<()> {
+        if !self.set_up.has_own_influence {
+            return invalid("influence is given, but this solver was set up without".into());
+        }
+        Effect::check(&table, &self.problem.grid)?;
+        self.set_up.named.replace(&table);
+        let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table));
+        self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
+        // What was made of the table before is dropped first: then the operator is this solver's alone.
+        self.methods.forget_operator();
+        self.workers.clear();
+        self.state.u_is = Freshness::Stale;
+        self.problem.renew(coefficients)?;
+        self.methods = Methods::new(&self.problem, &self.set_up.options)?;
+        Ok(())
     }
 
     fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
@@ -298,6 +308,7 @@ impl Solver {
                 scene.grid, self.problem.grid
             ));
         }
+        effects::check_effects(scene)?;
         if let Some(difference) = self.set_up.named.differs(scene) {
             return invalid(difference);
         }

@@ -1,6 +1,7 @@
 //! What the C ABI promises whatever comes in; called from Rust.
 
 mod bad_input;
+mod boundary;
 mod call;
 mod callbacks;
 mod rows;

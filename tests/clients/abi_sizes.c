@@ -14,6 +14,7 @@ int main(void)
     OFFSET(contact_normal_influence, cx);
     OFFSET(contact_normal_influence, cy);
     OFFSET(contact_normal_influence, coefficients);
+    OFFSET(contact_normal_influence, scale);
     SIZE(contact_normal_layer);
     OFFSET(contact_normal_layer, struct_size);
     OFFSET(contact_normal_layer, compliance);
@@ -37,6 +38,7 @@ int main(void)
     OFFSET(contact_normal_row_tables, cx);
     OFFSET(contact_normal_row_tables, rows);
     OFFSET(contact_normal_row_tables, coefficients);
+    OFFSET(contact_normal_row_tables, scale);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -145,6 +147,7 @@ int main(void)
     OFFSET(contact_normal_report, halved_seconds);
     OFFSET(contact_normal_report, halved_error_force);
     OFFSET(contact_normal_report, edge_count);
+    OFFSET(contact_normal_report, tolerance);
     SIZE(contact_normal_accuracy);
     OFFSET(contact_normal_accuracy, struct_size);
     OFFSET(contact_normal_accuracy, target);

@@ -213,7 +213,7 @@ macro_rules! layout {
 fn c_and_rust_agree_on_every_struct() {
     let rust = layout! {
         contact_normal_influence {
-            struct_size, cx, cy, coefficients
+            struct_size, cx, cy, coefficients, scale
         }
         contact_normal_layer {
             struct_size, compliance, compliances
@@ -228,7 +228,7 @@ fn c_and_rust_agree_on_every_struct() {
             struct_size, count, reserved, patch, factors
         }
         contact_normal_row_tables {
-            struct_size, cx, rows, coefficients
+            struct_size, cx, rows, coefficients, scale
         }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
@@ -254,7 +254,7 @@ fn c_and_rust_agree_on_every_struct() {
             residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
-            halved_seconds, halved_error_force, edge_count
+            halved_seconds, halved_error_force, edge_count, tolerance
         }
         contact_normal_accuracy {
             struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds

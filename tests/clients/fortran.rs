@@ -194,12 +194,12 @@ fn derived_types_are_laid_out_as_the_structs() {
     let folder = scratch("fortran_layout");
     let program = compile("tests/clients/fortran_layout.f90", &[], &folder);
     let expected = layout! {
-        contact_normal_influence: struct_size, cx, cy, coefficients;
+        contact_normal_influence: struct_size, cx, cy, coefficients, scale;
         contact_normal_layer: struct_size, compliance, compliances;
         contact_normal_pressure_limit: struct_size, limit, limits;
         contact_normal_period: struct_size, x, y;
         contact_normal_patches: struct_size, count, reserved, patch, factors;
-        contact_normal_row_tables: struct_size, cx, rows, coefficients;
+        contact_normal_row_tables: struct_size, cx, rows, coefficients, scale;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
             patches, row_tables;
@@ -217,7 +217,7 @@ fn derived_types_are_laid_out_as_the_structs() {
             min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
-            untrusted, limited_by, halved_seconds, halved_error_force, edge_count;
+            untrusted, limited_by, halved_seconds, halved_error_force, edge_count, tolerance;
         contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
             user, mx, my, dx, dy, reached, seconds;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,

@@ -25,6 +25,7 @@ program fortran_layout
   call show("contact_normal_influence.cx", c_loc(influence%cx))
   call show("contact_normal_influence.cy", c_loc(influence%cy))
   call show("contact_normal_influence.coefficients", c_loc(influence%coefficients))
+  call show("contact_normal_influence.scale", c_loc(influence%scale))
 
   base = place(c_loc(layer))
   print '(a, i0)', "contact_normal_layer ", c_sizeof(layer)
@@ -58,6 +59,7 @@ program fortran_layout
   call show("contact_normal_row_tables.cx", c_loc(row_tables%cx))
   call show("contact_normal_row_tables.rows", c_loc(row_tables%rows))
   call show("contact_normal_row_tables.coefficients", c_loc(row_tables%coefficients))
+  call show("contact_normal_row_tables.scale", c_loc(row_tables%scale))
 
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
@@ -178,6 +180,7 @@ program fortran_layout
   call show("contact_normal_report.halved_seconds", c_loc(report%halved_seconds))
   call show("contact_normal_report.halved_error_force", c_loc(report%halved_error_force))
   call show("contact_normal_report.edge_count", c_loc(report%edge_count))
+  call show("contact_normal_report.tolerance", c_loc(report%tolerance))
 
   base = place(c_loc(accuracy))
   print '(a, i0)', "contact_normal_accuracy ", c_sizeof(accuracy)

@@ -10,9 +10,20 @@ fn the_committed_header_is_the_generated_one() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for file in
-        ["status", "scene", "effects", "options", "report", "solve", "solver", "batch", "accuracy", "special", "log"]
-    {
+    for file in [
+        "status",
+        "scene",
+        "influence",
+        "effects",
+        "options",
+        "report",
+        "solve",
+        "solver",
+        "batch",
+        "accuracy",
+        "special",
+        "log",
+    ] {
         builder = builder.with_src(root.join(format!("src/ffi/{file}.rs")));
     }
     let mut header = Vec::new();

@@ -122,6 +122,11 @@ impl Level {
         Level { operator: Some(operator), ..self }
     }
 
+    /// Lets go of the operator of the whole grid.
+    pub fn forget_operator(&mut self) {
+        self.operator = None;
+    }
+
     /// The influence of an element on itself.
     pub fn self_influence(&self) -> f64 {
         self.influence.at(0, 0)

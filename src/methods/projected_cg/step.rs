@@ -59,6 +59,11 @@ impl ProjectedCg {
         self.coarse.iter_mut().for_each(CoarseGrids::forget_windows);
     }
 
+    /// Lets go of the problem's operator.
+    pub fn forget_operator(&mut self) {
+        self.finest.forget_operator();
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);

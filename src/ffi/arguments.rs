@@ -1,0 +1,166 @@
+//! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
+
+use super::status::Refusal;
+use super::structs::{size_of_callers, Versioned};
+use crate::memory::reserve;
+
+/// A positive count from a C integer.
+pub(super) fn count(name: &str, value: i32) -> Result<usize, Refusal> {
+    match usize::try_from(value) {
+        Ok(value) if value > 0 => Ok(value),
+        _ => Err(Refusal::invalid(format!("{name} is {value}; it must be positive"))),
+    }
+}
+
+/// A count that may be 0.
+pub(super) fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
+    usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
+}
+
+/// A member that is kept for later versions.
+pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
+    match value {
+        0 => Ok(()),
+        _ => Err(Refusal::invalid(format!("{name} is {value}; it must be 0"))),
+    }
+}
+
+/// The caller's array of n values, or none.
+pub(super) unsafe fn optional<'a, T>(values: *const T, n: usize) -> Option<&'a [T]> {
+    // SAFETY: not null: the caller promises n values, by the conventions of the ABI.
+    (!values.is_null()).then(|| unsafe { std::slice::from_raw_parts(values, n) })
+}
+
+/// The caller's array of n values.
+pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> Result<&'a [T], Refusal> {
+    // SAFETY: by the caller.
+    unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
+}
+
+/// Memory of the caller's.
+struct Region {
+    start: usize,
+    end: usize,
+    name: &'static str,
+    /// Of a batch: counted from 0.
+    problem: Option<usize>,
+    is_output: bool,
+}
+
+/// All that one call reads and writes. What it writes may overlap with nothing else.
+#[derive(Default)]
+pub(super) struct Regions {
+    list: Vec<Region>,
+    problem: Option<usize>,
+}
+
+impl Regions {
+    /// Forgets all, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.problem = None;
+    }
+
+    /// What is added from here on belongs to this problem of a batch.
+    pub fn enter_problem(&mut self, problem: usize) {
+        self.problem = Some(problem);
+    }
+
+    /// Drops what was added of the last problem: it is refused, so nothing of it is read or written.
+    pub fn leave_out_problem(&mut self) {
+        while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
+            self.list.pop();
+        }
+    }
+
+    /// `count` values that are only read; none at NULL.
+    pub fn input<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
+        self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)
+    }
+
+    /// A struct that was read from `at`.
+    pub fn input_struct<T: Versioned>(&mut self, name: &'static str, at: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(name, at as usize, size_of_callers(read), false)
+    }
+
+    /// A struct that was read from `at` and is written.
+    pub fn output_struct<T: Versioned>(&mut self, name: &'static str, at: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(name, at as usize, size_of_callers(read), true)
+    }
+
+    /// `count` values that are written.
+    pub fn output<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
+        self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
+    }
+
+    fn add(&mut self, name: &'static str, start: usize, bytes: usize, is_output: bool) -> Result<(), Refusal> {
+        if start == 0 || bytes == 0 {
+            return Ok(());
+        }
+        if self.list.len() == self.list.capacity() {
+            // All regions of one problem fit at once: 6 outputs, 8 structs and 8 arrays that are read.
+            let room = (2 * self.list.len()).max(24);
+            reserve(&mut self.list, room, "the addresses of the arrays")?;
+        }
+        self.list.push(Region { start, end: start.saturating_add(bytes), name, problem: self.problem, is_output });
+        Ok(())
+    }
+
+    /// Refuses outputs that overlap with an output or an input.
+    pub fn check(&mut self) -> Result<(), Refusal> {
+        self.list.sort_unstable_by_key(|region| (region.start, region.end));
+        // Of what begins before, what ends last.
+        let (mut input, mut output): (Option<&Region>, Option<&Region>) = (None, None);
+        for region in &self.list {
+            let before = if region.is_output { [output, input] } else { [output, None] };
+            if let Some(other) = before.into_iter().flatten().find(|other| other.end > region.start) {
+                return Err(overlap(other, region));
+            }
+            let last = if region.is_output { &mut output } else { &mut input };
+            if last.is_none_or(|last| last.end < region.end) {
+                *last = Some(region);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn overlap(one: &Region, other: &Region) -> Refusal {
+    let said = |region: &Region| match region.problem {
+        Some(problem) => format!("{} of problem {problem}", region.name),
+        None => region.name.to_string(),
+    };
+    Refusal::invalid(format!("{} and {} overlap; each output needs memory of its own", said(one), said(other)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of (start, end, is_output).
+    fn refused(regions: &[(usize, usize, bool)]) -> bool {
+        let mut list = Regions::default();
+        for &(start, end, is_output) in regions {
+            list.add("values", start, end - start, is_output).expect("memory");
+        }
+        list.check().is_err()
+    }
+
+    #[test]
+    fn what_is_written_overlaps_with_nothing() {
+        // Every pair of intervals on a line of 6 places, in both roles, beside the definition.
+        let intervals: Vec<_> = (1..6).flat_map(|start| (start + 1..7).map(move |end| (start, end))).collect();
+        for &(a, b) in &intervals {
+            for &(c, d) in &intervals {
+                for (first, second) in [(false, false), (false, true), (true, false), (true, true)] {
+                    let overlap = a < d && c < b && (first || second);
+                    assert_eq!(refused(&[(a, b, first), (c, d, second)]), overlap, "{a}..{b} {c}..{d}");
+                }
+            }
+        }
+        // A long input or output reaches beyond the short ones that follow it.
+        assert!(refused(&[(1, 100, false), (2, 3, false), (50, 51, true)]));
+        assert!(refused(&[(1, 100, true), (150, 151, true), (99, 100, false)]));
+        assert!(!refused(&[(1, 100, false), (2, 3, false), (100, 101, true)]));
+    }
+}

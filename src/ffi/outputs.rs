@@ -1,0 +1,168 @@
+//! What the caller wants written: fields, a report, a ledger; and what is read of them, the initial guess.
+
+use super::arguments::Regions;
+use super::report::{contact_normal_fields, contact_normal_report};
+use super::status::Refusal;
+use super::structs::{self, Versioned};
+use crate::memory::reserve;
+use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
+
+/// The caller's output structs, after a check.
+pub(super) struct Outputs {
+    fields: contact_normal_fields,
+    fields_at: *const contact_normal_fields,
+    report: *mut contact_normal_report,
+    /// What the caller's report held.
+    given_report: Option<contact_normal_report>,
+}
+
+impl Outputs {
+    /// NULL: not wanted.
+    pub unsafe fn of(
+        fields: *mut contact_normal_fields,
+        report: *mut contact_normal_report,
+    ) -> Result<Outputs, Refusal> {
+        // SAFETY: NULL or structs that declare their size.
+        let (given_fields, given_report) = unsafe {
+            (
+                structs::read_optional(fields.cast_const(), "fields")?,
+                structs::read_optional(report.cast_const(), "report")?,
+            )
+        };
+        if let Some(contact_normal_report { ledger, ledger_capacity, .. }) = given_report {
+            if ledger_capacity < 0 {
+                return Err(Refusal::invalid(format!(
+                    "report->ledger_capacity is {ledger_capacity}; it must not be negative"
+                )));
+            }
+            if ledger_capacity > 0 && ledger.is_null() {
+                return Err(Refusal::null("report->ledger (with ledger_capacity > 0)"));
+            }
+        }
+        let given_fields = given_fields.unwrap_or_else(contact_normal_fields::defaults);
+        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report })
+    }
+
+    /// Whether the arrays that are read are there and hold what they must.
+    pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
+        let fixed = options.active_set == ActiveSet::Fixed;
+        let given = options.initial_guess == InitialGuess::Given;
+        if fixed && self.fields.contact.is_null() {
+            return Err(Refusal::null("fields->contact (with active_set FIXED)"));
+        }
+        if given && self.fields.pressure.is_null() {
+            return Err(Refusal::null("fields->pressure (with initial_guess GIVEN)"));
+        }
+        // SAFETY: not null: n values, by the conventions of the ABI.
+        if fixed && unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().all(|&c| c == 0) {
+            return Err(Refusal::invalid(
+                "active_set is FIXED, but fields->contact is empty; it must hold an element".into(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The options with what the report asks for: errors are estimated after a start from nothing, or when there is room for a ledger.
+    pub fn options(&self, options: &Options) -> Options {
+        let from_nothing = options.initial_guess == InitialGuess::None;
+        Options { estimates: self.given_report.is_some() && (from_nothing || self.ledger_capacity() > 0), ..*options }
+    }
+
+    /// The caller's initial guess: pressures and contact area, copied.
+    pub fn guess<'a>(
+        &self,
+        options: &Options,
+        n: usize,
+        buffers: &'a mut Buffers,
+    ) -> Result<Option<Guess<'a>>, Refusal> {
+        let given = options.initial_guess == InitialGuess::Given;
+        let fixed = options.active_set == ActiveSet::Fixed;
+        if !given && !fixed {
+            return Ok(None);
+        }
+        let Buffers { pressure, contact, .. } = buffers;
+        pressure.clear();
+        contact.clear();
+        reserve(pressure, n, "the initial guess")?;
+        reserve(contact, n, "the initial guess")?;
+        if given {
+            // SAFETY: not null (check_inputs): n values, by the conventions of the ABI.
+            pressure.extend_from_slice(unsafe { std::slice::from_raw_parts(self.fields.pressure, n) });
+        } else {
+            pressure.resize(n, 0.0);
+        }
+        if self.fields.contact.is_null() {
+            contact.extend(pressure.iter().map(|&p| p > 0.0));
+        } else {
+            // SAFETY: likewise.
+            contact.extend(unsafe { std::slice::from_raw_parts(self.fields.contact, n) }.iter().map(|&c| c != 0));
+        }
+        Ok(Some(Guess { pressure, contact }))
+    }
+
+    /// Adds what a solve on `n` elements writes, and the struct that says where.
+    pub fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
+        let fields = &self.fields;
+        regions.input_struct("fields", self.fields_at, fields)?;
+        regions.output("pressure", fields.pressure, n)?;
+        regions.output("displacement", fields.displacement, n)?;
+        regions.output("deformed_distance", fields.deformed_distance, n)?;
+        regions.output("contact", fields.contact, n)?;
+        if let Some(report) = &self.given_report {
+            regions.output_struct("report", self.report, report)?;
+            regions.output("ledger", report.ledger, self.ledger_capacity())?;
+        }
+        Ok(())
+    }
+
+    /// Writes the caller's arrays.
+    pub fn write_fields(&self, solver: &Solver) {
+        let state = solver.state();
+        let n = state.p.len();
+        let fields = &self.fields;
+        // SAFETY (all four): not null: room for n values, by the conventions of the ABI; no two overlap (`Regions`).
+        unsafe {
+            if !fields.pressure.is_null() {
+                std::ptr::copy_nonoverlapping(state.p.as_ptr(), fields.pressure, n);
+            }
+            if !fields.displacement.is_null() {
+                std::ptr::copy_nonoverlapping(state.u.as_ptr(), fields.displacement, n);
+            }
+            if !fields.deformed_distance.is_null() {
+                (0..n).for_each(|i| fields.deformed_distance.add(i).write(state.deformed_distance(i)));
+            }
+            if !fields.contact.is_null() {
+                (0..n).for_each(|i| fields.contact.add(i).write(i32::from(state.contact[i])));
+                let at_limit = state.at_limit.iter().enumerate().filter(|(_, &at_limit)| at_limit);
+                at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));
+            }
+        }
+    }
+
+    /// Writes the caller's report and ledger.
+    pub fn write_report(&self, report: &Report, rows: &[LedgerRow]) -> Result<(), Refusal> {
+        let Some(given) = &self.given_report else { return Ok(()) };
+        // Where there is not room for all, those of the finest grids.
+        let skipped = rows.len().saturating_sub(self.ledger_capacity());
+        for (i, row) in rows[skipped..].iter().enumerate() {
+            // SAFETY: i < ledger_capacity, the room in the caller's ledger.
+            unsafe { given.ledger.add(i).write(row.into()) };
+        }
+        let report = contact_normal_report::of(report, rows.len(), given.ledger, given.ledger_capacity);
+        // SAFETY: not null: a struct that declares its size.
+        unsafe { structs::write(self.report, &report) }
+    }
+
+    /// Rows that the caller's ledger has room for.
+    fn ledger_capacity(&self) -> usize {
+        self.given_report.map_or(0, |report| report.ledger_capacity as usize)
+    }
+}
+
+/// Memory for initial guesses and addresses, kept by a handle from one solve to the next.
+#[derive(Default)]
+pub(super) struct Buffers {
+    pressure: Vec<f64>,
+    contact: Vec<bool>,
+    pub regions: Regions,
+}

@@ -1,0 +1,43 @@
+//! The boundary keeps what the header promises: sizes, overlaps, callbacks, coefficients of the caller's own.
+
+mod callbacks;
+mod coefficients;
+mod outputs;
+mod overlaps;
+mod structs;
+
+use std::ptr::null_mut;
+
+use crate::call::{Call, Through};
+use contact_normal::ffi::*;
+
+/// The calls that solve.
+const SOLVES: [Through; 3] = [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch];
+
+/// A handle that is freed with the test.
+struct Handle(*mut contact_normal_solver);
+
+impl Handle {
+    fn of(call: &mut Call) -> Handle {
+        Handle(call.new_handle())
+    }
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        // SAFETY: made by a call, freed once.
+        unsafe { contact_normal_solver_free(self.0) };
+    }
+}
+
+/// Solves without a handle; it must be OK.
+fn solved(call: &mut Call) {
+    assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
+}
+
+/// That a status and its message are a refusal that says these words.
+fn assert_refused(outcome: (i32, String), status: i32, words: &[&str]) {
+    let (got, message) = outcome;
+    assert_eq!(got, status, "{words:?}: {message}");
+    words.iter().for_each(|word| assert!(message.contains(word), "\"{message}\" does not say {word}"));
+}

@@ -1,0 +1,90 @@
+//! The sizes that programs of version 0.1 pass.
+
+use std::ptr::null_mut;
+
+use crate::call::{last_error, Call, Through};
+use contact_normal::ffi::*;
+
+/// Each struct of 0.1 has this size, for ever.
+const SIZES: [(&str, i64); 11] = [
+    ("scene", 144),
+    ("influence", 32),
+    ("layer", 24),
+    ("pressure_limit", 24),
+    ("period", 16),
+    ("patches", 32),
+    ("row_tables", 32),
+    ("options", 96),
+    ("fields", 40),
+    ("report", 264),
+    ("accuracy", 96),
+];
+
+/// The size that a struct of the call declares; the scene names it.
+fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
+    match name {
+        "scene" => &mut call.scene.known.struct_size,
+        "influence" => &mut call.use_table().struct_size,
+        "layer" => &mut call.use_layer().struct_size,
+        "pressure_limit" => &mut call.use_limit().struct_size,
+        "period" => {
+            call.use_period(1, 0);
+            &mut call.period.known.struct_size
+        }
+        "patches" => &mut call.use_patches([1.0; 4]).struct_size,
+        "row_tables" => &mut call.use_row_tables().struct_size,
+        "options" => &mut call.options.known.struct_size,
+        "fields" => &mut call.fields.known.struct_size,
+        "report" => &mut call.report.known.struct_size,
+        _ => &mut call.accuracy.known.struct_size,
+    }
+}
+
+#[test]
+fn a_struct_of_version_0_1_is_accepted_and_a_shorter_one_is_not() {
+    for (name, size) in SIZES {
+        let through = if name == "accuracy" { Through::ToAccuracy } else { Through::Solve };
+        for (size, status) in
+            [(size, CONTACT_NORMAL_OK), (size - 1, CONTACT_NORMAL_STRUCT_SIZE), (size - 8, CONTACT_NORMAL_STRUCT_SIZE)]
+        {
+            let mut call = Call::new();
+            *declared(&mut call, name) = size;
+            let (got, message) = call.run(through, null_mut());
+            assert_eq!(got, status, "{name} of {size} bytes: {message}");
+        }
+    }
+}
+
+/// Its destructor calls the library when the message of the thread is gone already.
+struct AtTheEnd;
+
+impl Drop for AtTheEnd {
+    fn drop(&mut self) {
+        // SAFETY: NULL is refused; the message is read at once.
+        let (status, text) = unsafe {
+            let status = contact_normal_solve(null_mut(), null_mut(), null_mut(), null_mut());
+            (status, std::ffi::CStr::from_ptr(contact_normal_last_error()))
+        };
+        // Nobody hears a panic here.
+        if status != CONTACT_NORMAL_NULL_POINTER || !text.is_empty() {
+            std::process::abort();
+        }
+    }
+}
+
+thread_local! {
+    static AT_THE_END: AtTheEnd = const { AtTheEnd };
+}
+
+#[test]
+fn a_thread_that_is_ending_may_still_call() {
+    let thread = std::thread::spawn(|| {
+        // Destructors run in the opposite order of the first uses.
+        AT_THE_END.with(|_| {});
+        // SAFETY: NULL is refused.
+        let status = unsafe { contact_normal_solve(null_mut(), null_mut(), null_mut(), null_mut()) };
+        assert_eq!(status, CONTACT_NORMAL_NULL_POINTER);
+        assert!(last_error().contains("scene"));
+    });
+    assert!(thread.join().is_ok());
+}

@@ -1,0 +1,126 @@
+//! After a lack of memory, at whichever allocation it comes, a handle holds the result before, or none, and its next call works.
+
+use std::ptr::null_mut;
+
+use super::call::initialised;
+use super::{alone, limited_memory, Handle};
+use contact_normal::ffi::*;
+
+/// Elements in each direction: an array of single precision is large then, and none of a row or a transform is.
+const M: usize = 128;
+const N: usize = M * M;
+/// Of two patches.
+static FACTORS: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
+
+/// A ball on a plane, and what its effects need.
+struct Ball {
+    h: Vec<f64>,
+    scene: contact_normal_scene,
+    compliances: Vec<f64>,
+    layer: contact_normal_layer,
+    patch: Vec<i32>,
+    patches: contact_normal_patches,
+    limit: contact_normal_pressure_limit,
+}
+
+impl Ball {
+    fn new() -> Box<Ball> {
+        let centre = |i: usize| (i as f64 + 0.5 - 0.5 * M as f64) / M as f64;
+        let mut ball = Box::new(Ball {
+            h: (0..N).map(|i| centre(i % M).powi(2) + centre(i / M).powi(2)).collect(),
+            scene: initialised(contact_normal_scene_init),
+            compliances: (0..N).map(|i| if i % M < M / 2 { 0.01 } else { 0.02 }).collect(),
+            layer: initialised(contact_normal_layer_init),
+            patch: (0..N).map(|i| i32::from(i % M < M / 2)).collect(),
+            patches: initialised(contact_normal_patches_init),
+            limit: initialised(contact_normal_pressure_limit_init),
+        });
+        let scene = &mut ball.scene;
+        (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 1.0 / M as f64, 1.0 / M as f64);
+        (scene.shear_modulus, scene.poisson_ratio) = ([1.0; 2], [0.3; 2]);
+        (scene.approach, scene.undeformed_distance) = (0.1, ball.h.as_ptr());
+        ball.layer.compliances = ball.compliances.as_ptr();
+        (ball.patches.count, ball.patches.patch) = (2, ball.patch.as_ptr());
+        ball.patches.factors = FACTORS.as_ptr();
+        ball.limit.limit = 0.2;
+        ball
+    }
+
+    /// Solves with the handle: status and pressures.
+    fn solve(&self, handle: &Handle, method: i32) -> (i32, Vec<f64>) {
+        let mut options = initialised(contact_normal_options_init);
+        (options.method, options.tolerance) = (method, 1e-3);
+        let (mut p, mut fields) = (vec![-7.0; N], initialised(contact_normal_fields_init));
+        fields.pressure = p.as_mut_ptr();
+        // SAFETY: a handle, and structs with their arrays.
+        let status = unsafe { contact_normal_solver_solve(handle.0, &self.scene, &options, &mut fields, null_mut()) };
+        (status, p)
+    }
+
+    fn new_handle(&self) -> Handle {
+        let mut handle = null_mut();
+        // SAFETY: structs with their arrays.
+        let status = unsafe { contact_normal_solver_new(&self.scene, std::ptr::null(), &mut handle) };
+        assert_eq!(status, CONTACT_NORMAL_OK);
+        Handle(handle)
+    }
+}
+
+/// The pressures that the handle holds; none if it says so.
+fn held(handle: &Handle) -> Option<Vec<f64>> {
+    let (mut p, mut fields) = (vec![-7.0; N], initialised(contact_normal_fields_init));
+    fields.pressure = p.as_mut_ptr();
+    // SAFETY: a handle, and a struct with its array.
+    let status = unsafe { contact_normal_solver_fields(handle.0, &mut fields) };
+    (status == CONTACT_NORMAL_OK).then_some(p)
+}
+
+/// One failure after the other until a solve by `method` has all that it needs; whatever was solved before by `first`.
+fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
+    let expected = ball.solve(&ball.new_handle(), method);
+    assert_eq!(expected.0, CONTACT_NORMAL_OK, "{what}");
+    let mut failures = 0;
+    for allowed in 0.. {
+        let handle = ball.new_handle();
+        if let Some(first) = first {
+            assert_eq!(ball.solve(&handle, first).0, CONTACT_NORMAL_OK, "{what}");
+        }
+        let before = held(&handle);
+        assert_eq!(before.is_some(), first.is_some());
+        // The arrays of the test itself are the first that are allowed.
+        let (status, _) = limited_memory::with(4 * N, 1 + allowed, || ball.solve(&handle, method));
+        if status == CONTACT_NORMAL_OK {
+            break;
+        }
+        assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{what}, {allowed} allocations");
+        failures += 1;
+        let after = held(&handle);
+        assert!(after.is_none() || after == before, "{what}, {allowed} allocations: half of a result");
+        assert!(ball.solve(&handle, method) == expected, "{what}, {allowed} allocations: the next call");
+    }
+    assert!(failures > 0, "{what}: nothing was allocated");
+}
+
+#[test]
+fn after_a_lack_of_memory_the_handle_works() {
+    let _alone = alone();
+    let mut ball = Ball::new();
+    let (layer, patches) = (&raw const ball.layer, &raw const ball.patches);
+    let limit = &raw const ball.limit;
+    for effect in ["none", "pressure_limit", "layer", "patches"] {
+        let scene = &mut ball.scene;
+        (scene.layer, scene.patches, scene.pressure_limit) = (std::ptr::null(), std::ptr::null(), std::ptr::null());
+        match effect {
+            "layer" => scene.layer = layer,
+            "patches" => scene.patches = patches,
+            "pressure_limit" => scene.pressure_limit = limit,
+            _ => {}
+        }
+        let methods = if effect == "none" { &[0, 1, 2, 3][..] } else { &[0, 1] };
+        for &method in methods {
+            for first in [None, Some(1 - method.min(1))] {
+                fails_everywhere(&ball, first, method, &format!("{effect}, method {method} after {first:?}"));
+            }
+        }
+    }
+}

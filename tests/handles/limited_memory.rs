@@ -1,0 +1,68 @@
+//! The system's memory, of which a thread gets no more than it is allowed.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::ptr::null_mut;
+
+struct Limited;
+
+thread_local! {
+    /// Bytes of an allocation that counts.
+    static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
+    /// Of those, how many succeed.
+    static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
+}
+
+fn may_have(bytes: usize) -> bool {
+    let allowed = ALLOWED.get();
+    if bytes < LARGE.get() {
+        return true;
+    }
+    ALLOWED.set(allowed.saturating_sub(1));
+    allowed > 0
+}
+
+// SAFETY: the system's allocator, or null.
+unsafe impl GlobalAlloc for Limited {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: by the caller.
+        if may_have(layout.size()) {
+            unsafe { System.alloc(layout) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: by the caller.
+        if may_have(layout.size()) {
+            unsafe { System.alloc_zeroed(layout) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: by the caller.
+        if may_have(size) {
+            unsafe { System.realloc(old, layout, size) }
+        } else {
+            null_mut()
+        }
+    }
+    unsafe fn dealloc(&self, old: *mut u8, layout: Layout) {
+        // SAFETY: by the caller.
+        unsafe { System.dealloc(old, layout) }
+    }
+}
+
+#[global_allocator]
+static LIMITED: Limited = Limited;
+
+/// Calls `run` with so many allocations of `large` bytes or more; all after them fail.
+pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
+    ALLOWED.set(allowed);
+    LARGE.set(large);
+    let result = run();
+    LARGE.set(usize::MAX);
+    ALLOWED.set(u64::MAX);
+    result
+}
