@@ -547,7 +547,7 @@ typedef struct contact_normal_options {
    */
   double relaxation;
   /*
-   The coarsest grid has at most this many elements in each direction, 1 to 64; default 4.
+   The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
    */
   int32_t coarsest;
   /*

@@ -76,7 +76,7 @@ pub struct contact_normal_options {
     pub post_sweeps: i32,
     /// omega, in (0, 2); default 0: what suits the smoother.
     pub relaxation: f64,
-    /// The coarsest grid has at most this many elements in each direction, 1 to 64; default 4.
+    /// The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
     pub coarsest: i32,
     /// CONTACT_NORMAL_ACTIVE_SET_...; default FREE.
     pub active_set: i32,

@@ -153,7 +153,7 @@ pub const SET_UP: &[Row] = &[
         (c.options.known.pre_sweeps, c.options.known.post_sweeps) = (0, 0);
     }),
     (&["coarsest", "0"], INVALID, |c| c.options.known.coarsest = 0),
-    (&["coarsest", "65"], INVALID, |c| c.options.known.coarsest = 65),
+    (&["coarsest", "17"], INVALID, |c| c.options.known.coarsest = 17),
     (&["threads", "-1"], INVALID, |c| c.options.known.threads = -1),
     // Refused, not tried: a million threads would be started, or take the machine down.
     (&["threads", "1025"], INVALID, |c| c.options.known.threads = 1025),
