@@ -96,8 +96,15 @@ pub fn interpolate_linearly(
         let (y, next_y, weight_y) = between(iy, fine.my, coarse.my);
         for (ix, to) in row.iter_mut().enumerate() {
             let (x, next_x, weight_x) = between(ix, fine.mx, coarse.mx);
-            // a + w (b - a) with w = 0 would make a NaN of an infinite b
-            let mix = |a: f64, b: f64, weight: f64| if weight == 0.0 { a } else { (1.0 - weight) * a + weight * b };
+            // No neighbour, or one whose value is not known (+infinity, beside a window): constant.
+            let mix = |a: f64, b: f64, weight: f64| {
+                let known = weight != 0.0 && b != f64::INFINITY;
+                if known {
+                    (1.0 - weight) * a + weight * b
+                } else {
+                    a
+                }
+            };
             let in_row = |y: usize| mix(from(coarse.index(x, y)), from(coarse.index(next_x, y)), weight_x);
             combine(to, mix(in_row(y), in_row(next_y), weight_y));
         }

@@ -20,6 +20,12 @@
 //! direction is `t + d/alpha'`, so that its product contains `A d`, and what `alpha /= alpha'` leaves, `d (1 - alpha/alpha')`, is owed
 //! on. Debts shrink by that factor at each iteration; what is left of them at the end the fresh product of the certificate settles.
 //!
+//! *After a large truncation.* What is truncated adds to the pressures; from pressures that are far too large (a coarse grid's h is a
+//! mean, which sees full contact of white noise) all of C may go and come back in turn, for ever. With a prescribed force its scaling
+//! stops that. With a prescribed approach p is scaled to the least energy, by `(p, approach - h)/(p, u)`, wherever a product has just
+//! paid all debts: it costs none of its own. Measured on 66 scenes of white noise: 19 were not solved without it, none with it, and the
+//! rough surface by approach takes 11 to 32 % less work.
+//!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
 //! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
@@ -300,6 +306,11 @@ impl<T: Real> Iteration<T> {
                 }
                 update.factor = self.carry_force(state);
                 self.fit_approach(state, &update);
+            } else if update.settled && !stop.fixed {
+                if left > 0 {
+                    self.runs.find(&state.contact);
+                }
+                update.factor = self.least_energy(state, &update);
             }
             let entered = self.update_displacements(state, &update, stop.fixed);
             self.runs.find(&state.contact);
@@ -502,13 +513,41 @@ impl<T: Real> Iteration<T> {
         if !factor.is_finite() {
             return 1.0;
         }
+        self.scale(state, factor);
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        factor
+    }
+
+    /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
+    /// returns the factor, with which u is to be scaled. It costs no product.
+    fn least_energy(&mut self, state: &mut State, update: &Update) -> f64 {
+        let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
+        let [work, energy] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                let (q, z) = (&q[run.clone()], &z[run]);
+                sums.add(h.len(), |i| {
+                    let repair = if settled { z[i].to_double() } else { 0.0 };
+                    let u = u[i] + alpha * q[i].to_double() + repair;
+                    [p[i] * (state.approach - h[i]), p[i] * u]
+                });
+            }
+        });
+        let factor = work / energy;
+        if !(factor.is_finite() && factor > 0.0) {
+            return 1.0;
+        }
+        self.scale(state, factor);
+        factor
+    }
+
+    /// p = factor p on C.
+    fn scale(&mut self, state: &mut State, factor: f64) {
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (_, local) in block.runs() {
                 p[local].iter_mut().for_each(|p| *p *= factor);
             }
         });
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        factor
     }
 
     /// u = factor (u + alpha q + A d), and 4.2: exterior elements with e < 0 enter. Returns how many. One pass over the grid,
