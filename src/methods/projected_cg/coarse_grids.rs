@@ -1,11 +1,16 @@
 //! The coarser grids: where a solve from nothing begins (nested iteration, section 4.3 of the paper). Each grid starts from the
 //! pressures of the next coarser one, piecewise constant, and its displacements, linearly interpolated.
+//!
+//! With two periods A is free of a mean, so that the mean of e is that of `h - approach` on every grid: an approach beyond the mean of
+//! a grid's h has no solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period; its h is
+//! shifted to the mean of the finest one, and is feasible where that is. What a coarser grid found is worth nothing where its residual
+//! is larger than that of p = 0 (that is 1): then the next grid starts without it.
 
 use std::f64::consts::PI;
 
 use super::level::Level;
 use super::{End, Stopping};
-use crate::contact::{Freshness, State};
+use crate::contact::{norm_of_distance, residual_norm, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
@@ -91,6 +96,9 @@ impl CoarseGrids {
         for l in 0..count {
             let (from, to) = self.pair(l, fine);
             transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
+            if to.level.influence().is_mean_free() {
+                shift_to_mean(&from.h, &mut to.state.h);
+            }
             (to.state.load, to.state.approach) = (from.load, from.approach);
         }
         let coarsest = &mut self.grids[count - 1];
@@ -105,8 +113,15 @@ impl CoarseGrids {
                 monitor.close_grid(&self.grids[l].state);
                 displacement = Freshness::Near;
             }
+            let finer_influence = if l > 0 { self.grids[l - 1].level.self_influence() } else { self_influence };
             let (to, from) = self.pair(l, fine);
-            prolong(&from.state, to, highest);
+            if residual_norm(&from.state) <= norm_of_distance(&from.state) {
+                prolong(&from.state, to, highest);
+            } else {
+                to.p.fill(0.0);
+                to.start(finer_influence);
+                displacement = Freshness::Stale;
+            }
         }
         monitor.enter_grid();
         Ok(displacement)
@@ -141,6 +156,15 @@ impl CoarseGrids {
     fn pair<'a>(&'a mut self, l: usize, finest: &'a mut State) -> (&'a mut State, &'a mut Coarse) {
         let (finer, coarser) = self.grids.split_at_mut(l);
         (finer.last_mut().map_or(finest, |grid| &mut grid.state), &mut coarser[0])
+    }
+}
+
+/// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
+fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
+    let mean = |h: &[f64]| h.iter().sum::<f64>() / h.len() as f64;
+    let shift = mean(fine) - mean(coarse);
+    if shift.is_finite() {
+        coarse.iter_mut().for_each(|h| *h += shift);
     }
 }
 
