@@ -23,11 +23,16 @@ pub fn truncate(state: &mut State) -> usize {
     changed
 }
 
-/// Step 4.2: exterior elements with `e <= 0` go to the contact area. Returns how many. Needs u = A p of the truncated p.
+/// Step 4.2: exterior elements with `e <= 0`, and those at the pressure limit with `e > 0`, go to the contact area. Returns how many. Needs u = A p of the truncated p.
 pub fn admit(state: &mut State) -> usize {
     let mut changed = 0;
     for i in 0..state.p.len() {
-        if !state.contact[i] && state.deformed_distance(i) <= 0.0 {
+        if state.at_limit.get(i) == Some(&true) {
+            if state.deformed_distance(i) > 0.0 {
+                (state.contact[i], state.at_limit[i]) = (true, false);
+                changed += 1;
+            }
+        } else if !state.contact[i] && state.deformed_distance(i) <= 0.0 {
             state.contact[i] = true;
             changed += 1;
         }

@@ -16,6 +16,8 @@ impl Survey {
             }
             if state.at_limit[i] {
                 survey.contact_count += 1;
+                // What is at its limit touches: its distance is part of the scale.
+                survey.distance += (state.h[i] - state.approach).powi(2);
                 survey.penetration = survey.penetration.max(e);
                 survey.work.0 += p * e.max(0.0);
             } else if state.contact[i] {

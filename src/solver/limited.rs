@@ -13,6 +13,7 @@
 use super::report::Stop;
 use super::start::Start;
 use super::{Options, Solver};
+use crate::contact::admissible::Limited;
 use crate::contact::{ExchangeGuard, State};
 use crate::error::Result;
 use crate::memory::reserve;
@@ -45,6 +46,32 @@ impl Workspace {
 }
 
 impl Solver {
+    /// The box inside the projected conjugate gradients, from the projected pressures of the scene without limit.
+    fn limit_inside(
+        &mut self,
+        limit: PressureLimit<'_>,
+        options: &Options,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Stop> {
+        let state = &mut self.states[0];
+        reserve(&mut state.at_limit, state.p.len(), MEMORY)?;
+        state.at_limit.resize(state.p.len(), false);
+        let set = match limit {
+            PressureLimit::Uniform(limit) => Limited::Uniform(limit),
+            PressureLimit::PerElement(limits) => Limited::PerElement(limits),
+        };
+        let mut start = Start::Nothing;
+        if std::env::var("COLD").is_err() {
+            state.balance_force_within(set);
+            self.projected.displace(&state.p, &mut state.u);
+            monitor.count_products(1, 1.0);
+            state.fit_approach();
+            start = Start::Given;
+        }
+        self.projected.solve(&mut self.states[0], set, rule, start, options.error_ratio, monitor)
+    }
+
     /// Goes on from the solution without a limit, `stop` being how that ended.
     pub(super) fn limit_pressures(
         &mut self,
@@ -56,6 +83,9 @@ impl Solver {
     ) -> Result<Stop> {
         if (0..self.grid.len()).all(|i| self.states[0].p[i] <= limit.at(i)) {
             return Ok(stop);
+        }
+        if self.symmetric && matches!(options.method, super::Method::Auto | super::Method::ProjectedCg) {
+            return self.limit_inside(limit, options, rule, monitor);
         }
         let mut work = std::mem::take(&mut self.limited);
         let stop = self.settle_limit(&mut work, limit, stop, options, rule, monitor);

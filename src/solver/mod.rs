@@ -366,11 +366,11 @@ impl Solver {
                 "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
             )),
             Method::ProjectedCg => {
-                self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)
+                self.projected.solve(&mut self.states[0], crate::contact::admissible::NonNegative, rule, start, options.error_ratio, monitor)
             }
             Method::Auto => {
                 let stop = if self.symmetric {
-                    self.projected.solve(&mut self.states[0], rule, start, options.error_ratio, monitor)?
+                    self.projected.solve(&mut self.states[0], crate::contact::admissible::NonNegative, rule, start, options.error_ratio, monitor)?
                 } else if self.without_multigrid.is_some() {
                     return self.norm(rule, monitor);
                 } else {

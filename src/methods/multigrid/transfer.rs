@@ -17,11 +17,16 @@ fn children(fine: &Grid, coarse: &Grid, ix: usize, iy: usize) -> impl Iterator<I
 
 /// Restriction of defects: the mean over the children. Defects in the exterior area are zero, and count.
 pub fn restrict_defect(fine: &Grid, coarse: &Grid, defect: &[f64], to: &mut [f64]) {
+    restrict_mean(fine, coarse, |i| defect[i], to);
+}
+
+/// Restriction by the mean over all children.
+pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64, to: &mut [f64]) {
     for iy in 0..coarse.my {
         for ix in 0..coarse.mx {
             let (mut sum, mut count) = (0.0, 0.0);
             for i in children(fine, coarse, ix, iy) {
-                sum += defect[i];
+                sum += from(i);
                 count += 1.0;
             }
             to[coarse.index(ix, iy)] = sum / count;

@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 
 use super::level::Level;
 use super::{End, Stopping};
+use crate::contact::admissible::{AdmissibleSet, Limited, NonNegative};
 use crate::contact::{norm_of_distance, residual_norm, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Influence;
 use crate::methods::multigrid::{coarsen, transfer};
-use crate::operator::zeros;
+use crate::operator::{reserve, zeros};
 use crate::progress::{Monitor, Rule};
 use crate::solver::Precision;
 use crate::threads::Threads;
@@ -33,6 +34,8 @@ pub(super) struct Coarse {
     pub(super) state: State,
     /// Means of the finest grid's pressures, while the grid is a sample.
     pub(super) means: Vec<f64>,
+    /// Limits of the pressures, while a scene has any.
+    limits: Vec<f64>,
 }
 
 /// All coarser grids.
@@ -57,6 +60,7 @@ impl CoarseGrids {
                 level: Level::new(fine, influence.clone(), precision, threads),
                 state: State::new(fine, h, load, 0.0)?,
                 means: Vec::new(),
+                limits: Vec::new(),
             });
         }
         Ok(CoarseGrids { finest: grid.len(), grids })
@@ -76,9 +80,10 @@ impl CoarseGrids {
     }
 
     /// Solves on the coarser grids; `fine` gets what they found. Returns what its u is.
-    pub fn start(
+    pub fn start<S: AdmissibleSet>(
         &mut self,
         fine: &mut State,
+        set: S,
         self_influence: f64,
         rule: &Rule,
         monitor: &mut Monitor<'_>,
@@ -101,15 +106,22 @@ impl CoarseGrids {
             }
             (to.state.load, to.state.approach) = (from.load, from.approach);
         }
+        if S::LIMITED {
+            self.restrict_limits(fine, set)?;
+        }
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
-        coarsest.state.balance_force();
+        if S::LIMITED {
+            coarsest.state.balance_force_within(Limited::PerElement(&coarsest.limits));
+        } else {
+            coarsest.state.balance_force();
+        }
         let mut displacement = Freshness::Stale;
         for l in (0..count).rev() {
             if !monitor.is_cancelled() {
                 monitor.enter_grid();
-                self.iterate(l, displacement, rule, monitor)?;
+                self.iterate::<S>(l, displacement, rule, monitor)?;
                 monitor.close_grid(&self.grids[l].state);
                 displacement = Freshness::Near;
             }
@@ -121,6 +133,17 @@ impl CoarseGrids {
                 to.p.fill(0.0);
                 to.start(finer_influence);
                 displacement = Freshness::Stale;
+            }
+            if S::LIMITED {
+                let limits = l.checked_sub(1).map(|l| std::mem::take(&mut self.grids[l].limits));
+                let (to, _) = self.pair(l, fine);
+                match limits {
+                    Some(limits) => {
+                        truncate_to(to, Limited::PerElement(&limits));
+                        self.grids[l - 1].limits = limits;
+                    }
+                    None => truncate_to(to, set),
+                }
             }
         }
         monitor.enter_grid();
@@ -143,19 +166,52 @@ impl CoarseGrids {
     }
 
     /// Some iterations on grid `l`.
-    fn iterate(&mut self, l: usize, displacement: Freshness, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
+    fn iterate<S: AdmissibleSet>(&mut self, l: usize, displacement: Freshness, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
         let stop = Stopping { tolerance: rule.tolerance, by_update: false, fixed: false, iterations };
-        let Coarse { level, state, .. } = &mut self.grids[l];
-        let end = level.run(state, displacement, &stop, self.finest, monitor)?;
+        let Coarse { level, state, limits, .. } = &mut self.grids[l];
+        let end = if S::LIMITED {
+            level.run(state, Limited::PerElement(limits), displacement, &stop, self.finest, monitor)?
+        } else {
+            level.run(state, NonNegative, displacement, &stop, self.finest, monitor)?
+        };
         level.take_displacements(state);
         Ok(end)
+    }
+
+    /// Limits of the coarser grids: means over the elements joined, infinite where one of them is. Nothing is at its limit.
+    fn restrict_limits<S: AdmissibleSet>(&mut self, fine: &State, set: S) -> Result<()> {
+        for l in 0..self.grids.len() {
+            let (finer, coarser) = self.grids.split_at_mut(l);
+            let Coarse { state, limits, .. } = &mut coarser[0];
+            let n = state.grid.len();
+            reserve(limits, n, "limits of the pressures")?;
+            limits.resize(n, 0.0);
+            match finer.last() {
+                Some(from) => transfer::restrict_mean(&from.state.grid, &state.grid, |i| from.limits[i], limits),
+                None => transfer::restrict_mean(&fine.grid, &state.grid, |i| set.limit(i), limits),
+            }
+            reserve(&mut state.at_limit, n, "elements at the limit")?;
+            state.at_limit.clear();
+            state.at_limit.resize(n, false);
+        }
+        Ok(())
     }
 
     /// The state finer than grid `l`, and grid `l`.
     fn pair<'a>(&'a mut self, l: usize, finest: &'a mut State) -> (&'a mut State, &'a mut Coarse) {
         let (finer, coarser) = self.grids.split_at_mut(l);
         (finer.last_mut().map_or(finest, |grid| &mut grid.state), &mut coarser[0])
+    }
+}
+
+/// Pressures beyond their limit are at it.
+fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
+    for i in 0..state.p.len() {
+        state.at_limit[i] = state.p[i] >= set.limit(i);
+        if state.at_limit[i] {
+            (state.p[i], state.contact[i]) = (set.limit(i), false);
+        }
     }
 }
 

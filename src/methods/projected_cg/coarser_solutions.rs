@@ -5,6 +5,7 @@
 
 use super::coarse_grids::{Coarse, CoarseGrids};
 use super::Stopping;
+use crate::contact::admissible::NonNegative;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -60,7 +61,7 @@ impl CoarseGrids {
     /// None when nothing touches on that grid.
     fn sample(&mut self, l: usize, fine: &State, monitor: &mut Monitor<'_>) -> Result<Option<Sample>> {
         let finest = self.finest;
-        let Coarse { level, state, means } = &mut self.grids[l];
+        let Coarse { level, state, means, .. } = &mut self.grids[l];
         sample_distance(&fine.grid, &state.grid, &fine.h, &mut state.h);
         reserve(means, state.p.len(), "means of the pressures")?;
         take_means(&fine.grid, &state.grid, &fine.p, means);
@@ -76,7 +77,8 @@ impl CoarseGrids {
         let tolerance = TOLERANCE / count as f64;
         let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
         let mut silent = Monitor::new(None, Vec::new(), false);
-        level.run(state, Freshness::Stale, &stop, finest, &mut silent)?;
+        state.at_limit.clear();
+        level.run(state, NonNegative, Freshness::Stale, &stop, finest, &mut silent)?;
         monitor.count_work(silent.work_units);
         state.balance_force();
         let (mut highest, mut squares, mut differences) = (0.0_f64, 0.0, 0.0);

@@ -36,6 +36,7 @@
 
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
+use crate::contact::admissible::AdmissibleSet;
 use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -75,6 +76,8 @@ pub struct Iteration<T: Real> {
     runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
+    /// With a limit and a prescribed force: what C gained to carry the force, and u still lacks; else empty.
+    lacking: Vec<f64>,
     /// Whether an element of a row enters.
     entering: Vec<bool>,
     threads: Threads,
@@ -154,9 +157,16 @@ impl<T: Real> Iteration<T> {
             z: directions()?,
             runs: Segments::new(grid, threads)?,
             debts,
+            lacking: Vec::new(),
             entering: vec![false; grid.my],
             threads: threads.clone(),
         })
+    }
+
+    /// Memory that a scene with a limit of the pressures needs beyond that of one without.
+    pub fn reserve_for_limits(&mut self) -> Result<()> {
+        self.lacking.clear();
+        reserve(&mut self.lacking, self.t.len(), "the force that is owed")
     }
 
     /// Bytes held.
@@ -177,26 +187,33 @@ impl<T: Real> Iteration<T> {
     }
 
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
-    pub fn correct(&mut self, state: &mut State) {
+    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {
             state.fit_approach();
-            self.update_displacements(state, &Update::default(), false);
+            self.update_displacements::<S>(state, &Update::default(), false);
             self.find_contact(state);
             self.residual(state);
             self.precondition(state);
-            self.direct(state, 0.0, None);
-            self.update_pressures(state, FIRST_STEP, None, false);
+            self.direct(state, set, 0.0, None);
+            self.update_pressures(state, set, FIRST_STEP, None, false);
             self.debts.clear();
-            state.balance_force();
+            state.balance_force_within(set);
         }
     }
 
     /// Iterates from a state whose u is A p; p may be negative. `after_cycle` is told of every iteration and says whether to go on.
-    pub fn run(&mut self, state: &mut State, stop: &Stopping, mut after_cycle: impl FnMut(&Cycle) -> bool) -> End {
+    pub fn run<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        stop: &Stopping,
+        mut after_cycle: impl FnMut(&Cycle) -> bool,
+    ) -> End {
         let by_force = matches!(state.load, Load::Force(_));
         self.t.fill(T::zero());
         self.q.fill(T::zero());
         self.debts.clear();
+        self.lacking.clear();
         // Without a preconditioner the first forecast is missing.
         let mut forecast = self.preconditioner.as_ref().map(|_| FIRST_FORECAST);
         // Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
@@ -208,14 +225,14 @@ impl<T: Real> Iteration<T> {
         // 4.1 and 4.2
         self.find_contact(state);
         let mut update = Update::default();
-        if self.update_pressures(state, 0.0, None, stop.fixed) > 0 {
+        if self.update_pressures(state, set, 0.0, None, stop.fixed) > 0 {
             self.runs.find(&state.contact);
-            update.factor = self.carry_force(state);
+            update.factor = self.carry_force::<S>(state);
         }
         if by_force {
             self.fit_approach(state, &update);
         }
-        self.update_displacements(state, &update, stop.fixed);
+        self.update_displacements::<S>(state, &update, stop.fixed);
         self.runs.find(&state.contact);
         if self.owed() > 0.0 {
             forecast = forecast.map(|_| FIRST_STEP);
@@ -249,11 +266,12 @@ impl<T: Real> Iteration<T> {
             self.precondition(state);
 
             // t = z + beta t, held back, and the debts
-            self.direct(state, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
+            self.direct(state, set, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
             let before = forecast.unwrap_or(1.0);
             for &(i, d) in &self.debts {
                 self.t[i] += T::of(d / before);
             }
+            self.add_lacking(1.0 / before);
 
             // q = A t, alpha = (r, t)/(t, q)
             self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
@@ -267,6 +285,8 @@ impl<T: Real> Iteration<T> {
             if iterations == 1 && self.owed() > OWED * alpha.abs() * step.t1 {
                 (alpha, tq) = (before, 0.0);
             }
+            self.add_lacking(-1.0 / before);
+            self.lacking.iter_mut().for_each(|d| *d *= 1.0 - alpha / before);
             for debt in &mut self.debts {
                 // What it is owed is no part of its direction.
                 let owed = T::of(debt.1 / before);
@@ -283,7 +303,7 @@ impl<T: Real> Iteration<T> {
             if !may_hold_back {
                 tq = 0.0;
             }
-            let left = self.update_pressures(state, alpha, good_forecast, stop.fixed);
+            let left = self.update_pressures(state, set, alpha, good_forecast, stop.fixed);
             forecast = Some(alpha).filter(|alpha| *alpha > 0.0);
             if let (Some(alpha), Some(_)) = (&mut forecast, &self.preconditioner) {
                 let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
@@ -304,15 +324,15 @@ impl<T: Real> Iteration<T> {
                 if left > 0 {
                     self.runs.find(&state.contact);
                 }
-                update.factor = self.carry_force(state);
+                update.factor = self.carry_force::<S>(state);
                 self.fit_approach(state, &update);
-            } else if update.settled && !stop.fixed {
+            } else if update.settled && !stop.fixed && !(S::LIMITED && state.at_limit.contains(&true)) {
                 if left > 0 {
                     self.runs.find(&state.contact);
                 }
                 update.factor = self.least_energy(state, &update);
             }
-            let entered = self.update_displacements(state, &update, stop.fixed);
+            let entered = self.update_displacements::<S>(state, &update, stop.fixed);
             self.runs.find(&state.contact);
             let mean_square = |sum: f64| (sum / count).sqrt();
             cycle = Some(Cycle {
@@ -380,7 +400,7 @@ impl<T: Real> Iteration<T> {
 
     /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C; held back by the forecast, if there is one.
     /// `tq` is (t, q) of the last direction, 0 if there is none.
-    fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
+    fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S, tq: f64, forecast: Option<f64>) {
         let by_force = matches!(state.load, Load::Force(_));
         let count = self.runs.count() as f64;
         let (mut mean, mut beta) = (0.0, 0.0);
@@ -399,16 +419,19 @@ impl<T: Real> Iteration<T> {
             beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
         }
         let (z, z_mean, beta) = (&self.z, T::of(mean), T::of(beta));
-        let held = |p: f64, t: T| match forecast {
+        let held = |i: usize, p: f64, t: T| match forecast {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
+            Some(forecast) if S::LIMITED && p + forecast * t.to_double() > set.limit(i) => {
+                T::of((set.limit(i) - p) / forecast)
+            }
             _ => t,
         };
         let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
             for (run, local) in block.runs() {
-                let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
+                let (start, p, z, t) = (run.start, &state.p[run.clone()], &z[run], &mut t[local]);
                 sums.add(z.len(), |i| {
                     let direction = z[i] - z_mean + beta * t[i];
-                    t[i] = if by_force { direction } else { held(p[i], direction) };
+                    t[i] = if by_force { direction } else { held(start + i, p[i], direction) };
                     [direction.to_double()]
                 });
             }
@@ -417,8 +440,8 @@ impl<T: Real> Iteration<T> {
             let mean = T::of(sum / count);
             let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
                 for (run, local) in block.runs() {
-                    for (t, p) in t[local].iter_mut().zip(&state.p[run]) {
-                        *t = held(*p, *t - mean);
+                    for ((t, p), i) in t[local].iter_mut().zip(&state.p[run.clone()]).zip(run) {
+                        *t = held(i, *p, *t - mean);
                     }
                 }
             });
@@ -441,19 +464,30 @@ impl<T: Real> Iteration<T> {
         Step { rt, tq, tt, t1, pp }
     }
 
-    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements with p < 0, and those held back by the forecast, leave; what they gain
-    /// is owed. Returns how many.
-    fn update_pressures(&mut self, state: &mut State, alpha: f64, forecast: Option<f64>, fixed: bool) -> u64 {
+    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements beyond a bound, and those held back by the forecast, leave for it;
+    /// what they gain is owed. Returns how many.
+    fn update_pressures<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        alpha: f64,
+        forecast: Option<f64>,
+        fixed: bool,
+    ) -> u64 {
         let t = &self.t;
-        let leaves = |p: f64, t: T| {
-            let held = forecast.is_some_and(|forecast| p + forecast * t.to_double() <= HELD_BACK * p);
-            !fixed & ((p + alpha * t.to_double() < 0.0) | held)
+        let leaves = |i: usize, p: f64, t: T| {
+            let held = forecast.is_some_and(|forecast| {
+                let to = p + forecast * t.to_double();
+                to <= HELD_BACK * p || S::LIMITED && to >= set.limit(i) * (1.0 - HELD_BACK)
+            });
+            !fixed & (set.leaves(i, p + alpha * t.to_double()) | held)
         };
         // Blocks that no element leaves; the others have a sum of 1.
         let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
-            let some_leave = block
-                .runs()
-                .any(|(run, local)| p[local].iter().zip(&t[run]).fold(false, |some, (p, t)| some | leaves(*p, *t)));
+            let some_leave = block.runs().any(|(run, local)| {
+                let elements = p[local].iter().zip(&t[run.clone()]).zip(run);
+                elements.fold(false, |some, ((p, t), i)| some | leaves(i, *p, *t))
+            });
             if some_leave {
                 sums.add(1, |_| [1.0]);
                 return;
@@ -470,10 +504,16 @@ impl<T: Real> Iteration<T> {
                 continue;
             }
             let (p, t) = (state.p[i], self.t[i]);
-            state.p[i] = p + alpha * t.to_double();
-            if leaves(p, t) {
-                self.debts.push((i, -state.p[i]));
-                state.p[i] = 0.0;
+            let to = p + alpha * t.to_double();
+            state.p[i] = to;
+            if leaves(i, p, t) {
+                let mut bound = 0.0;
+                if S::LIMITED && (to > set.limit(i) || to >= 0.0 && t > T::zero()) {
+                    bound = set.limit(i);
+                    state.at_limit[i] = true;
+                }
+                self.debts.push((i, bound - to));
+                state.p[i] = bound;
                 self.t[i] = T::zero();
                 state.contact[i] = false;
                 left += 1;
@@ -487,7 +527,18 @@ impl<T: Real> Iteration<T> {
 
     /// The sum of |d|.
     fn owed(&self) -> f64 {
-        self.debts.iter().map(|debt| debt.1.abs()).sum()
+        let truncated: f64 = self.debts.iter().map(|debt| debt.1.abs()).sum();
+        if self.lacking.is_empty() {
+            return truncated;
+        }
+        truncated + self.lacking.iter().map(|d| d.abs()).sum::<f64>()
+    }
+
+    /// t = t + factor d, d being what u lacks of the force.
+    fn add_lacking(&mut self, factor: f64) {
+        for (t, d) in self.t.iter_mut().zip(&self.lacking) {
+            *t += T::of(factor * d);
+        }
     }
 
     /// z = A d: a product pays all debts.
@@ -496,12 +547,18 @@ impl<T: Real> Iteration<T> {
         for (i, d) in self.debts.drain(..) {
             self.z[i] += T::of(d);
         }
+        for (z, d) in self.z.iter_mut().zip(&mut self.lacking) {
+            *z += T::of(std::mem::take(d));
+        }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 
     /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
-    fn carry_force(&mut self, state: &mut State) -> f64 {
+    fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
+        if S::LIMITED && state.at_limit.contains(&true) {
+            return self.carry_force_beside_limits(state, force / state.grid.element_area());
+        }
         let p = &state.p;
         let [carried] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
@@ -515,6 +572,34 @@ impl<T: Real> Iteration<T> {
         }
         self.scale(state, factor);
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        factor
+    }
+
+    /// The same where elements are at their limit: only C is scaled, and u lacks what it gains. Where C is left nothing to carry, or
+    /// carries nothing, all pressures are scaled, and what was at its limit enters C.
+    fn carry_force_beside_limits(&mut self, state: &mut State, pressures: f64) -> f64 {
+        let (mut free, mut all) = (0.0, 0.0);
+        for (p, &inside) in state.p.iter().zip(&state.contact) {
+            all += p;
+            free += if inside { *p } else { 0.0 };
+        }
+        let factor = 1.0 + (pressures - all) / free;
+        if factor.is_finite() && factor > 0.0 {
+            // In the memory of `reserve_for_limits`.
+            self.lacking.resize(state.p.len(), 0.0);
+            for ((p, d), _) in state.p.iter_mut().zip(&mut self.lacking).zip(&state.contact).filter(|(_, &inside)| inside) {
+                *d += (factor - 1.0) * *p;
+                *p *= factor;
+            }
+            return 1.0;
+        }
+        let factor = pressures / all;
+        state.p.iter_mut().chain(&mut self.lacking).for_each(|p| *p *= factor);
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
+            *inside |= std::mem::take(at_limit);
+        }
+        self.find_contact(state);
         factor
     }
 
@@ -552,8 +637,8 @@ impl<T: Real> Iteration<T> {
 
     /// u = factor (u + alpha q + A d), and 4.2: exterior elements with e < 0 enter. Returns how many. One pass over the grid,
     /// because its arrays are longer than the caches.
-    fn update_displacements(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
-        let State { h, u, contact, approach, grid, .. } = state;
+    fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
+        let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
         let Update { alpha, settled, factor } = *update;
@@ -570,8 +655,13 @@ impl<T: Real> Iteration<T> {
             }
             // Most rows have no element that enters, and this the compiler can vectorise.
             let mut any = false;
-            for ((h, u), inside) in h[row.clone()].iter().zip(u).zip(&contact[row]) {
+            for ((h, u), inside) in h[row.clone()].iter().zip(&*u).zip(&contact[row.clone()]) {
                 any |= (h - approach + *u < 0.0) & !inside;
+            }
+            if S::LIMITED {
+                for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
+                    any |= (h - approach + *u > 0.0) & at_limit;
+                }
             }
             entering[0] = any;
         });
@@ -579,9 +669,14 @@ impl<T: Real> Iteration<T> {
         for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| !fixed && any) {
             self.runs.change(iy * mx);
             for i in iy * mx..(iy + 1) * mx {
-                if !contact[i] && h[i] - approach + u[i] < 0.0 {
+                let e = h[i] - approach + u[i];
+                let enters = if S::LIMITED && at_limit[i] { e > 0.0 } else { !contact[i] && e < 0.0 };
+                if enters {
                     contact[i] = true;
                     entered += 1;
+                    if S::LIMITED {
+                        at_limit[i] = false;
+                    }
                 }
             }
         }

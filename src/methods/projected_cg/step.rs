@@ -14,6 +14,7 @@ use super::coarser_solutions::{PREDICTS, SHOWS_ORDER};
 use super::level::Level;
 use super::predictor::Predictor;
 use super::{End, Stopping};
+use crate::contact::admissible::AdmissibleSet;
 use crate::contact::{admit, Freshness, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -106,9 +107,10 @@ impl Projected {
 
     /// Solves from what `state` holds, as `from` says. `error_ratio` is that of the options; it needs the coarser grids of a start from
     /// nothing.
-    pub fn solve(
+    pub fn solve<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
+        set: S,
         rule: &Rule,
         from: Start,
         error_ratio: f64,
@@ -124,13 +126,14 @@ impl Projected {
             }
             good_start = rule.fixed || certified.violation <= WORTHLESS;
         }
-        if good_start && from == Start::Previous && !rule.fixed {
+        // With limits what grows with the load is not known.
+        if good_start && from == Start::Previous && !rule.fixed && !S::LIMITED {
             displacement = self.history.predict(state)?;
         }
         if !good_start {
-            displacement = self.start(state, &rule, monitor)?;
+            displacement = self.start(state, set, &rule, monitor)?;
             if displacement == Freshness::Near && self.noise() > NOISE * rule.tolerance {
-                self.finest.correct(state)?;
+                self.finest.correct(state, set)?;
                 self.displace(&state.p, &mut state.u);
                 monitor.count_products(1, 1.0);
                 displacement = Freshness::Exact;
@@ -140,7 +143,7 @@ impl Projected {
             }
         }
         if monitor.is_cancelled() {
-            self.certify(state, &rule, monitor);
+            self.certify(state, set, &rule, monitor);
             return Ok(Stop::Cancelled);
         }
         let rule = &rule;
@@ -157,15 +160,15 @@ impl Projected {
                 iterations: rule.max_cycles.saturating_sub(monitor.cycles),
             };
             let directly = match &mut self.direct {
-                Some(direct) if !rule.fixed && rounds < DIRECT_ROUNDS => direct.run(state, stop.iterations, monitor),
+                Some(direct) if !rule.fixed && !S::LIMITED && rounds < DIRECT_ROUNDS => direct.run(state, stop.iterations, monitor),
                 _ => None,
             };
             rounds += 1;
             let end = match directly {
                 Some(end) => end,
-                None => self.finest.run(state, displacement, &stop, self.grid.len(), monitor)?,
+                None => self.finest.run(state, set, displacement, &stop, self.grid.len(), monitor)?,
             };
-            let certified = self.certify(state, rule, monitor);
+            let certified = self.certify(state, set, rule, monitor);
             // A small last update proves nothing while u was of single precision, or pressures were owed: then all that
             // is done from a fresh u must come to no more than a small update.
             let settled = !rule.by_update
@@ -191,9 +194,15 @@ impl Projected {
     }
 
     /// From nothing: what the coarser grids find. Returns what u is then.
-    fn start(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<Freshness> {
+    fn start<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Freshness> {
         let self_influence = self.finest.self_influence();
-        self.coarse_grids()?.start(state, self_influence, rule, monitor)
+        self.coarse_grids()?.start(state, set, self_influence, rule, monitor)
     }
 
     /// What the scene of `state` is on coarser grids: up to two samples.
@@ -230,8 +239,14 @@ impl Projected {
 
     /// u = A p anew, on the full grid and in double precision, and whether the conditions hold. Elements outside C that penetrate
     /// enter it.
-    fn certify(&mut self, state: &mut State, rule: &Rule, monitor: &mut Monitor<'_>) -> Certified {
-        state.balance_force();
+    fn certify<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Certified {
+        state.balance_force_within(set);
         self.operator.apply(&state.p, &mut state.u, &mut self.workspace);
         monitor.count_products(1, 1.0);
         state.fit_approach();
