@@ -78,6 +78,8 @@ pub struct Iteration<T: Real> {
     debts: Vec<(usize, f64)>,
     /// With a limit and a prescribed force: what C gained to carry the force, and u still lacks; else empty.
     lacking: Vec<f64>,
+    /// With a limit: the pressures that u knows of, those of before the iteration without what was owed then.
+    known: Vec<f64>,
     /// Whether an element of a row enters.
     entering: Vec<bool>,
     threads: Threads,
@@ -158,6 +160,7 @@ impl<T: Real> Iteration<T> {
             runs: Segments::new(grid, threads)?,
             debts,
             lacking: Vec::new(),
+            known: Vec::new(),
             entering: vec![false; grid.my],
             threads: threads.clone(),
         })
@@ -166,7 +169,8 @@ impl<T: Real> Iteration<T> {
     /// Memory that a scene with a limit of the pressures needs beyond that of one without.
     pub fn reserve_for_limits(&mut self) -> Result<()> {
         self.lacking.clear();
-        reserve(&mut self.lacking, self.t.len(), "the force that is owed")
+        reserve(&mut self.known, self.t.len(), "pressures with a limit")?;
+        reserve(&mut self.lacking, self.t.len(), "pressures with a limit")
     }
 
     /// Bytes held.
@@ -273,6 +277,10 @@ impl<T: Real> Iteration<T> {
             }
             self.add_lacking(1.0 / before);
 
+            if S::LIMITED {
+                self.remember(state);
+            }
+
             // q = A t, alpha = (r, t)/(t, q)
             self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
             let step = self.step(state);
@@ -311,12 +319,19 @@ impl<T: Real> Iteration<T> {
                     *alpha = usual;
                 }
             }
+            if S::LIMITED && by_force && state.at_limit.contains(&true) {
+                self.scale_free(state);
+            }
             let owed = self.owed();
             let mut products = 1;
             if owed > OWED * alpha.abs() * step.t1 || forecast.is_none() && owed > 0.0 {
                 self.settle();
                 update.settled = true;
                 products += 1;
+                if S::LIMITED && !stop.fixed {
+                    self.shorten(state, set, &mut update);
+                    tq = 0.0;
+                }
             }
 
             // u = u + alpha q, 4.2
@@ -326,7 +341,7 @@ impl<T: Real> Iteration<T> {
                 }
                 update.factor = self.carry_force::<S>(state);
                 self.fit_approach(state, &update);
-            } else if update.settled && !stop.fixed && !(S::LIMITED && state.at_limit.contains(&true)) {
+            } else if update.settled && !stop.fixed && !S::LIMITED {
                 if left > 0 {
                     self.runs.find(&state.contact);
                 }
@@ -578,22 +593,10 @@ impl<T: Real> Iteration<T> {
     /// The same where elements are at their limit: only C is scaled, and u lacks what it gains. Where C is left nothing to carry, or
     /// carries nothing, all pressures are scaled, and what was at its limit enters C.
     fn carry_force_beside_limits(&mut self, state: &mut State, pressures: f64) -> f64 {
-        let (mut free, mut all) = (0.0, 0.0);
-        for (p, &inside) in state.p.iter().zip(&state.contact) {
-            all += p;
-            free += if inside { *p } else { 0.0 };
-        }
-        let factor = 1.0 + (pressures - all) / free;
-        if factor.is_finite() && factor > 0.0 {
-            // In the memory of `reserve_for_limits`.
-            self.lacking.resize(state.p.len(), 0.0);
-            for ((p, d), _) in state.p.iter_mut().zip(&mut self.lacking).zip(&state.contact).filter(|(_, &inside)| inside) {
-                *d += (factor - 1.0) * *p;
-                *p *= factor;
-            }
+        if self.scale_free(state) {
             return 1.0;
         }
-        let factor = pressures / all;
+        let factor = pressures / state.p.iter().sum::<f64>();
         state.p.iter_mut().chain(&mut self.lacking).for_each(|p| *p *= factor);
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
         for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
@@ -601,6 +604,70 @@ impl<T: Real> Iteration<T> {
         }
         self.find_contact(state);
         factor
+    }
+
+    /// Scales p of C alone to carry a prescribed force, and owes u the change; false where C cannot.
+    fn scale_free(&mut self, state: &mut State) -> bool {
+        let Load::Force(force) = state.load else { return true };
+        let (mut free, mut all) = (0.0, 0.0);
+        for (p, &inside) in state.p.iter().zip(&state.contact) {
+            all += p;
+            free += if inside { *p } else { 0.0 };
+        }
+        let factor = 1.0 + (force / state.grid.element_area() - all) / free;
+        if !(factor.is_finite() && factor > 0.0) {
+            return false;
+        }
+        // In the memory of `reserve_for_limits`.
+        self.lacking.resize(state.p.len(), 0.0);
+        for ((p, d), _) in state.p.iter_mut().zip(&mut self.lacking).zip(&state.contact).filter(|(_, &inside)| inside) {
+            *d += (factor - 1.0) * *p;
+            *p *= factor;
+        }
+        true
+    }
+
+    /// With a limit: keeps the pressures that u knows of.
+    fn remember(&mut self, state: &State) {
+        self.known.clear();
+        self.known.extend_from_slice(&state.p);
+        self.known.iter_mut().zip(&self.lacking).for_each(|(p, d)| *p -= d);
+        for &(i, d) in &self.debts {
+            self.known[i] -= d;
+        }
+    }
+
+    /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
+    /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
+    fn shorten<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
+        let (mut work, mut energy) = (0.0, 0.0);
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.known[i];
+            if d != 0.0 {
+                work -= d * (state.h[i] - state.approach + state.u[i]);
+                energy += d * (update.alpha * self.q[i].to_double() + self.z[i].to_double());
+            }
+        }
+        let s = work / energy;
+        if !(s > 0.0 && s < 1.0) {
+            return;
+        }
+        update.alpha *= s;
+        self.z.iter_mut().for_each(|z| *z = T::of(s * z.to_double()));
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.known[i];
+            if d == 0.0 {
+                continue;
+            }
+            let to = self.known[i] + s * d;
+            state.p[i] = set.project(i, to);
+            if state.p[i] != to {
+                self.debts.push((i, state.p[i] - to));
+            } else if !state.contact[i] {
+                (state.contact[i], state.at_limit[i]) = (true, false);
+            }
+        }
+        self.find_contact(state);
     }
 
     /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
