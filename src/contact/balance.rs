@@ -60,7 +60,7 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// Elements of C beyond their limit leave for it; what is at its limit has its value.
+    /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.
     fn project<S: AdmissibleSet>(&mut self, set: S) {
         for i in 0..self.p.len() {
             if self.contact[i] && self.p[i] > set.limit(i) {
@@ -68,6 +68,8 @@ impl State {
             }
             if self.at_limit[i] {
                 self.p[i] = set.limit(i);
+            } else if !self.contact[i] {
+                self.p[i] = 0.0;
             }
         }
     }

@@ -290,7 +290,7 @@ impl<T: Real> Iteration<T> {
             }
             tq = step.tq;
             let mut alpha = step.rt / step.tq;
-            if iterations == 1 && self.owed() > OWED * alpha.abs() * step.t1 {
+            if (iterations == 1 || S::LIMITED) && self.owed() > OWED * alpha.abs() * step.t1 {
                 (alpha, tq) = (before, 0.0);
             }
             self.add_lacking(-1.0 / before);
@@ -663,9 +663,10 @@ impl<T: Real> Iteration<T> {
             state.p[i] = set.project(i, to);
             if state.p[i] != to {
                 self.debts.push((i, state.p[i] - to));
-            } else if !state.contact[i] {
-                (state.contact[i], state.at_limit[i]) = (true, false);
             }
+            let at_limit = state.p[i] >= set.limit(i);
+            state.at_limit[i] = at_limit;
+            state.contact[i] = state.p[i] > 0.0 && !at_limit;
         }
         self.find_contact(state);
     }
