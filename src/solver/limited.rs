@@ -61,15 +61,11 @@ impl Solver {
             PressureLimit::Uniform(limit) => Limited::Uniform(limit),
             PressureLimit::PerElement(limits) => Limited::PerElement(limits),
         };
-        let mut start = Start::Nothing;
-        if std::env::var("COLD").is_err() {
-            state.balance_force_within(set);
-            self.projected.displace(&state.p, &mut state.u);
-            monitor.count_products(1, 1.0);
-            state.fit_approach();
-            start = Start::Given;
-        }
-        self.projected.solve(&mut self.states[0], set, rule, start, options.error_ratio, monitor)
+        state.balance_force_within(set);
+        self.projected.displace(&state.p, &mut state.u);
+        monitor.count_products(1, 1.0);
+        state.fit_approach();
+        self.projected.solve(&mut self.states[0], set, rule, Start::Given, options.error_ratio, monitor)
     }
 
     /// Goes on from the solution without a limit, `stop` being how that ended.

@@ -166,7 +166,13 @@ impl CoarseGrids {
     }
 
     /// Some iterations on grid `l`.
-    fn iterate<S: AdmissibleSet>(&mut self, l: usize, displacement: Freshness, rule: &Rule, monitor: &mut Monitor<'_>) -> Result<End> {
+    fn iterate<S: AdmissibleSet>(
+        &mut self,
+        l: usize,
+        displacement: Freshness,
+        rule: &Rule,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
         let stop = Stopping { tolerance: rule.tolerance, by_update: false, fixed: false, iterations };
         let Coarse { level, state, limits, .. } = &mut self.grids[l];

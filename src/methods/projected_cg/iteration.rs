@@ -26,6 +26,12 @@
 //! paid all debts: it costs none of its own. Measured on 66 scenes of white noise: 19 were not solved without it, none with it, and the
 //! rough surface by approach takes 11 to 32 % less work.
 //!
+//! *Limits of the pressures* (`0 <= p <= p_max`) are a second bound: elements are held back and truncated at both, and what was truncated
+//! at its limit enters C again where e > 0. The pressures there cannot be scaled, so that with a prescribed force C alone is, and u is
+//! owed the change as it is owed truncations. As a scene with limits has no scaling that stops C from going and coming back, the step
+//! itself is shortened to the least energy wherever a product has just paid all debts: both ends of it are known exactly then. Without
+//! that, 34 of 84 scenes cycled. Large debts the next product pays whole, by a step of the length of the forecast.
+//!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
 //! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
@@ -62,6 +68,9 @@ const FAR_OFF: f64 = 3.0;
 const ROUNDINGS: f64 = 200.0;
 /// Iterations without a new least residual after which the contact area may be cycling.
 const PATIENCE: u32 = 40;
+/// With a limit a step goes back where the least energy lies before this part of it. Measured over 84 scenes: at 0.5 one is not solved,
+/// at 1 the work is 4 % more in the mean and 20 % more in the worst.
+const STEP_BACK: f64 = 0.7;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
 const HELD_BACK: f64 = 1e-6;
 
@@ -329,7 +338,7 @@ impl<T: Real> Iteration<T> {
                 update.settled = true;
                 products += 1;
                 if S::LIMITED && !stop.fixed {
-                    self.shorten(state, set, &mut update);
+                    self.step_back(state, set, &mut update);
                     tq = 0.0;
                 }
             }
@@ -639,7 +648,7 @@ impl<T: Real> Iteration<T> {
 
     /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
     /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
-    fn shorten<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
+    fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
         let (mut work, mut energy) = (0.0, 0.0);
         for i in 0..state.p.len() {
             let d = state.p[i] - self.known[i];
@@ -649,7 +658,7 @@ impl<T: Real> Iteration<T> {
             }
         }
         let s = work / energy;
-        if !(s > 0.0 && s < 1.0) {
+        if !(s > 0.0 && s < STEP_BACK) {
             return;
         }
         update.alpha *= s;

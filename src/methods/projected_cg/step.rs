@@ -160,7 +160,9 @@ impl Projected {
                 iterations: rule.max_cycles.saturating_sub(monitor.cycles),
             };
             let directly = match &mut self.direct {
-                Some(direct) if !rule.fixed && !S::LIMITED && rounds < DIRECT_ROUNDS => direct.run(state, stop.iterations, monitor),
+                Some(direct) if !rule.fixed && !S::LIMITED && rounds < DIRECT_ROUNDS => {
+                    direct.run(state, stop.iterations, monitor)
+                }
                 _ => None,
             };
             rounds += 1;
