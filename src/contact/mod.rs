@@ -1,6 +1,7 @@
 //! The active set: which elements are in contact, steps 4.1 and 4.2 of the paper, and how well the conditions hold.
 
 mod admissible;
+mod balance;
 mod certificate;
 mod exchange;
 mod guard;

@@ -5,7 +5,6 @@ use crate::grid::Grid;
 use crate::operator::zeros;
 use crate::scene::Load;
 
-use super::admissible::AdmissibleSet;
 use super::exchange::starting_contact;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
@@ -134,63 +133,6 @@ impl State {
         None
     }
 
-    /// As [`balance_force`](Self::balance_force), with elements at their limit: those in C carry what they leave.
-    pub fn carry_force<S: AdmissibleSet>(&mut self, set: S) -> Option<f64> {
-        let Load::Force(force) = self.load else { return Some(1.0) };
-        if !S::LIMITED || !self.p.iter().enumerate().any(|(i, p)| *p >= set.limit(i)) && !self.at_limit.contains(&true)
-        {
-            let factor = self.balance_force();
-            if !S::LIMITED || (0..self.p.len()).all(|i| self.p[i] <= set.limit(i)) {
-                return factor;
-            }
-        }
-        self.fill_up(force / self.grid.element_area(), set);
-        None
-    }
-
-    /// `p = min(limit, factor p)` with the factor that makes the sum `wanted`; elements that reach their limit stay there. Where those
-    /// loaded cannot carry it, all that have a surface are loaded.
-    fn fill_up<S: AdmissibleSet>(&mut self, wanted: f64, set: S) {
-        let capacity =
-            |state: &State| -> f64 { (0..state.p.len()).filter(|&i| state.p[i] > 0.0).map(|i| set.limit(i)).sum() };
-        if !(capacity(self) > wanted) {
-            let least = wanted / self.p.len() as f64;
-            for i in 0..self.p.len() {
-                if self.h[i].is_finite() && self.p[i] <= 0.0 {
-                    (self.p[i], self.contact[i]) = (least.min(0.5 * set.limit(i)), true);
-                }
-            }
-        }
-        // Those at their limit are free to go down where the force fell.
-        let carried: f64 = self.p.iter().sum();
-        for i in 0..self.p.len() {
-            if self.at_limit[i] && carried > wanted {
-                (self.at_limit[i], self.contact[i]) = (false, true);
-            }
-        }
-        // Each round but the last brings an element to its limit.
-        for _ in 0..=self.p.len() {
-            let (mut free, mut held) = (0.0, 0.0);
-            for (p, inside) in self.p.iter().zip(&self.contact) {
-                *(if *inside { &mut free } else { &mut held }) += p;
-            }
-            let factor = (wanted - held) / free;
-            if !(factor.is_finite() && factor > 0.0) {
-                return;
-            }
-            let mut reached = false;
-            for i in 0..self.p.len() {
-                self.p[i] *= if self.contact[i] { factor } else { 1.0 };
-                if self.p[i] > set.limit(i) {
-                    (self.p[i], self.contact[i], self.at_limit[i], reached) = (set.limit(i), false, true, true);
-                }
-            }
-            if !reached {
-                return;
-            }
-        }
-    }
-
     /// What coarser grids take larger distances for: far above what any approach closes, and no number that rules a mean.
     pub fn out_of_reach(&self, self_influence: f64) -> f64 {
         let lowest = self.lowest().map_or(0.0, |i| self.h[i]);
@@ -222,17 +164,6 @@ impl State {
                 // Nothing is in elastic contact: the least approach that holds all elements at their limit.
                 let held = (0..self.h.len()).filter(|&i| self.at_limit[i]).map(|i| self.h[i] + self.u[i]);
                 self.approach = held.fold(f64::NEG_INFINITY, f64::max);
-            }
-        }
-    }
-
-    /// p becomes admissible; elements that reach their limit leave C for it.
-    pub fn project<S: AdmissibleSet>(&mut self, set: S) {
-        if S::LIMITED {
-            for i in 0..self.p.len() {
-                self.p[i] = set.project(i, self.p[i]);
-                self.at_limit[i] = self.p[i] > 0.0 && self.p[i] >= set.limit(i);
-                self.contact[i] &= !self.at_limit[i];
             }
         }
     }

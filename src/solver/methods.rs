@@ -122,7 +122,8 @@ impl Methods {
         if on_coarser_grids && !(violation <= WORTHLESS) {
             return Ok(Some(true));
         }
-        if on_coarser_grids && from == Start::Previous {
+        // With limits it is not known what grows with the load.
+        if on_coarser_grids && from == Start::Previous && !S::LIMITED {
             self.projected_cg.predict(state)?;
         }
         Ok(Some(false))

@@ -17,11 +17,16 @@ fn children(fine: &Grid, coarse: &Grid, ix: usize, iy: usize) -> impl Iterator<I
 
 /// Restriction of defects: the mean over the children. Defects in the exterior area are zero, and count.
 pub fn restrict_defect(fine: &Grid, coarse: &Grid, defect: &[f64], to: &mut [f64]) {
+    restrict_mean(fine, coarse, |i| defect[i], to);
+}
+
+/// Restriction by the mean over all children.
+pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64, to: &mut [f64]) {
     for iy in 0..coarse.my {
         for ix in 0..coarse.mx {
             let (mut sum, mut count) = (0.0, 0.0);
             for i in children(fine, coarse, ix, iy) {
-                sum += defect[i];
+                sum += from(i);
                 count += 1.0;
             }
             to[coarse.index(ix, iy)] = sum / count;
@@ -96,8 +101,15 @@ pub fn interpolate_linearly(
         let (y, next_y, weight_y) = between(iy, fine.my, coarse.my);
         for (ix, to) in row.iter_mut().enumerate() {
             let (x, next_x, weight_x) = between(ix, fine.mx, coarse.mx);
-            // a + w (b - a) with w = 0 would make a NaN of an infinite b
-            let mix = |a: f64, b: f64, weight: f64| if weight == 0.0 { a } else { (1.0 - weight) * a + weight * b };
+            // No neighbour, or one whose value is not known (+infinity, beside a window): constant.
+            let mix = |a: f64, b: f64, weight: f64| {
+                let known = weight != 0.0 && b != f64::INFINITY;
+                if known {
+                    (1.0 - weight) * a + weight * b
+                } else {
+                    a
+                }
+            };
             let in_row = |y: usize| mix(from(coarse.index(x, y)), from(coarse.index(next_x, y)), weight_x);
             combine(to, mix(in_row(y), in_row(next_y), weight_y));
         }

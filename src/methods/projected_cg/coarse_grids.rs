@@ -1,17 +1,23 @@
 //! The coarser grids: where a solve from nothing begins (nested iteration, section 4.3 of the paper). Each grid starts from the
 //! pressures of the next coarser one, piecewise constant, and its displacements, linearly interpolated.
+//!
+//! With two periods A is free of a mean, so that the mean of e is that of `h - approach` on every grid: an approach beyond the mean of
+//! a grid's h has no solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period; its h is
+//! shifted to the mean of the finest one, and is feasible where that is. What a coarser grid found is worth nothing where its residual
+//! is larger than that of p = 0 (that is 1): then the next grid starts without it.
 
 use std::f64::consts::PI;
 
 use super::level::Level;
 use super::{End, Stopping};
-use crate::contact::{AdmissibleSet, Freshness, NonNegative, State};
+use crate::contact::{norm_of_distance, residual_norm, Freshness, State};
+use crate::contact::{AdmissibleSet, Limited, NonNegative};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::methods::multigrid::{coarsen, transfer};
-use crate::operator::zeros;
 use crate::operator::Precision;
+use crate::operator::{reserve, zeros};
 use crate::progress::{Goal, Monitor};
 use crate::threads::Threads;
 
@@ -28,6 +34,8 @@ pub(super) struct Coarse {
     pub(super) state: State,
     /// Means of the finest grid's pressures, while the grid is a sample.
     pub(super) means: Vec<f64>,
+    /// Limits of the pressures, while a scene has any.
+    limits: Vec<f64>,
 }
 
 /// All coarser grids.
@@ -52,6 +60,7 @@ impl CoarseGrids {
                 level: Level::new(fine, influence.clone(), precision, threads),
                 state: State::new(fine, h, load, 0.0)?,
                 means: Vec::new(),
+                limits: Vec::new(),
             });
         }
         Ok(CoarseGrids { finest: grid.len(), grids })
@@ -79,7 +88,6 @@ impl CoarseGrids {
         goal: &Goal,
         monitor: &mut Monitor<'_>,
     ) -> Result<Freshness> {
-        let _ = set;
         let count = self.grids.len();
         if count == 0 {
             // A guess that was worth nothing is gone.
@@ -93,22 +101,51 @@ impl CoarseGrids {
         for l in 0..count {
             let (from, to) = self.pair(l, fine);
             transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
+            to.state.at_limit.clear();
+            if to.level.influence().is_mean_free() {
+                shift_to_mean(&from.h, &mut to.state.h);
+            }
             (to.state.load, to.state.approach) = (from.load, from.approach);
+        }
+        if S::LIMITED {
+            self.restrict_limits(fine, set)?;
         }
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
-        coarsest.state.balance_force();
+        if S::LIMITED {
+            coarsest.state.carry_force(Limited::PerElement(&coarsest.limits));
+        } else {
+            coarsest.state.balance_force();
+        }
         let mut displacement = Freshness::Stale;
         for l in (0..count).rev() {
             if !monitor.is_cancelled() {
                 monitor.enter_grid();
-                self.iterate(l, displacement, goal, monitor)?;
+                self.iterate::<S>(l, displacement, goal, monitor)?;
                 monitor.close_grid(&self.grids[l].state);
                 displacement = Freshness::Near;
             }
+            let finer_influence = if l > 0 { self.grids[l - 1].level.self_influence() } else { self_influence };
             let (to, from) = self.pair(l, fine);
-            prolong(&from.state, to, highest);
+            if residual_norm(&from.state) <= norm_of_distance(&from.state) {
+                prolong(&from.state, to, highest);
+            } else {
+                to.p.fill(0.0);
+                to.start(finer_influence);
+                displacement = Freshness::Stale;
+            }
+            if S::LIMITED {
+                let limits = l.checked_sub(1).map(|l| std::mem::take(&mut self.grids[l].limits));
+                let (to, _) = self.pair(l, fine);
+                match limits {
+                    Some(limits) => {
+                        truncate_to(to, Limited::PerElement(&limits));
+                        self.grids[l - 1].limits = limits;
+                    }
+                    None => truncate_to(to, set),
+                }
+            }
         }
         monitor.enter_grid();
         Ok(displacement)
@@ -130,19 +167,67 @@ impl CoarseGrids {
     }
 
     /// Some iterations on grid `l`.
-    fn iterate(&mut self, l: usize, displacement: Freshness, goal: &Goal, monitor: &mut Monitor<'_>) -> Result<End> {
+    fn iterate<S: AdmissibleSet>(
+        &mut self,
+        l: usize,
+        displacement: Freshness,
+        goal: &Goal,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<End> {
         let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
         let stop = Stopping { tolerance: goal.tolerance, by_update: false, fixed: false, iterations };
-        let Coarse { level, state, .. } = &mut self.grids[l];
-        let end = level.run(state, displacement, &stop, NonNegative, self.finest, monitor)?;
+        let Coarse { level, state, limits, .. } = &mut self.grids[l];
+        let end = if S::LIMITED {
+            level.run(state, Limited::PerElement(limits), displacement, &stop, self.finest, monitor)?
+        } else {
+            level.run(state, NonNegative, displacement, &stop, self.finest, monitor)?
+        };
         level.take_displacements(state);
         Ok(end)
+    }
+
+    /// Limits of the coarser grids: means over the elements joined, infinite where one of them is. Nothing is at its limit.
+    fn restrict_limits<S: AdmissibleSet>(&mut self, fine: &State, set: S) -> Result<()> {
+        for l in 0..self.grids.len() {
+            let (finer, coarser) = self.grids.split_at_mut(l);
+            let Coarse { state, limits, .. } = &mut coarser[0];
+            let n = state.grid.len();
+            reserve(limits, n, "limits of the pressures")?;
+            limits.resize(n, 0.0);
+            match finer.last() {
+                Some(from) => transfer::restrict_mean(&from.state.grid, &state.grid, |i| from.limits[i], limits),
+                None => transfer::restrict_mean(&fine.grid, &state.grid, |i| set.limit(i), limits),
+            }
+            reserve(&mut state.at_limit, n, "elements at the limit")?;
+            state.at_limit.clear();
+            state.at_limit.resize(n, false);
+        }
+        Ok(())
     }
 
     /// The state finer than grid `l`, and grid `l`.
     fn pair<'a>(&'a mut self, l: usize, finest: &'a mut State) -> (&'a mut State, &'a mut Coarse) {
         let (finer, coarser) = self.grids.split_at_mut(l);
         (finer.last_mut().map_or(finest, |grid| &mut grid.state), &mut coarser[0])
+    }
+}
+
+/// Pressures beyond their limit are at it.
+fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
+    for i in 0..state.p.len() {
+        state.at_limit[i] = state.p[i] >= set.limit(i);
+        if state.at_limit[i] {
+            (state.p[i], state.contact[i]) = (set.limit(i), false);
+        }
+    }
+}
+
+/// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
+fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
+    let mean = |h: &[f64]| h.iter().sum::<f64>() / h.len() as f64;
+    let shift = mean(fine) - mean(coarse);
+    if shift.is_finite() {
+        coarse.iter_mut().for_each(|h| *h += shift);
     }
 }
 

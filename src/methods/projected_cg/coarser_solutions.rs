@@ -5,7 +5,8 @@
 
 use super::coarse_grids::{Coarse, CoarseGrids};
 use super::Stopping;
-use crate::contact::{Freshness, NonNegative, State};
+use crate::contact::NonNegative;
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
@@ -72,7 +73,7 @@ impl CoarseGrids {
     /// None when nothing touches on that grid.
     fn sample(&mut self, l: usize, fine: &State, monitor: &mut Monitor<'_>) -> Result<Option<Sample>> {
         let finest = self.finest;
-        let Coarse { level, state, means } = &mut self.grids[l];
+        let Coarse { level, state, means, .. } = &mut self.grids[l];
         sample_distance(&fine.grid, &state.grid, &fine.h, &mut state.h);
         reserve(means, state.p.len(), "means of the pressures")?;
         take_means(&fine.grid, &state.grid, &fine.p, means);
@@ -88,7 +89,8 @@ impl CoarseGrids {
         let tolerance = TOLERANCE / count as f64;
         let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
         let mut silent = Monitor::silent();
-        level.run(state, Freshness::Stale, &stop, NonNegative, finest, &mut silent)?;
+        state.at_limit.clear();
+        level.run(state, NonNegative, Freshness::Stale, &stop, finest, &mut silent)?;
         monitor.count_work(silent.count.work_units);
         state.balance_force();
         let (mut highest, mut squares, mut differences) = (0.0_f64, 0.0, 0.0);

@@ -20,6 +20,18 @@
 //! direction is `t + d/alpha'`, so that its product contains `A d`, and what `alpha /= alpha'` leaves, `d (1 - alpha/alpha')`, is owed
 //! on. Debts shrink by that factor at each iteration; what is left of them at the end the fresh product of the certificate settles.
 //!
+//! *After a large truncation.* What is truncated adds to the pressures; from pressures that are far too large (a coarse grid's h is a
+//! mean, which sees full contact of white noise) all of C may go and come back in turn, for ever. With a prescribed force its scaling
+//! stops that. With a prescribed approach p is scaled to the least energy, by `(p, approach - h)/(p, u)`, wherever a product has just
+//! paid all debts: it costs none of its own. Measured on 66 scenes of white noise: 19 were not solved without it, none with it, and the
+//! rough surface by approach takes 11 to 32 % less work.
+//!
+//! *Limits of the pressures* (`0 <= p <= p_max`) are a second bound: elements are held back and truncated at both, and what was truncated
+//! at its limit enters C again where e > 0. The pressures there cannot be scaled, so that with a prescribed force C alone is, and u is
+//! owed the change as it is owed truncations. As a scene with limits has no scaling that stops C from going and coming back, the step
+//! itself is shortened to the least energy wherever a product has just paid all debts: both ends of it are known exactly then. Without
+//! that, 34 of 84 scenes cycled. Large debts the next product pays whole, by a step of the length of the forecast.
+//!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
 //! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
@@ -30,6 +42,7 @@
 
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
+use crate::contact::AdmissibleSet;
 use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -55,6 +68,9 @@ const FAR_OFF: f64 = 3.0;
 const ROUNDINGS: f64 = 200.0;
 /// Iterations without a new least residual after which the contact area may be cycling.
 const PATIENCE: u32 = 40;
+/// With a limit a step goes back where the least energy lies before this part of it. Measured over 84 scenes: at 0.5 one is not solved,
+/// at 1 the work is 4 % more in the mean and 20 % more in the worst.
+const STEP_BACK: f64 = 0.7;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
 const HELD_BACK: f64 = 1e-6;
 
@@ -69,6 +85,10 @@ pub struct Iteration<T: Real> {
     runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
     debts: Vec<(usize, f64)>,
+    /// With a limit and a prescribed force: what C gained to carry the force, and u still lacks; else empty.
+    lacking: Vec<f64>,
+    /// With a limit: the pressures that u knows of, those of before the iteration without what was owed then.
+    known: Vec<f64>,
     /// Whether an element of a row enters.
     entering: Vec<bool>,
     threads: Threads,
@@ -154,9 +174,18 @@ impl<T: Real> Iteration<T> {
             z: directions()?,
             runs: Segments::new(grid, threads)?,
             debts,
+            lacking: Vec::new(),
+            known: Vec::new(),
             entering: vec![false; grid.my],
             threads: threads.clone(),
         })
+    }
+
+    /// Memory that a scene with a limit of the pressures needs beyond that of one without.
+    pub fn reserve_for_limits(&mut self) -> Result<()> {
+        self.lacking.clear();
+        reserve(&mut self.known, self.t.len(), "pressures with a limit")?;
+        reserve(&mut self.lacking, self.t.len(), "pressures with a limit")
     }
 
     /// Bytes held.
@@ -177,26 +206,33 @@ impl<T: Real> Iteration<T> {
     }
 
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
-    pub fn correct(&mut self, state: &mut State) {
+    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {
             state.fit_approach();
-            self.update_displacements(state, &Update::default(), false);
+            self.update_displacements::<S>(state, &Update::default(), false);
             self.find_contact(state);
             self.residual(state);
             self.precondition(state);
-            self.direct(state, 0.0, None);
-            self.update_pressures(state, FIRST_STEP, None, false);
+            self.direct(state, set, 0.0, None);
+            self.update_pressures(state, set, FIRST_STEP, None, false);
             self.debts.clear();
-            state.balance_force();
+            state.carry_force(set);
         }
     }
 
     /// Iterates from a state whose u is A p; p may be negative. `after_cycle` is told of every iteration and says whether to go on.
-    pub fn run(&mut self, state: &mut State, stop: &Stopping, mut after_cycle: impl FnMut(&Cycle) -> bool) -> End {
+    pub fn run<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        stop: &Stopping,
+        mut after_cycle: impl FnMut(&Cycle) -> bool,
+    ) -> End {
         let by_force = matches!(state.load, Load::Force(_));
         self.t.fill(T::zero());
         self.q.fill(T::zero());
         self.debts.clear();
+        self.lacking.clear();
         // Without a preconditioner the first forecast is missing.
         let mut forecast = self.preconditioner.as_ref().map(|_| FIRST_FORECAST);
         // Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
@@ -208,14 +244,14 @@ impl<T: Real> Iteration<T> {
         // 4.1 and 4.2
         self.find_contact(state);
         let mut update = Update::default();
-        if self.update_pressures(state, 0.0, None, stop.fixed) > 0 {
+        if self.update_pressures(state, set, 0.0, None, stop.fixed) > 0 {
             self.runs.find(&state.contact);
-            update.factor = self.carry_force(state);
+            update.factor = self.carry_force::<S>(state);
         }
         if by_force {
             self.fit_approach(state, &update);
         }
-        self.update_displacements(state, &update, stop.fixed);
+        self.update_displacements::<S>(state, &update, stop.fixed);
         self.runs.find(&state.contact);
         if self.owed() > 0.0 {
             forecast = forecast.map(|_| FIRST_STEP);
@@ -249,10 +285,15 @@ impl<T: Real> Iteration<T> {
             self.precondition(state);
 
             // t = z + beta t, held back, and the debts
-            self.direct(state, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
+            self.direct(state, set, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
             let before = forecast.unwrap_or(1.0);
             for &(i, d) in &self.debts {
                 self.t[i] += T::of(d / before);
+            }
+            self.add_lacking(1.0 / before);
+
+            if S::LIMITED {
+                self.remember(state);
             }
 
             // q = A t, alpha = (r, t)/(t, q)
@@ -264,9 +305,11 @@ impl<T: Real> Iteration<T> {
             }
             tq = step.tq;
             let mut alpha = step.rt / step.tq;
-            if iterations == 1 && self.owed() > OWED * alpha.abs() * step.t1 {
+            if (iterations == 1 || S::LIMITED) && self.owed() > OWED * alpha.abs() * step.t1 {
                 (alpha, tq) = (before, 0.0);
             }
+            self.add_lacking(-1.0 / before);
+            self.lacking.iter_mut().for_each(|d| *d *= 1.0 - alpha / before);
             for debt in &mut self.debts {
                 // What it is owed is no part of its direction.
                 let owed = T::of(debt.1 / before);
@@ -283,7 +326,7 @@ impl<T: Real> Iteration<T> {
             if !may_hold_back {
                 tq = 0.0;
             }
-            let left = self.update_pressures(state, alpha, good_forecast, stop.fixed);
+            let left = self.update_pressures(state, set, alpha, good_forecast, stop.fixed);
             forecast = Some(alpha).filter(|alpha| *alpha > 0.0);
             if let (Some(alpha), Some(_)) = (&mut forecast, &self.preconditioner) {
                 let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
@@ -291,12 +334,19 @@ impl<T: Real> Iteration<T> {
                     *alpha = usual;
                 }
             }
+            if S::LIMITED && by_force && state.at_limit.contains(&true) {
+                self.scale_free(state);
+            }
             let owed = self.owed();
             let mut products = 1;
             if owed > OWED * alpha.abs() * step.t1 || forecast.is_none() && owed > 0.0 {
                 self.settle();
                 update.settled = true;
                 products += 1;
+                if S::LIMITED && !stop.fixed {
+                    self.step_back(state, set, &mut update);
+                    tq = 0.0;
+                }
             }
 
             // u = u + alpha q, 4.2
@@ -304,10 +354,15 @@ impl<T: Real> Iteration<T> {
                 if left > 0 {
                     self.runs.find(&state.contact);
                 }
-                update.factor = self.carry_force(state);
+                update.factor = self.carry_force::<S>(state);
                 self.fit_approach(state, &update);
+            } else if update.settled && !stop.fixed && !S::LIMITED {
+                if left > 0 {
+                    self.runs.find(&state.contact);
+                }
+                update.factor = self.least_energy(state, &update);
             }
-            let entered = self.update_displacements(state, &update, stop.fixed);
+            let entered = self.update_displacements::<S>(state, &update, stop.fixed);
             self.runs.find(&state.contact);
             let mean_square = |sum: f64| (sum / count).sqrt();
             cycle = Some(Cycle {
@@ -375,7 +430,7 @@ impl<T: Real> Iteration<T> {
 
     /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C; held back by the forecast, if there is one.
     /// `tq` is (t, q) of the last direction, 0 if there is none.
-    fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
+    fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S, tq: f64, forecast: Option<f64>) {
         let by_force = matches!(state.load, Load::Force(_));
         let count = self.runs.count() as f64;
         let (mut mean, mut beta) = (0.0, 0.0);
@@ -394,16 +449,19 @@ impl<T: Real> Iteration<T> {
             beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
         }
         let (z, z_mean, beta) = (&self.z, T::of(mean), T::of(beta));
-        let held = |p: f64, t: T| match forecast {
+        let held = |i: usize, p: f64, t: T| match forecast {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
+            Some(forecast) if S::LIMITED && p + forecast * t.to_double() > set.limit(i) => {
+                T::of((set.limit(i) - p) / forecast)
+            }
             _ => t,
         };
         let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
             for (run, local) in block.runs() {
-                let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
+                let (start, p, z, t) = (run.start, &state.p[run.clone()], &z[run], &mut t[local]);
                 sums.add(z.len(), |i| {
                     let direction = z[i] - z_mean + beta * t[i];
-                    t[i] = if by_force { direction } else { held(p[i], direction) };
+                    t[i] = if by_force { direction } else { held(start + i, p[i], direction) };
                     [direction.to_double()]
                 });
             }
@@ -412,8 +470,8 @@ impl<T: Real> Iteration<T> {
             let mean = T::of(sum / count);
             let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
                 for (run, local) in block.runs() {
-                    for (t, p) in t[local].iter_mut().zip(&state.p[run]) {
-                        *t = held(*p, *t - mean);
+                    for ((t, p), i) in t[local].iter_mut().zip(&state.p[run.clone()]).zip(run) {
+                        *t = held(i, *p, *t - mean);
                     }
                 }
             });
@@ -436,19 +494,30 @@ impl<T: Real> Iteration<T> {
         Step { rt, tq, tt, t1, pp }
     }
 
-    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements with p < 0, and those held back by the forecast, leave; what they gain
-    /// is owed. Returns how many.
-    fn update_pressures(&mut self, state: &mut State, alpha: f64, forecast: Option<f64>, fixed: bool) -> u64 {
+    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements beyond a bound, and those held back by the forecast, leave for it;
+    /// what they gain is owed. Returns how many.
+    fn update_pressures<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        set: S,
+        alpha: f64,
+        forecast: Option<f64>,
+        fixed: bool,
+    ) -> u64 {
         let t = &self.t;
-        let leaves = |p: f64, t: T| {
-            let held = forecast.is_some_and(|forecast| p + forecast * t.to_double() <= HELD_BACK * p);
-            !fixed & ((p + alpha * t.to_double() < 0.0) | held)
+        let leaves = |i: usize, p: f64, t: T| {
+            let held = forecast.is_some_and(|forecast| {
+                let to = p + forecast * t.to_double();
+                to <= HELD_BACK * p || S::LIMITED && to >= set.limit(i) * (1.0 - HELD_BACK)
+            });
+            !fixed & (set.leaves(i, p + alpha * t.to_double()) | held)
         };
         // Blocks that no element leaves; the others have a sum of 1.
         let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
-            let some_leave = block
-                .runs()
-                .any(|(run, local)| p[local].iter().zip(&t[run]).fold(false, |some, (p, t)| some | leaves(*p, *t)));
+            let some_leave = block.runs().any(|(run, local)| {
+                let elements = p[local].iter().zip(&t[run.clone()]).zip(run);
+                elements.fold(false, |some, ((p, t), i)| some | leaves(i, *p, *t))
+            });
             if some_leave {
                 sums.add(1, |_| [1.0]);
                 return;
@@ -465,10 +534,16 @@ impl<T: Real> Iteration<T> {
                 continue;
             }
             let (p, t) = (state.p[i], self.t[i]);
-            state.p[i] = p + alpha * t.to_double();
-            if leaves(p, t) {
-                self.debts.push((i, -state.p[i]));
-                state.p[i] = 0.0;
+            let to = p + alpha * t.to_double();
+            state.p[i] = to;
+            if leaves(i, p, t) {
+                let mut bound = 0.0;
+                if S::LIMITED && (to > set.limit(i) || to >= 0.0 && t > T::zero()) {
+                    bound = set.limit(i);
+                    state.at_limit[i] = true;
+                }
+                self.debts.push((i, bound - to));
+                state.p[i] = bound;
                 self.t[i] = T::zero();
                 state.contact[i] = false;
                 left += 1;
@@ -482,7 +557,18 @@ impl<T: Real> Iteration<T> {
 
     /// The sum of |d|.
     fn owed(&self) -> f64 {
-        self.debts.iter().map(|debt| debt.1.abs()).sum()
+        let truncated: f64 = self.debts.iter().map(|debt| debt.1.abs()).sum();
+        if self.lacking.is_empty() {
+            return truncated;
+        }
+        truncated + self.lacking.iter().map(|d| d.abs()).sum::<f64>()
+    }
+
+    /// t = t + factor d, d being what u lacks of the force.
+    fn add_lacking(&mut self, factor: f64) {
+        for (t, d) in self.t.iter_mut().zip(&self.lacking) {
+            *t += T::of(factor * d);
+        }
     }
 
     /// z = A d: a product pays all debts.
@@ -491,12 +577,18 @@ impl<T: Real> Iteration<T> {
         for (i, d) in self.debts.drain(..) {
             self.z[i] += T::of(d);
         }
+        for (z, d) in self.z.iter_mut().zip(&mut self.lacking) {
+            *z += T::of(std::mem::take(d));
+        }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 
     /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
-    fn carry_force(&mut self, state: &mut State) -> f64 {
+    fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
+        if S::LIMITED && state.at_limit.contains(&true) {
+            return self.carry_force_beside_limits(state, force / state.grid.element_area());
+        }
         let p = &state.p;
         let [carried] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
@@ -508,19 +600,128 @@ impl<T: Real> Iteration<T> {
         if !factor.is_finite() {
             return 1.0;
         }
+        self.scale(state, factor);
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        factor
+    }
+
+    /// The same where elements are at their limit: only C is scaled, and u lacks what it gains. Where C is left nothing to carry, or
+    /// carries nothing, all pressures are scaled, and what was at its limit enters C.
+    fn carry_force_beside_limits(&mut self, state: &mut State, pressures: f64) -> f64 {
+        if self.scale_free(state) {
+            return 1.0;
+        }
+        let factor = pressures / state.p.iter().sum::<f64>();
+        state.p.iter_mut().chain(&mut self.lacking).for_each(|p| *p *= factor);
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
+            *inside |= std::mem::take(at_limit);
+        }
+        self.find_contact(state);
+        factor
+    }
+
+    /// Scales p of C alone to carry a prescribed force, and owes u the change; false where C cannot.
+    fn scale_free(&mut self, state: &mut State) -> bool {
+        let Load::Force(force) = state.load else { return true };
+        let (mut free, mut all) = (0.0, 0.0);
+        for (p, &inside) in state.p.iter().zip(&state.contact) {
+            all += p;
+            free += if inside { *p } else { 0.0 };
+        }
+        let factor = 1.0 + (force / state.grid.element_area() - all) / free;
+        if !(factor.is_finite() && factor > 0.0) {
+            return false;
+        }
+        // In the memory of `reserve_for_limits`.
+        self.lacking.resize(state.p.len(), 0.0);
+        for ((p, d), _) in state.p.iter_mut().zip(&mut self.lacking).zip(&state.contact).filter(|(_, &inside)| inside) {
+            *d += (factor - 1.0) * *p;
+            *p *= factor;
+        }
+        true
+    }
+
+    /// With a limit: keeps the pressures that u knows of.
+    fn remember(&mut self, state: &State) {
+        self.known.clear();
+        self.known.extend_from_slice(&state.p);
+        self.known.iter_mut().zip(&self.lacking).for_each(|(p, d)| *p -= d);
+        for &(i, d) in &self.debts {
+            self.known[i] -= d;
+        }
+    }
+
+    /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
+    /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
+    fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
+        let (mut work, mut energy) = (0.0, 0.0);
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.known[i];
+            if d != 0.0 {
+                work -= d * (state.h[i] - state.approach + state.u[i]);
+                energy += d * (update.alpha * self.q[i].to_double() + self.z[i].to_double());
+            }
+        }
+        let s = work / energy;
+        if !(s > 0.0 && s < STEP_BACK) {
+            return;
+        }
+        update.alpha *= s;
+        self.z.iter_mut().for_each(|z| *z = T::of(s * z.to_double()));
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.known[i];
+            if d == 0.0 {
+                continue;
+            }
+            let to = self.known[i] + s * d;
+            state.p[i] = set.project(i, to);
+            if state.p[i] != to {
+                self.debts.push((i, state.p[i] - to));
+            }
+            let at_limit = state.p[i] >= set.limit(i);
+            state.at_limit[i] = at_limit;
+            state.contact[i] = state.p[i] > 0.0 && !at_limit;
+        }
+        self.find_contact(state);
+    }
+
+    /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
+    /// returns the factor, with which u is to be scaled. It costs no product.
+    fn least_energy(&mut self, state: &mut State, update: &Update) -> f64 {
+        let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
+        let [work, energy] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                let (q, z) = (&q[run.clone()], &z[run]);
+                sums.add(h.len(), |i| {
+                    let repair = if settled { z[i].to_double() } else { 0.0 };
+                    let u = u[i] + alpha * q[i].to_double() + repair;
+                    [p[i] * (state.approach - h[i]), p[i] * u]
+                });
+            }
+        });
+        let factor = work / energy;
+        if !(factor.is_finite() && factor > 0.0) {
+            return 1.0;
+        }
+        self.scale(state, factor);
+        factor
+    }
+
+    /// p = factor p on C.
+    fn scale(&mut self, state: &mut State, factor: f64) {
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (_, local) in block.runs() {
                 p[local].iter_mut().for_each(|p| *p *= factor);
             }
         });
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        factor
     }
 
     /// u = factor (u + alpha q + A d), and 4.2: exterior elements with e < 0 enter. Returns how many. One pass over the grid,
     /// because its arrays are longer than the caches.
-    fn update_displacements(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
-        let State { h, u, contact, approach, grid, .. } = state;
+    fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
+        let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
         let Update { alpha, settled, factor } = *update;
@@ -537,8 +738,13 @@ impl<T: Real> Iteration<T> {
             }
             // Most rows have no element that enters, and this the compiler can vectorise.
             let mut any = false;
-            for ((h, u), inside) in h[row.clone()].iter().zip(u).zip(&contact[row]) {
+            for ((h, u), inside) in h[row.clone()].iter().zip(&*u).zip(&contact[row.clone()]) {
                 any |= (h - approach + *u < 0.0) & !inside;
+            }
+            if S::LIMITED {
+                for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
+                    any |= (h - approach + *u > 0.0) & at_limit;
+                }
             }
             entering[0] = any;
         });
@@ -546,9 +752,14 @@ impl<T: Real> Iteration<T> {
         for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| !fixed && any) {
             self.runs.change(iy * mx);
             for i in iy * mx..(iy + 1) * mx {
-                if !contact[i] && h[i] - approach + u[i] < 0.0 {
+                let e = h[i] - approach + u[i];
+                let enters = if S::LIMITED && at_limit[i] { e > 0.0 } else { !contact[i] && e < 0.0 };
+                if enters {
                     contact[i] = true;
                     entered += 1;
+                    if S::LIMITED {
+                        at_limit[i] = false;
+                    }
                 }
             }
         }

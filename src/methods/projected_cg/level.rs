@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use super::scaling::Scaling;
 use super::{Cycle, End, Iteration, Stopping, Window};
-use crate::contact::{AdmissibleSet, Freshness, State};
+use crate::contact::{AdmissibleSet, Limited, NonNegative};
+use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::fft::Real;
 use crate::operator::Precision;
-use crate::operator::{zeros, Operator};
+use crate::operator::{reserve, zeros, Operator};
 use crate::progress::Monitor;
 use crate::threads::Threads;
 
@@ -50,10 +51,13 @@ impl Inner {
         })
     }
 
-    fn correct(&mut self, state: &mut State) {
-        match self {
-            Inner::Single(iteration) => iteration.correct(state),
-            Inner::Double(iteration) => iteration.correct(state),
+    fn correct<S: AdmissibleSet>(&mut self, state: &mut State, limits: &[f64]) {
+        let limited = Limited::PerElement(limits);
+        match (self, S::LIMITED) {
+            (Inner::Single(iteration), false) => iteration.correct(state, NonNegative),
+            (Inner::Single(iteration), true) => iteration.correct(state, limited),
+            (Inner::Double(iteration), false) => iteration.correct(state, NonNegative),
+            (Inner::Double(iteration), true) => iteration.correct(state, limited),
         }
     }
 
@@ -64,10 +68,27 @@ impl Inner {
         }
     }
 
-    fn run(&mut self, state: &mut State, stop: &Stopping, after_cycle: impl FnMut(&Cycle) -> bool) -> End {
+    /// `limits` are those of the state's elements, if the set has any.
+    fn run<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        limits: &[f64],
+        stop: &Stopping,
+        after_cycle: impl FnMut(&Cycle) -> bool,
+    ) -> End {
+        let limited = Limited::PerElement(limits);
+        match (self, S::LIMITED) {
+            (Inner::Single(iteration), false) => iteration.run(state, NonNegative, stop, after_cycle),
+            (Inner::Single(iteration), true) => iteration.run(state, limited, stop, after_cycle),
+            (Inner::Double(iteration), false) => iteration.run(state, NonNegative, stop, after_cycle),
+            (Inner::Double(iteration), true) => iteration.run(state, limited, stop, after_cycle),
+        }
+    }
+
+    fn reserve_for_limits(&mut self) -> Result<()> {
         match self {
-            Inner::Single(iteration) => iteration.run(state, stop, after_cycle),
-            Inner::Double(iteration) => iteration.run(state, stop, after_cycle),
+            Inner::Single(iteration) => iteration.reserve_for_limits(),
+            Inner::Double(iteration) => iteration.reserve_for_limits(),
         }
     }
 
@@ -99,6 +120,8 @@ pub struct Level {
     threads: Threads,
     /// None before the first iteration.
     windowed: Option<Windowed>,
+    /// Of the window's pressures, in its units, while a scene has limits.
+    limits: Vec<f64>,
     /// Whether the next window is chosen without regard to the one there is.
     choose_anew: bool,
 }
@@ -113,6 +136,7 @@ impl Level {
             precision,
             threads: threads.clone(),
             windowed: None,
+            limits: Vec::new(),
             choose_anew: true,
         }
     }
@@ -132,6 +156,11 @@ impl Level {
         self.influence.at(0, 0)
     }
 
+    /// The coefficients of this grid.
+    pub fn influence(&self) -> &Coefficients {
+        &self.influence
+    }
+
     /// The next window is chosen by itself, so that a result does not depend, in the last bits, on the solve before.
     pub fn forget_window(&mut self) {
         self.choose_anew = true;
@@ -147,25 +176,25 @@ impl Level {
     pub fn run<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
+        set: S,
         displacement: Freshness,
         stop: &Stopping,
-        _set: S,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
         if displacement != Freshness::Exact {
-            state.balance_force();
+            state.carry_force(set);
         }
-        self.on_window(state, displacement, |inner, grid, units, state| {
+        self.on_window(state, set, displacement, |inner, grid, units, state, limits| {
             let work = grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
-                inner.correct(state);
+                inner.correct::<S>(state, limits);
             }
             if displacement != Freshness::Exact {
                 inner.displace(state);
                 monitor.count_products(1, work);
             }
-            inner.run(state, stop, |cycle| {
+            inner.run::<S>(state, limits, stop, |cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
                 monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
@@ -174,21 +203,42 @@ impl Level {
     }
 
     /// Improves p where u is near A p, without a product; u is not known afterwards.
-    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, _set: S) -> Result<()> {
-        state.balance_force();
-        self.on_window(state, Freshness::Near, |inner, _, _, state| inner.correct(state))
+    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
+        state.carry_force(set);
+        self.on_window(state, set, Freshness::Near, |inner, _, _, state, limits| inner.correct::<S>(state, limits))
     }
 
     /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
-    fn on_window<R>(
+    fn on_window<S: AdmissibleSet, R>(
         &mut self,
         state: &mut State,
+        set: S,
         displacement: Freshness,
-        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State) -> R,
+        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State, &[f64]) -> R,
     ) -> Result<R> {
+        let mut limits = std::mem::take(&mut self.limits);
         let Windowed { window, inner, units, part } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
-        let Some(part) = part else { return Ok(work(inner, &grid, units, state)) };
+        if S::LIMITED {
+            reserve(&mut limits, grid.len(), "limits of the pressures")?;
+            limits.clear();
+            let mx = state.grid.mx;
+            let elements = window.y.clone().flat_map(|y| window.x.clone().map(move |x| y * mx + x));
+            limits.extend(elements.map(|i| set.limit(i) * units.pressure()));
+            inner.reserve_for_limits()?;
+        }
+        let Some(part) = part else {
+            let result = work(inner, &grid, units, state, &limits);
+            self.limits = limits;
+            return Ok(result);
+        };
+        if S::LIMITED {
+            reserve(&mut part.at_limit, grid.len(), "elements at the limit")?;
+            part.at_limit.resize(grid.len(), false);
+            window.extract(&state.grid, &state.at_limit, &mut part.at_limit);
+        } else {
+            part.at_limit.clear();
+        }
         window.extract(&state.grid, &state.h, &mut part.h);
         window.extract(&state.grid, &state.p, &mut part.p);
         window.extract(&state.grid, &state.contact, &mut part.contact);
@@ -199,13 +249,17 @@ impl Level {
         if *units != Scaling::SAME {
             units.convert(part);
         }
-        let result = work(inner, &grid, units, part);
+        let result = work(inner, &grid, units, part, &limits);
         if *units != Scaling::SAME {
             units.convert_back(part);
         }
         window.insert(&state.grid, &part.p, &mut state.p, 0.0);
         window.insert(&state.grid, &part.contact, &mut state.contact, false);
+        if S::LIMITED {
+            window.insert(&state.grid, &part.at_limit, &mut state.at_limit, false);
+        }
         state.approach = part.approach;
+        self.limits = limits;
         Ok(result)
     }
 

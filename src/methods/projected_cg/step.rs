@@ -180,7 +180,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
             fixed: S::FIXED,
             iterations: goal.max_cycles.saturating_sub(monitor.count.cycles),
         };
-        self.finest.run(state, was, &stopping, set, problem.grid.len(), monitor)?;
+        self.finest.run(state, set, was, &stopping, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;
         if !goal.by_update() {
             return Ok(Change::default());

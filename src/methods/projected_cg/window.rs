@@ -101,11 +101,24 @@ impl Window {
     }
 }
 
-/// The smallest window that holds the contact area; none when it is empty.
+/// The smallest window that holds the contact area, and what is at its limit; none when it is empty.
 fn bounding_box(state: &State) -> Option<Window> {
-    let mx = state.grid.mx;
+    let area = bounding_box_of(&state.contact, state.grid.mx);
+    if state.at_limit.is_empty() {
+        return area;
+    }
+    match (area, bounding_box_of(&state.at_limit, state.grid.mx)) {
+        (Some(a), Some(b)) => {
+            let join = |a: &Range<usize>, b: &Range<usize>| a.start.min(b.start)..a.end.max(b.end);
+            Some(Window { x: join(&a.x, &b.x), y: join(&a.y, &b.y) })
+        }
+        (a, b) => a.or(b),
+    }
+}
+
+fn bounding_box_of(elements: &[bool], mx: usize) -> Option<Window> {
     let in_contact = |row: &&[bool]| row.contains(&true);
-    let rows = state.contact.chunks_exact(mx);
+    let rows = elements.chunks_exact(mx);
     let first = rows.clone().position(|row| in_contact(&row))?;
     let last = rows.clone().rposition(|row| in_contact(&row))?;
     let (mut start, mut end) = (mx, 0);

@@ -1,0 +1,75 @@
+//! A prescribed force that has to be carried within an admissible set.
+
+use super::{AdmissibleSet, State};
+use crate::scene::Load;
+
+/// Rounds of raising what is below its limit; each but the last brings an element to its limit, most of them many.
+const ROUNDS: u32 = 50;
+
+impl State {
+    /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
+    /// Call before u is recomputed.
+    pub fn carry_force<S: AdmissibleSet>(&mut self, set: S) -> Option<f64> {
+        if !S::LIMITED {
+            return self.balance_force();
+        }
+        self.project(set);
+        let Load::Force(force) = self.load else { return Some(1.0) };
+        if !self.at_limit.contains(&true) {
+            let factor = self.balance_force();
+            self.project(set);
+            if !self.at_limit.contains(&true) {
+                return factor;
+            }
+        }
+        let pressures = force / self.grid.element_area();
+        for _ in 0..ROUNDS {
+            let (mut all, mut free) = (0.0, 0.0);
+            for (p, &inside) in self.p.iter().zip(&self.contact) {
+                all += p;
+                free += if inside { *p } else { 0.0 };
+            }
+            let missing = pressures - all;
+            if missing.abs() <= f64::EPSILON * pressures {
+                break;
+            }
+            if missing + free > 0.0 && free > 0.0 {
+                let factor = 1.0 + missing / free;
+                self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p *= factor);
+            } else if missing < 0.0 {
+                // Less than what is at its limit carries: that is not at its limit.
+                self.p.iter_mut().for_each(|p| *p *= pressures / all);
+                self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
+            } else {
+                self.spread(missing);
+            }
+            self.project(set);
+        }
+        None
+    }
+
+    /// A uniform pressure on C; on all that is exterior and has a surface where C is empty.
+    fn spread(&mut self, pressures: f64) {
+        if self.contact_count() == 0 {
+            for i in 0..self.h.len() {
+                self.contact[i] = self.h[i].is_finite() && !self.at_limit[i];
+            }
+        }
+        let uniform = pressures / self.contact_count().max(1) as f64;
+        self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
+    }
+
+    /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.
+    pub fn project<S: AdmissibleSet>(&mut self, set: S) {
+        for i in 0..self.p.len() {
+            if self.contact[i] && self.p[i] > set.limit(i) {
+                (self.contact[i], self.at_limit[i]) = (false, true);
+            }
+            if self.at_limit[i] {
+                self.p[i] = set.limit(i);
+            } else if !self.contact[i] {
+                self.p[i] = 0.0;
+            }
+        }
+    }
+}
