@@ -42,7 +42,9 @@ impl Goal {
         let allowed = self.residual();
         let rms = (survey.squares / survey.contact_count.max(1) as f64).sqrt();
         let small = !self.by_update() || update <= self.tolerance * rms;
-        let conditions = survey.residual <= allowed * survey.distance && survey.residual.is_finite();
+        // An empty C has no residual, whatever p is.
+        let finite = survey.residual.is_finite() && survey.pressures.is_finite();
+        let conditions = finite && survey.residual <= allowed * survey.distance;
         let free = survey.penetration <= allowed * survey.scale && survey.work.0 <= allowed * survey.work.1;
         small && conditions && (S::FIXED || free && survey.range.0 >= 0.0)
     }

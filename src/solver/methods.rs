@@ -5,7 +5,7 @@ use super::estimates;
 use super::iterate::{iterate, violation};
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
-use crate::contact::{admit, AdmissibleSet, Problem, State, Survey};
+use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
 use crate::methods::descent::Descent;
 use crate::methods::direct::Direct;
@@ -88,12 +88,11 @@ impl Methods {
             }
         }
         if stop != Stop::Converged {
-            let indefinite = stop == Stop::Stagnated && problem.given && !(self.best.violation() <= 1.0);
+            let indefinite = stop == Stop::Stagnated && problem.given && has_negative_energy(problem, state);
             self.best.restore(problem, state, set, monitor);
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
-                    "influence coefficients: no method converges with them; p'Ap must be positive for all pressures p"
-                        .into(),
+                    "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
                 ));
             }
         }
@@ -233,6 +232,13 @@ impl Methods {
         let direct = self.direct.as_ref().map_or(0, Direct::bytes);
         self.projected_cg.bytes() + direct + multigrid + self.descent.bytes() + self.norm.bytes() + self.best.bytes()
     }
+}
+
+/// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.
+fn has_negative_energy(problem: &mut Problem, state: &mut State) -> bool {
+    problem.displace(&state.p, &mut state.u);
+    state.u_is = Freshness::Exact;
+    state.p.iter().zip(&state.u).map(|(p, u)| p * u).sum::<f64>() < 0.0
 }
 
 fn set_up_multigrid<'a>(

@@ -137,7 +137,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
         self.check(scene, options)?;
-        take_over::check_guess(&scene.grid, options, guess)?;
+        take_over::check_guess(scene, options, guess)?;
         range::check(scene, &self.problem, self.set_up.largest_influence, guess.filter(|_| is_fixed(options)))?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = match scene.pressure_limit {
@@ -309,6 +309,10 @@ impl Solver {
             ));
         }
         effects::check_effects(scene)?;
+        // Own coefficients know no bodies.
+        if !self.problem.given {
+            scene.bodies.check()?;
+        }
         if let Some(difference) = self.set_up.named.differs(scene) {
             return invalid(difference);
         }
@@ -338,9 +342,8 @@ impl Solver {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
-        let coefficients = self.problem.coefficients.bytes();
         let limits = self.limits.len() * size_of::<f64>();
-        self.problem.bytes() + coefficients + self.methods.bytes() + self.state.bytes() + limits + workers
+        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers
     }
 }
 

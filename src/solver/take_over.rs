@@ -3,7 +3,6 @@
 use super::{ActiveSet, Guess, InitialGuess, Options};
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::{invalid, Error, Result};
-use crate::grid::Grid;
 use crate::methods::Start;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
@@ -11,8 +10,9 @@ use crate::scene::{Load, Scene};
 /// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
 
-/// Refuses a guess that is none, or that is missing. `solved`: whether there is a solution before.
-pub fn check_guess(grid: &Grid, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
+/// Refuses a guess that is none, or that is missing.
+pub fn check_guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
+    let grid = &scene.grid;
     let fixed = options.active_set == ActiveSet::Fixed;
     let Some(guess) = guess else {
         return match options.initial_guess {
@@ -32,8 +32,9 @@ pub fn check_guess(grid: &Grid, options: &Options, guess: Option<Guess<'_>>) -> 
             grid.len()
         ));
     }
-    if fixed && !guess.contact.contains(&true) {
-        return invalid("active_set is FIXED, but the given contact area is empty".into());
+    let surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
+    if fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(surface) {
+        return invalid("active_set is FIXED, but the given contact area is empty, or has no surface".into());
     }
     match guess.pressure.iter().find(|p| !p.is_finite()) {
         Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
@@ -63,9 +64,6 @@ pub fn take_over<S: AdmissibleSet>(
         return Ok(from);
     }
     clean(state, set);
-    if S::FIXED && state.contact_count() == 0 {
-        return invalid("active_set is FIXED, but undeformed_distance is infinite on the given contact area".into());
-    }
     // Pressures of zero are no guess.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
         state.unload();

@@ -218,7 +218,7 @@ fn what_is_allowed_is_solved() {
         change(&mut call);
         assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
         // What is in the table's last row and column cannot be seen in the pressures.
-        if call.fields.known.pressure.is_null() {
+        if call.without == "fields" || call.fields.known.pressure.is_null() {
             assert!(call.contact.iter().all(|&c| c == -77), "{name}: written, though not wanted");
         } else {
             assert!(call.pressure.iter().all(|&p| p.is_finite() && p >= 0.0), "{name}: {:?}", call.pressure);
