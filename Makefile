@@ -16,7 +16,7 @@ SONAME := libcontact_normal.so.0
 LIBDIR_BUILT ?= target/release
 LIBRARIES := $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR_BUILT)/libcontact_normal.a
 # What the static library needs of the system, as `cargo rustc --release --lib --crate-type staticlib -- --print
-# native-static-libs` says; tests/installed_package.rs links with it.
+# native-static-libs` says; tests/clients/installed_package.rs links with it.
 STATIC_LIBS := -lgcc_s -lutil -lrt -lpthread -lm -ldl -lc
 
 INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test soak bench bench-peers analysis accuracy install tools clean
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy install tools clean
 .DEFAULT_GOAL := all
 
 all:
@@ -73,6 +73,13 @@ test: tools
 	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --lib --bins --tests
 	$(CARGO) build --profile checked --locked --workspace --features contact-normal/test-panics --examples
 	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --doc
+
+# N random scenes over all effects, methods, guesses and handles, each certified by an oracle of the campaign's own; prints what
+# was run and every failure. One case again: cargo run --release -p campaign -- --seed S
+N ?= 20000
+FIRST ?= 0
+campaign:
+	$(CARGO) run --release --locked -p campaign -- $(N) $(FIRST)
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
 SOAK ?= 100000

@@ -148,7 +148,7 @@ impl Call {
         options.tolerance = bytes.sometimes(1e-6);
         (options.criterion, options.precision) = (bytes.integer(2), bytes.integer(3));
         options.error_ratio = bytes.sometimes(0.0);
-        // Small, so that a run of the harness is short; large ones are refused (tests/bad_input.rs).
+        // Small, so that a run of the harness is short; large ones are refused (tests/abi/bad_input.rs).
         options.max_cycles = bytes.integer(200).min(200);
         options.threads = 1;
     }

@@ -170,7 +170,7 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
         u if u < 0.10 => (random.integer(2, 120), 1),
         u if u < 0.17 => (1, random.integer(2, if row_tables { 40 } else { 120 })),
         u if u < 0.45 => (random.integer(2, 12), random.integer(2, 12)),
-        u if u < 0.94 => (random.integer(8, 24), random.integer(8, 24)),
+        u if u < 0.90 => (random.integer(8, 24), random.integer(8, 24)),
         u if u < 0.98 || row_tables => (random.integer(24, 48), random.integer(24, 48)),
         _ => (random.integer(64, 112), random.integer(64, 112)),
     };

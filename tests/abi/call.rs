@@ -29,7 +29,7 @@ impl<T> Grown<T> {
     }
 
     fn bytes(&self) -> Vec<u8> {
-        // SAFETY: the structs of the ABI have no padding (tests/python_clients.rs compares all offsets).
+        // SAFETY: the structs of the ABI have no padding (tests/clients/python.rs compares all offsets).
         unsafe { std::slice::from_raw_parts((self as *const Self).cast::<u8>(), size_of::<Self>()) }.to_vec()
     }
 }

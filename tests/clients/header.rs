@@ -1,5 +1,5 @@
 //! include/contact_normal.h is what cbindgen makes of src/ffi, byte for byte, and versions are the same wherever they stand.
-//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header` writes it anew.
+//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header` writes it anew.
 
 use std::path::Path;
 
@@ -36,11 +36,11 @@ fn the_committed_header_is_the_generated_one() {
     let committed = std::fs::read_to_string(&path).expect("include/contact_normal.h");
     assert!(
         header == committed,
-        "include/contact_normal.h is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test header"
+        "include/contact_normal.h is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header"
     );
 }
 
-/// tests/installed_package.rs compares those of the library and of the installed package.
+/// tests/clients/installed_package.rs compares those of the library and of the installed package.
 #[test]
 fn the_header_and_the_modules_have_the_versions_of_the_library() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");

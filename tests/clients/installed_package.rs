@@ -71,7 +71,7 @@ fn the_installed_package_is_what_pkg_config_says() {
         run(Command::new("gcc").args(["-std=c99", "-Wall", "-o"]).arg(&program).arg(&source).args(flags));
         program
     };
-    // 81987 N: the paper's problem (tests/hertz.rs checks the closed form).
+    // 81987 N: the paper's problem (tests/problems/hertz.rs checks the closed form).
     let expected = format!("{version} {CONTACT_NORMAL_ABI_VERSION} {CONTACT_NORMAL_ABI_VERSION} 81987\n");
     let shared = compile("shared", pkg_config(&prefix, &["--cflags", "--libs"]));
     let dynamic = run(Command::new("readelf").arg("-d").arg(&shared));

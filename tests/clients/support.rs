@@ -72,7 +72,7 @@ pub struct Recomputed {
     pub force: f64,
 }
 
-/// Recomputes the measures with a fresh product (tested against direct summation in tests/operator.rs).
+/// Recomputes the measures with a fresh product (tested against direct summation in tests/problems/operator.rs).
 pub fn recompute(
     grid: &Grid,
     influence: &Coefficients,

@@ -36,7 +36,7 @@ fn by_approach(accuracy: Accuracy) -> Outcome {
 /// A result that is solved, on 16 x 16 elements.
 fn assert_start_is_kept(outcome: &Outcome) {
     assert_eq!(grid_of(outcome).mx, START, "{}", outcome.reason);
-    // 16 x 16 elements have the force to some percent (tests/hertz.rs); a wrong one would be off by more than a tenth.
+    // 16 x 16 elements have the force to some percent (tests/problems/hertz.rs); a wrong one would be off by more than a tenth.
     assert!((outcome.report.measures.force / exact().force - 1.0).abs() < 0.1);
     assert!(outcome.report.measures.certificate.residual <= 1e-6);
 }

@@ -14,17 +14,10 @@ use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 use contact_normal::threads::Threads;
 
+use crate::families::case::Random;
+
 const BODIES: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
 const TOLERANCE: f64 = 1e-8;
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// V(1,1) with the FFT smoother.
 fn options(method: Method) -> Options {

@@ -5,15 +5,7 @@ use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::operator::{dense, Operator};
 use contact_normal::threads::Threads;
 
-/// Reproducible numbers in [0, 1): Knuth's MMIX generator.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use crate::families::case::Random;
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))

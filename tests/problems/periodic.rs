@@ -10,6 +10,8 @@ use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
 
+use crate::families::case::Random;
+
 /// 1/E* = 1: then c = 1/pi.
 fn bodies() -> Bodies {
     Bodies::same(1.0, 0.0)
@@ -272,15 +274,11 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
 
 /// A rough surface of `m` by `my` elements, the same wherever its origin is.
 fn rough(mx: usize, my: usize) -> Vec<f64> {
-    let mut seed = 12345u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64 * 2.0 * PI
-    };
+    let mut random = Random(12345);
     let mut h = vec![0.0; mx * my];
     for j in 0..5usize {
         for i in usize::from(j == 0)..5 {
-            let phase = random();
+            let phase = 2.0 * PI * random.next();
             let amplitude = ((i * i + j * j) as f64).powf(-0.9);
             for (k, h) in h.iter_mut().enumerate() {
                 let x = 2.0 * PI * ((i * (k % mx)) as f64 / mx as f64 + (j * (k / mx)) as f64 / my as f64);

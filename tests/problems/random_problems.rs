@@ -4,21 +4,14 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Method, Options, Stop};
 
-struct Random(u64);
+use crate::families::case::Random;
 
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
+fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.next()
+}
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn size(&mut self) -> usize {
-        1 + (self.next() * 96.0) as usize
-    }
+fn size(random: &mut Random) -> usize {
+    1 + (random.next() * 96.0) as usize
 }
 
 /// Undeformed distances of all kinds, with a depth of order 1, and an approach that suits.
@@ -28,20 +21,20 @@ fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
         let y = ((i / grid.mx) as f64 + 0.5) / grid.my as f64 - 0.5;
         (x, y)
     };
-    let (ax, ay) = (random.between(1.0, 20.0), random.between(1.0, 20.0));
+    let (ax, ay) = (between(random, 1.0, 20.0), between(random, 1.0, 20.0));
     let waves: Vec<[f64; 4]> = (0..8)
         .map(|k| {
             let frequency = 3.0 * (1.0 + k as f64);
             [
-                random.between(-frequency, frequency),
-                random.between(-frequency, frequency),
-                random.between(0.0, 6.3),
+                between(random, -frequency, frequency),
+                between(random, -frequency, frequency),
+                between(random, 0.0, 6.3),
                 0.3 / (1.0 + k as f64),
             ]
         })
         .collect();
     let spots: Vec<[f64; 3]> =
-        (0..5).map(|_| [random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(0.0, 0.3)]).collect();
+        (0..5).map(|_| [between(random, -0.5, 0.5), between(random, -0.5, 0.5), between(random, 0.0, 0.3)]).collect();
     let h: Vec<f64> = (0..grid.len())
         .map(|i| {
             let (x, y) = position(i);
@@ -72,7 +65,7 @@ fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
         })
         .collect();
     let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
-    (h, lowest + random.between(0.05, 0.5))
+    (h, lowest + between(random, 0.05, 0.5))
 }
 
 #[test]
@@ -81,14 +74,15 @@ fn auto_and_norm_agree_on_200_random_problems() {
     let tolerance = 1e-8;
     for number in 0..200 {
         let (mx, my) = match number % 10 {
-            0 => (1, random.size()),
-            1 => (random.size(), 1),
-            _ => (random.size(), random.size()),
+            0 => (1, size(&mut random)),
+            1 => (size(&mut random), 1),
+            _ => (size(&mut random), size(&mut random)),
         };
-        let aspect = 10f64.powf(random.between(-2.0, 2.0));
+        let aspect = 10f64.powf(between(&mut random, -2.0, 2.0));
         let grid = Grid::new(mx, my, aspect.sqrt(), 1.0 / aspect.sqrt()).unwrap();
         let (h, approach) = distance(number % 5, &grid, &mut random);
-        let bodies = Bodies { shear_modulus: [random.between(0.1, 10.0), f64::INFINITY], poisson_ratio: [0.3, 0.3] };
+        let bodies =
+            Bodies { shear_modulus: [between(&mut random, 0.1, 10.0), f64::INFINITY], poisson_ratio: [0.3, 0.3] };
         let by_approach = Scene::new(grid, &h, bodies, Load::Approach(approach));
         let run = |scene: &Scene<'_>, method, tolerance| {
             let options = Options { method, tolerance, max_cycles: 20_000, ..Options::default() };

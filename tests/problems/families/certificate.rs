@@ -10,7 +10,7 @@ use contact_normal::threads::Threads;
 
 use super::case::Case;
 
-/// Grids up to this size are summed directly, larger ones go by an FFT in double precision (tests/operator.rs compares both).
+/// Grids up to this size are summed directly, larger ones go by an FFT in double precision (tests/problems/operator.rs compares both).
 const SUMMED: usize = 1600;
 
 /// What a solve returned.
@@ -37,7 +37,7 @@ pub struct Recomputed {
     pub penetration: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
-    #[allow(dead_code)] // for tests/properties.rs
+    #[allow(dead_code)] // for tests/problems/properties.rs
     /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force the approach is no part of it.
     pub energy: f64,
     /// What rounding may do to the first two.
