@@ -329,11 +329,18 @@ impl Solver {
 
     fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
-        if options.cycle_shape() != self.set_up.options.cycle_shape() || options.threads != self.set_up.options.threads
-        {
-            return invalid(
-                "smoother, sweeps, relaxation, coarsest and threads must be those the solver was set up with".into(),
-            );
+        let (now, then) = (options.cycle_shape(), self.set_up.options.cycle_shape());
+        let names = [
+            ("smoother", now.smoother != then.smoother),
+            ("pre_sweeps", now.pre_sweeps != then.pre_sweeps),
+            ("post_sweeps", now.post_sweeps != then.post_sweeps),
+            ("relaxation", now.relaxation != then.relaxation),
+            ("coarsest", now.coarsest != then.coarsest),
+            ("threads", options.threads != self.set_up.options.threads),
+            ("precision", options.precision != self.set_up.options.precision),
+        ];
+        if let Some((name, _)) = names.into_iter().find(|(_, differs)| *differs) {
+            return invalid(format!("{name} is not that of the set-up: set up another solver for it"));
         }
         Ok(())
     }

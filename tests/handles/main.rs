@@ -5,6 +5,8 @@
 mod call;
 mod lack_of_memory;
 mod limited_memory;
+mod panics;
+mod panics_with_effects;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

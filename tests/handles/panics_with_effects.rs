@@ -1,5 +1,4 @@
 //! A caught panic in a product leaves a solver of any effect as it was: its next solve is that of a new one.
-#![cfg(feature = "test-panics")]
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::atomic::Ordering;
@@ -10,9 +9,9 @@ use contact_normal::panics::BLOCKS;
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Scene};
 use contact_normal::solver::{Options, Solver, Stop};
 
-/// One test: the demand for a panic is one for the process.
 #[test]
 fn after_a_panic_the_next_solve_is_right_with_every_effect() {
+    let _alone = crate::alone();
     let grid = Grid::new(12, 10, 0.5, 0.4).unwrap();
     let bodies = Bodies::same(1.0, 0.3);
     let n = grid.len();

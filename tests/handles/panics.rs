@@ -1,13 +1,9 @@
 //! A panic in the core comes back as INTERNAL, with its text, untouched outputs and nothing on stderr; the next call works.
 
-#[path = "abi/call.rs"]
-#[allow(dead_code)] // of the bad input, the call
-mod call;
-
 use std::ptr::null_mut;
 use std::sync::atomic::Ordering;
 
-use call::{Call, Through};
+use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 use contact_normal::panics::BLOCKS;
 
@@ -26,9 +22,9 @@ fn panics_at(block: i64, call: &mut Call, through: Through, handle: *mut contact
     true
 }
 
-/// One test: the demand for a panic is one for the process.
 #[test]
 fn a_panic_anywhere_is_a_status_and_the_next_call_works() {
+    let _alone = crate::alone();
     let methods = [
         CONTACT_NORMAL_METHOD_AUTO,
         CONTACT_NORMAL_METHOD_NORM,
@@ -69,14 +65,14 @@ fn on_a_worker() {
     const M: usize = 160;
     let centre = |i: usize| i as f64 + 0.5 - 0.5 * M as f64;
     let h: Vec<f64> = (0..M * M).map(|i| 1e-5 * (centre(i % M).powi(2) + centre(i / M).powi(2))).collect();
-    let mut scene = call::initialised(contact_normal_scene_init);
+    let mut scene = crate::call::initialised(contact_normal_scene_init);
     (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 0.1, 0.1);
     (scene.shear_modulus, scene.poisson_ratio) = ([1.0; 2], [0.3; 2]);
     (scene.approach, scene.undeformed_distance) = (0.1, h.as_ptr());
-    let mut options = call::initialised(contact_normal_options_init);
+    let mut options = crate::call::initialised(contact_normal_options_init);
     options.threads = 2;
     for block in [0, 1, 5, 40, -1] {
-        let (mut p, mut fields) = (vec![-7.0; M * M], call::initialised(contact_normal_fields_init));
+        let (mut p, mut fields) = (vec![-7.0; M * M], crate::call::initialised(contact_normal_fields_init));
         fields.pressure = p.as_mut_ptr();
         BLOCKS.store(block, Ordering::Relaxed);
         // SAFETY: structs with their arrays.

@@ -35,7 +35,7 @@ fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
 /// u = A p.
 fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
     let (mx, my) = (scene.grid.mx, scene.grid.my);
-    let coefficients = scene.influence();
+    let coefficients = scene.coefficients().unwrap();
     let a: Vec<f64> = (0..p.len()).map(|i| coefficients.at((i % mx) as i64, (i / mx) as i64)).collect();
     let mut u = vec![0.0; p.len()];
     for (k, p) in p.iter().enumerate().filter(|(_, p)| **p != 0.0) {
