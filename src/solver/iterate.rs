@@ -31,9 +31,10 @@ pub fn iterate<S: AdmissibleSet>(
     let habits = method.habits();
     method.begin(state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
-    loop {
+    // A step need not take a cycle, but there are no more of them than cycles may be.
+    for _ in 0..=goal.max_cycles {
         if monitor.count.cycles >= goal.max_cycles || monitor.is_cancelled() {
-            return Ok(monitor.interrupted());
+            break;
         }
         // 2. p = 0 in E. 3. A step of the method on C.
         let change = step(method, problem, state, set, goal, monitor)?;
@@ -75,6 +76,7 @@ pub fn iterate<S: AdmissibleSet>(
             return Ok(Stop::Stagnated);
         }
     }
+    Ok(monitor.interrupted())
 }
 
 /// Whether the certificate decides although elements still change sides.
