@@ -61,6 +61,9 @@ impl State {
 
     /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.
     pub fn project<S: AdmissibleSet>(&mut self, set: S) {
+        if !S::LIMITED {
+            return;
+        }
         for i in 0..self.p.len() {
             if self.contact[i] && self.p[i] > set.limit(i) {
                 (self.contact[i], self.at_limit[i]) = (false, true);
