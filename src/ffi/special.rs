@@ -3,13 +3,14 @@
 use super::arguments::count;
 use super::guard::guard;
 use super::influence::table_size;
+use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
-use crate::analytic;
+use crate::analytic::{self, Hertz};
 use crate::error::require;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
-use crate::scene::Bodies;
+use crate::scene::{Bodies, Load};
 
 /// The exact Hertz solution.
 #[repr(C)]
@@ -64,25 +65,14 @@ pub unsafe extern "C" fn contact_normal_hertz(
         }
         // SAFETY: NULL or two values each, by the conventions of the ABI.
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
-        let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load {
-            super::CONTACT_NORMAL_PRESCRIBED_APPROACH => ("amount, the approach,", analytic::hertz),
-            super::CONTACT_NORMAL_PRESCRIBED_FORCE => ("amount, the force,", analytic::hertz_by_force),
-            other => {
-                return Err(Refusal::invalid(format!(
-                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
-                )))
-            }
+        let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load_of(load, amount, amount)? {
+            Load::Approach(_) => ("amount, the approach,", analytic::hertz),
+            Load::Force(_) => ("amount, the force,", analytic::hertz_by_force),
         };
         require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;
-        let exact = exact(curvature_x, curvature_y, amount, compliance)?;
-        let value = contact_normal_hertz_solution {
-            semi_axis_x: exact.semi_axis_x,
-            semi_axis_y: exact.semi_axis_y,
-            max_pressure: exact.max_pressure,
-            approach: exact.approach,
-            force: exact.force,
-            area: exact.area,
-        };
+        let Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force, area } =
+            exact(curvature_x, curvature_y, amount, compliance)?;
+        let value = contact_normal_hertz_solution { semi_axis_x, semi_axis_y, max_pressure, approach, force, area };
         // SAFETY: not null: room for the struct.
         unsafe { solution.write(value) };
         Ok(CONTACT_NORMAL_OK)

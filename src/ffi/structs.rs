@@ -17,7 +17,32 @@ pub unsafe trait Versioned: Copy {
     const FIRST_SIZE: usize;
     /// What its `_init` writes.
     fn defaults() -> Self;
+
+    /// What it is called in messages.
+    fn short_name() -> &'static str {
+        Self::NAME.trim_start_matches("contact_normal_")
+    }
 }
+
+/// Makes a struct [`Versioned`] that is what that asks for: `struct_size` first, integers, floats, raw pointers and optional function
+/// pointers only. Gives its size in the first version that had it, and the defaults that are not 0 or NULL.
+macro_rules! versioned {
+    ($name:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
+        // SAFETY: by the struct, see above.
+        unsafe impl $crate::ffi::structs::Versioned for $name {
+            const NAME: &'static str = stringify!($name);
+            const FIRST_SIZE: usize = $first_size;
+            fn defaults() -> Self {
+                // SAFETY: any bytes are valid.
+                let mut defaults: Self = unsafe { std::mem::zeroed() };
+                defaults.struct_size = size_of::<Self>() as i64;
+                $(defaults.$member = $value;)*
+                defaults
+            }
+        }
+    };
+}
+pub(super) use versioned;
 
 /// No struct of ours will ever be larger: a bound for what is read of longer ones.
 const LARGEST: usize = 4096;
