@@ -8,7 +8,7 @@ use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::collected;
 use crate::scene::{Bodies, Load, Scene};
 
 /// `load`: the approach of the bodies is given.
@@ -132,11 +132,7 @@ impl Named {
     /// A copy of the undeformed distance.
     pub unsafe fn copy_of_distance(&self) -> Result<Vec<f64>, Refusal> {
         // SAFETY: by the caller.
-        let h = unsafe { self.distance()? };
-        let mut copy = Vec::new();
-        reserve(&mut copy, h.len(), "undeformed distances")?;
-        copy.extend_from_slice(h);
-        Ok(copy)
+        Ok(collected(unsafe { self.distance()? }.iter().copied(), "undeformed distances")?)
     }
 
     unsafe fn distance<'a>(&self) -> Result<&'a [f64], Refusal> {

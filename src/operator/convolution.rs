@@ -15,7 +15,7 @@ use super::rows::{Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::reserve;
+use crate::memory::{collected, reserve};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -96,17 +96,10 @@ impl<T: Real> Convolution<T> {
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => {
-                let mut to = Vec::new();
-                reserve(&mut to, from.len(), SPECTRUM)?;
-                to.extend(from.iter().map(|from| convert(*from)));
-                Spectrum::Even(to)
-            }
+            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|from| convert(*from)), SPECTRUM)?),
             Spectrum::General(from) => {
-                let mut to = Vec::new();
-                reserve(&mut to, from.len(), SPECTRUM)?;
-                to.extend(from.iter().map(|from| Complex::new(convert(from.re), convert(from.im))));
-                Spectrum::General(to)
+                let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
+                Spectrum::General(collected(from.iter().map(convert), SPECTRUM)?)
             }
         };
         Ok(Convolution { columns: ColumnTransform::new(self.columns.length()), spectrum })

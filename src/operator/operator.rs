@@ -12,13 +12,13 @@ use std::ops::Range;
 use super::columns::BLOCK;
 use super::convolution::{Convolution, Even, SetUp};
 use super::fft::{good_length, Complex, Real, RowTransform};
-use super::patches::Mask;
+use super::patches;
 use super::row_tables::PerRow;
 use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Coefficients;
-use crate::memory::{reserve, zeros};
+use crate::influence::{Coefficients, Patches};
+use crate::memory::{collected, reserve, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -37,7 +37,7 @@ pub struct Operator<T: Real> {
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
-    coupling: Option<Mask<T>>,
+    coupling: Option<Patches>,
 }
 
 /// Memory that a product needs, so that it allocates nothing.
@@ -133,7 +133,7 @@ impl<T: Real> Operator<T> {
         self.diagonal.clear();
         reserve(&mut self.diagonal, diagonal.len(), DIAGONAL)?;
         self.diagonal.extend(diagonal.iter().map(|d| T::of(factor * d)));
-        self.coupling = coefficients.patches().map(Mask::new).transpose()?;
+        self.coupling = coefficients.patches().cloned();
         Ok(())
     }
 
@@ -175,9 +175,7 @@ impl<T: Real> Operator<T> {
 
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
-        let mut diagonal = Vec::new();
-        reserve(&mut diagonal, self.diagonal.len(), DIAGONAL)?;
-        diagonal.extend(self.diagonal.iter().map(|d| S::of(factor * d.to_double())));
+        let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         Ok(Operator {
             rows: self.rows.in_precision(),
             columns: match &self.columns {
@@ -185,7 +183,7 @@ impl<T: Real> Operator<T> {
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },
             diagonal,
-            coupling: self.coupling.as_ref().map(Mask::in_precision).transpose()?,
+            coupling: self.coupling.clone(),
         })
     }
 
@@ -220,7 +218,7 @@ impl<T: Real> Operator<T> {
             Columns::Convolution(convolution) => convolution.bytes(),
             Columns::PerRow(per_row) => per_row.bytes(),
         };
-        columns + size_of_val(&self.diagonal[..]) + self.coupling.as_ref().map_or(0, Mask::bytes)
+        columns + size_of_val(&self.diagonal[..])
     }
 
     /// `u = A p`.
@@ -230,7 +228,7 @@ impl<T: Real> Operator<T> {
         let Workspace { product, masked, .. } = workspace;
         match &self.coupling {
             None => self.without_coupling(p, u, product),
-            Some(mask) => mask.apply(p, u, masked, |p, u| self.without_coupling(p, u, product)),
+            Some(coupling) => patches::apply(coupling, p, u, masked, |p, u| self.without_coupling(p, u, product)),
         }
     }
 
@@ -238,9 +236,9 @@ impl<T: Real> Operator<T> {
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         assert!(p.len() == self.rows.mx * self.rows.my);
         let Workspace { product, masked, given } = workspace;
-        if let Some(mask) = &self.coupling {
+        if let Some(coupling) = &self.coupling {
             given.copy_from_slice(p);
-            return mask.apply(given, p, masked, |p, u| self.without_coupling(p, u, product));
+            return patches::apply(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
         }
         let loaded = self.rows.forward(p, product);
         self.convolve(loaded, product);
