@@ -115,7 +115,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         };
         let mut callback = watcher(&options);
         let surface: Option<SurfaceCallback<'_>> = given.surface.is_some().then_some(&mut write);
-        let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
+        let progress: Option<ProgressCallback<'_>> = options.given.progress.is_some().then_some(&mut callback);
         let outcome = solve_to_accuracy(&scene, &options.options, &asked, surface, progress)?;
 
         let found = outcome.solver.as_ref();

@@ -51,7 +51,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         let options_at = options;
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let options = unsafe { options::translate(options)? };
-        if options.progress.is_some() {
+        if options.given.progress.is_some() {
             let message = "progress is given; in a batch it must be NULL: no callback is called from another thread";
             return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message.into()));
         }

@@ -120,12 +120,10 @@ pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_norma
     unsafe { structs::init(options) }
 }
 
-/// Options and the callback with its user pointer.
+/// Options, and as the caller gave them: with the callback and its user pointer.
 pub(super) struct Translated {
-    given: contact_normal_options,
+    pub given: contact_normal_options,
     pub options: Options,
-    pub progress: contact_normal_progress_callback,
-    pub user: *mut c_void,
 }
 
 impl Translated {
@@ -177,7 +175,7 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
         estimates: false,
     };
     options.check()?;
-    Ok(Translated { given, options, progress: given.progress, user: given.user })
+    Ok(Translated { given, options })
 }
 
 fn method(value: i32) -> Result<Method, Refusal> {

@@ -49,12 +49,9 @@ impl<T: Real> Operator<T> {
             1.0 / (factor * value)
         };
         let mut inverse = Operator::of_period(grid, period, threads);
-        inverse.set_even(&mut SetUp::default(), |period| Even {
-            period,
-            given: (period.0 / 2 + 1, period.1 / 2 + 1),
-            fill: |ky, row: &mut [f64]| coefficients.fill_even_row(ky, row),
-            finish,
-        })?;
+        let given = (period.0 / 2 + 1, period.1 / 2 + 1);
+        let fill = |ky: i64, row: &mut [f64]| coefficients.fill_even_row(ky, row);
+        inverse.set_even(&Even { given, fill, finish }, &mut SetUp::default())?;
         Ok(positive.into_inner().then_some(inverse))
     }
 }

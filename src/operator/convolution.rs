@@ -38,8 +38,6 @@ pub(super) struct Convolution<T: Real> {
 
 /// Even coefficients of both directions.
 pub(super) struct Even<F, G> {
-    /// The period.
-    pub period: (usize, usize),
     /// Coefficients that are not zero: offsets less than that.
     pub given: (usize, usize),
     /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
@@ -153,12 +151,12 @@ impl<T: Real> Convolution<T> {
     }
 
     /// Computes the spectrum of even coefficients, in the memory that there is.
-    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, threads: &Threads, set_up: &mut SetUp) -> Result<()>
+    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, px: usize, threads: &Threads, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        let (px, py) = even.period;
+        let py = self.columns.length();
         let (row_given, rows_given) = even.given;
         let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
         let nb = rows.bins();

@@ -147,30 +147,25 @@ impl<T: Real> Operator<T> {
         if coefficients.is_even(grid) {
             let repeats = coefficients.repeats(grid);
             let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
-            return self.set_even(set_up, |period| Even {
-                period,
+            let even = Even {
                 given: (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
                 fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
-                finish: move |value| factor * value,
-            });
+                finish: |value| factor * value,
+            };
+            return self.set_even(&even, set_up);
         }
         let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
         convolution.set_general(coefficients, grid, (rows.transform.length(), factor), &rows.threads, set_up)
     }
 
     /// Computes a spectrum of even coefficients, of the period that there is.
-    pub(super) fn set_even<F, G>(
-        &mut self,
-        set_up: &mut SetUp,
-        even: impl FnOnce((usize, usize)) -> Even<F, G>,
-    ) -> Result<()>
+    pub(super) fn set_even<F, G>(&mut self, even: &Even<F, G>, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
         let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        let period = (rows.transform.length(), convolution.columns.length());
-        convolution.set_even(&even(period), &rows.threads, set_up)
+        convolution.set_even(even, rows.transform.length(), &rows.threads, set_up)
     }
 
     /// The same operator in another precision, times a factor.
