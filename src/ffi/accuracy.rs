@@ -106,16 +106,17 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let scene = unsafe { named.with_distance(&h)? };
         let (asked, user) = (translate(&given)?, given.user);
 
-        let mut write = |grid: &Grid, h: &mut [f64]| match given.surface {
+        let mut write = given.surface.map(|surface| {
             // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
-            Some(surface) => in_host_environment(|| unsafe {
-                surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
-            }),
-            None => false,
-        };
+            move |grid: &Grid, h: &mut [f64]| {
+                in_host_environment(|| unsafe {
+                    surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
+                })
+            }
+        });
         let mut callback = watcher(&options);
-        let surface: Option<SurfaceCallback<'_>> = given.surface.is_some().then_some(&mut write);
-        let progress: Option<ProgressCallback<'_>> = options.given.progress.is_some().then_some(&mut callback);
+        let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
+        let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
         let outcome = solve_to_accuracy(&scene, &options.options, &asked, surface, progress)?;
 
         let found = outcome.solver.as_ref();

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::arguments::Regions;
+use super::arguments::{not_negative, Regions};
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::outputs::{Buffers, Outputs};
@@ -43,11 +43,9 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
-        let Ok(count) = usize::try_from(count) else {
-            return Err(Refusal::invalid(format!("count is {count}; it must not be negative")));
-        };
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
+        let count = not_negative("count", count)?;
         let options_at = options;
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let options = unsafe { options::translate(options)? };
@@ -177,15 +175,10 @@ impl Batch {
 }
 
 /// What the call returns: of the first problem that was refused, or else of the first that stopped early.
+#[derive(Default)]
 struct Worst {
     problem: usize,
     outcome: Outcome,
-}
-
-impl Default for Worst {
-    fn default() -> Worst {
-        Worst { problem: usize::MAX, outcome: Outcome { status: CONTACT_NORMAL_OK, message: String::new() } }
-    }
 }
 
 impl Worst {
@@ -194,11 +187,7 @@ impl Worst {
         let rank =
             |problem: usize, outcome: &Outcome| (outcome.status >= 0, outcome.status == CONTACT_NORMAL_OK, problem);
         if rank(problem, &outcome) < rank(self.problem, &self.outcome) {
-            let message = if outcome.message.is_empty() {
-                String::new()
-            } else {
-                format!("problem {problem}: {}", outcome.message)
-            };
+            let message = format!("problem {problem}: {}", outcome.message);
             *self = Worst { problem, outcome: Outcome { message, ..outcome } };
         }
     }

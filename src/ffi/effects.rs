@@ -1,6 +1,6 @@
 //! The effects that a scene may name beside coefficients of its own (`influence`): one struct each, NULL in the scene: not simulated.
 
-use super::arguments::{self, GivenEffect, Regions};
+use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::grid::Grid;
@@ -114,10 +114,7 @@ impl contact_normal_layer {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Layer<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        match unsafe { arguments::optional(self.compliances, grid.len()) } {
-            Some(compliances) => Layer::PerElement(compliances),
-            None => Layer::Uniform(self.compliance),
-        }
+        unsafe { optional(self.compliances, grid.len()) }.map_or(Layer::Uniform(self.compliance), Layer::PerElement)
     }
 }
 
@@ -131,10 +128,8 @@ impl contact_normal_pressure_limit {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> PressureLimit<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        match unsafe { arguments::optional(self.limits, grid.len()) } {
-            Some(limits) => PressureLimit::PerElement(limits),
-            None => PressureLimit::Uniform(self.limit),
-        }
+        unsafe { optional(self.limits, grid.len()) }
+            .map_or(PressureLimit::Uniform(self.limit), PressureLimit::PerElement)
     }
 }
 
@@ -150,13 +145,13 @@ const MOST_PATCHES: usize = 64;
 impl contact_normal_patches {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Patches<'a>, Refusal> {
-        arguments::reserved("patches->reserved", self.reserved)?;
-        let count = arguments::count("patches->count", self.count)?;
+        reserved("patches->reserved", self.reserved)?;
+        let count = count("patches->count", self.count)?;
         // SAFETY: NULL or count by count values, and one per element, by the conventions of the ABI.
         let (factors, patch) = unsafe {
             (
-                arguments::required("scene->patches->factors", self.factors, self.factor_count())?,
-                arguments::required("scene->patches->patch", self.patch, grid.len())?,
+                required("scene->patches->factors", self.factors, self.factor_count())?,
+                required("scene->patches->patch", self.patch, grid.len())?,
             )
         };
         Ok(Patches { count, patch, factors })

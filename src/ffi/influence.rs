@@ -72,17 +72,22 @@ pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
 impl contact_normal_influence {
     /// Copies what the grid needs of the caller's table.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<Table, Refusal> {
-        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
+        let (cx, cy, size) = self.size()?;
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
-        let values = unsafe { required("influence->coefficients", self.coefficients, table_size(cx, cy)?)? };
+        let values = unsafe { required("influence->coefficients", self.coefficients, size)? };
         Ok(Table::scaled(cx, cy, values, self.scale, grid)?)
+    }
+
+    /// cx, cy, and the number of values.
+    fn size(&self) -> Result<(usize, usize, usize), Refusal> {
+        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
+        Ok((cx, cy, table_size(cx, cy)?))
     }
 }
 
 impl GivenEffect for contact_normal_influence {
     fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
-        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
-        regions.input("influence->coefficients", self.coefficients, table_size(cx, cy)?)
+        regions.input("influence->coefficients", self.coefficients, self.size()?.2)
     }
 }
 
@@ -110,7 +115,6 @@ impl contact_normal_row_tables {
 
 impl GivenEffect for contact_normal_row_tables {
     fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
-        let (_, _, size) = self.size(grid)?;
-        regions.input("row_tables->coefficients", self.coefficients, size)
+        regions.input("row_tables->coefficients", self.coefficients, self.size(grid)?.2)
     }
 }

@@ -65,6 +65,7 @@ impl Request<'_> {
 }
 
 /// How a solve ended, and its message; none after OK.
+#[derive(Default)]
 pub(super) struct Outcome {
     pub status: contact_normal_status,
     pub message: String,
@@ -83,17 +84,15 @@ impl Outcome {
     }
 }
 
-/// Tells the caller's progress callback, if there is one; whether to cancel.
-pub(super) fn watcher(options: &Translated) -> impl FnMut(&Progress) -> bool + '_ {
-    |progress| match options.given.progress {
-        Some(callback) => {
-            let progress = contact_normal_progress::from(progress);
-            // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
-            // handle that solves refuses to be used.
-            in_host_environment(|| unsafe { callback(&progress, options.given.user) != 0 })
-        }
-        None => false,
-    }
+/// What tells the caller's progress callback, and whether to cancel; none where there is none.
+pub(super) fn watcher(options: &Translated) -> Option<impl FnMut(&Progress) -> bool> {
+    let (callback, user) = (options.given.progress?, options.given.user);
+    Some(move |progress: &Progress| {
+        let progress = contact_normal_progress::from(progress);
+        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
+        // handle that solves refuses to be used.
+        in_host_environment(|| unsafe { callback(&progress, user) != 0 })
+    })
 }
 
 /// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches.
@@ -105,7 +104,7 @@ pub(super) fn run_watched(
     buffers: &mut Buffers,
 ) -> Result<contact_normal_status, Refusal> {
     let mut callback = watcher(options);
-    let progress: Option<ProgressCallback<'_>> = options.given.progress.is_some().then_some(&mut callback);
+    let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
     run(solver, scene, &options.options, progress, outputs, buffers)?.conclude()
 }
 

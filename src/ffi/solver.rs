@@ -1,7 +1,6 @@
 //! `contact_normal_solver`: a handle for many solves on one grid and one pair of bodies.
 
 use std::cell::UnsafeCell;
-use std::ops::{Deref, DerefMut};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -57,19 +56,9 @@ impl InUse<'_> {
         }
         Ok(InUse { handle })
     }
-}
 
-impl Deref for InUse<'_> {
-    type Target = Held;
-    fn deref(&self) -> &Held {
-        // SAFETY: `is_in_use` lets one InUse of a handle exist.
-        unsafe { &*self.handle.held.get() }
-    }
-}
-
-impl DerefMut for InUse<'_> {
-    fn deref_mut(&mut self) -> &mut Held {
-        // SAFETY: as above.
+    pub fn held(&mut self) -> &mut Held {
+        // SAFETY: `is_in_use` lets one InUse of a handle exist, and this one is borrowed mutably.
         unsafe { &mut *self.handle.held.get() }
     }
 }
@@ -120,8 +109,8 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
         let Request { scene, options, outputs } =
             unsafe { Request::read(scene, options, fields, report, buffers, |_| Ok(()))? };
@@ -139,10 +128,11 @@ pub unsafe extern "C" fn contact_normal_solver_set_influence(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, .. } = in_use.held();
         // SAFETY: NULL or a struct that declares its size, with a table of the size that it says.
-        let table = unsafe { structs::read(influence, "influence")?.translate(held.solver.grid())? };
-        held.solver.set_influence(table)?;
+        let table = unsafe { structs::read(influence, "influence")?.translate(solver.grid())? };
+        solver.set_influence(table)?;
         Ok(CONTACT_NORMAL_OK)
     })
 }
@@ -157,8 +147,8 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
         if fields.is_null() {
             return Err(Refusal::null("fields"));
         }

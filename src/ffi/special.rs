@@ -1,6 +1,6 @@
 //! Closed forms and coefficient tables.
 
-use super::arguments::count;
+use super::arguments::{count, required};
 use super::guard::guard;
 use super::influence::table_size;
 use super::scene::load_of;
@@ -30,19 +30,12 @@ pub struct contact_normal_hertz_solution {
     pub area: f64,
 }
 
+/// The bodies of two values each.
 unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
-    for (name, pointer) in [("shear_modulus", shear_modulus), ("poisson_ratio", poisson_ratio)] {
-        if pointer.is_null() {
-            return Err(Refusal::null(name));
-        }
-    }
-    // SAFETY: not null: two values each, by the conventions of the ABI.
-    let bodies = unsafe {
-        Bodies {
-            shear_modulus: [shear_modulus.read(), shear_modulus.add(1).read()],
-            poisson_ratio: [poisson_ratio.read(), poisson_ratio.add(1).read()],
-        }
-    };
+    // SAFETY: NULL or two values each, by the conventions of the ABI.
+    let (moduli, ratios) =
+        unsafe { (required("shear_modulus", shear_modulus, 2)?, required("poisson_ratio", poisson_ratio, 2)?) };
+    let bodies = Bodies { shear_modulus: [moduli[0], moduli[1]], poisson_ratio: [ratios[0], ratios[1]] };
     bodies.check()?;
     Ok(bodies)
 }

@@ -3,7 +3,7 @@
 
 use std::mem::size_of;
 
-use super::status::{Refusal, CONTACT_NORMAL_STRUCT_SIZE};
+use super::status::Refusal;
 
 /// A struct of the ABI.
 ///
@@ -55,10 +55,7 @@ pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> 
     // SAFETY: not null, and the caller's struct begins with its size, by the conventions of the ABI.
     let declared = unsafe { from.cast::<i64>().read_unaligned() };
     let refuse = |rule: &str| {
-        Err(Refusal::new(
-            CONTACT_NORMAL_STRUCT_SIZE,
-            format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME),
-        ))
+        Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME)))
     };
     let Ok(size) = usize::try_from(declared) else { return refuse("it must be positive") };
     if size < T::FIRST_SIZE {
