@@ -172,7 +172,7 @@ impl<T: Real> Operator<T> {
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
         let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         Ok(Operator {
-            rows: self.rows.in_precision(),
+            rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
                 Columns::Convolution(convolution) => Columns::Convolution(convolution.in_precision(factor)?),
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
@@ -187,7 +187,7 @@ impl<T: Real> Operator<T> {
         let transform = &self.rows.transform;
         let (length, sums) = match &self.columns {
             Columns::Convolution(convolution) => (convolution.columns.length(), 0),
-            Columns::PerRow(per_row) => (self.rows.my, per_row.scratch()),
+            Columns::PerRow(_) => (self.rows.my, 2 * self.rows.my),
         };
         let piece = |_| {
             let mut scratch = transform.scratch();

@@ -81,11 +81,6 @@ impl<T: Real> PerRow<T> {
         size_of_val(&self.values[..])
     }
 
-    /// Numbers that [`multiply`](Self::multiply) needs for sums.
-    pub fn scratch(&self) -> usize {
-        2 * self.my
-    }
-
     /// Multiplies all columns; rows `loaded` hold pressures.
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
         let Product { bins, pieces } = product;

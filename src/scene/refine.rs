@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::operator::zeros;
+use crate::memory::zeros;
 
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in both directions.
 ///
