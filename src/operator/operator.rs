@@ -12,7 +12,6 @@ use std::ops::Range;
 use super::columns::BLOCK;
 use super::convolution::{Convolution, Even, SetUp};
 use super::fft::{good_length, Complex, Real, RowTransform};
-use super::patches;
 use super::row_tables::PerRow;
 use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
@@ -223,7 +222,7 @@ impl<T: Real> Operator<T> {
         let Workspace { product, masked, .. } = workspace;
         match &self.coupling {
             None => self.without_coupling(p, u, product),
-            Some(coupling) => patches::apply(coupling, p, u, masked, |p, u| self.without_coupling(p, u, product)),
+            Some(coupling) => apply_coupled(coupling, p, u, masked, |p, u| self.without_coupling(p, u, product)),
         }
     }
 
@@ -233,7 +232,7 @@ impl<T: Real> Operator<T> {
         let Workspace { product, masked, given } = workspace;
         if let Some(coupling) = &self.coupling {
             given.copy_from_slice(p);
-            return patches::apply(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
+            return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
         }
         let loaded = self.rows.forward(p, product);
         self.convolve(loaded, product);
@@ -265,6 +264,31 @@ impl<T: Real> Operator<T> {
         match &self.columns {
             Columns::Convolution(convolution) => convolution.apply(&self.rows, loaded, product),
             Columns::PerRow(per_row) => per_row.apply(&self.rows, loaded, product),
+        }
+    }
+}
+
+/// `u = A p` with patches, by products `multiply(p, u)` without factors: one for each patch,
+///
+/// ```text
+/// u on patch a = A (sum over patches b of F(a, b) p on b)
+/// ```
+fn apply_coupled<T: Real>(
+    patches: &Patches,
+    p: &[T],
+    u: &mut [T],
+    [scaled, product]: &mut [Vec<T>; 2],
+    mut multiply: impl FnMut(&[T], &mut [T]),
+) {
+    for a in 0..patches.count() {
+        for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(patches.patch()) {
+            *scaled = *p * T::of(patches.factor(a, b.into()));
+        }
+        multiply(scaled, product);
+        for ((u, product), &b) in u.iter_mut().zip(&*product).zip(patches.patch()) {
+            if usize::from(b) == a {
+                *u = *product;
+            }
         }
     }
 }
