@@ -122,11 +122,11 @@ fn the_other_calls_refuse_overlaps_too() {
 /// patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
 #[test]
 fn what_is_written_overlaps_with_nothing() {
-    const PLACES: usize = 7;
+    const PLACES: usize = 9;
     let patch = [0i32; 3];
     let mut refused = [0, 0];
-    for k in 0..5 * PLACES * 5 * (PLACES - 1) {
-        let (h, factor, pressure, contact) = (k % 5, k / 5 % PLACES, k / (5 * PLACES) % 5, k / (25 * PLACES));
+    for k in 0..7 * PLACES * 7 * (PLACES - 1) {
+        let (h, factor, pressure, contact) = (k % 7, k / 7 % PLACES, k / (7 * PLACES) % 7, k / (49 * PLACES));
         // In halves of a place: start, end, whether it is written.
         let regions = [(h, 6, false), (factor, 2, false), (pressure, 6, true), (contact, 3, true)];
         let regions = regions.map(|(place, length, is_written)| (2 * place, 2 * place + length, is_written));
