@@ -61,6 +61,11 @@ impl Grid {
         2.0 / PI * (dx * (dy / dx).asinh() + dy * (dx / dy).asinh()) / self_influence
     }
 
+    /// Element `i` in words, for messages.
+    pub(crate) fn element(&self, i: usize) -> String {
+        format!("element ({}, {})", i % self.mx, i / self.mx)
+    }
+
     /// Index of element `(ix, iy)`.
     pub fn index(&self, ix: usize, iy: usize) -> usize {
         iy * self.mx + ix

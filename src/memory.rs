@@ -15,3 +15,11 @@ pub(crate) fn reserve<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     v.try_reserve_exact(n.saturating_sub(v.len()))
         .map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))
 }
+
+/// Values that are computed.
+pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
+    let mut collected = Vec::new();
+    reserve(&mut collected, values.len(), what)?;
+    collected.extend(values);
+    Ok(collected)
+}

@@ -100,7 +100,7 @@ impl Threads {
         }
     }
 
-    /// Segments `work(k, scratch)` on each of the pieces' scratch.
+    /// Calls `work(k, scratch)` on each of the pieces' scratch.
     pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
         match self.workers() {
             None => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
@@ -110,7 +110,7 @@ impl Threads {
         }
     }
 
-    /// Segments `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
+    /// Calls `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
     pub fn for_each_row<A: Send, S: Send>(
         &self,
         data: &mut [A],
@@ -119,23 +119,14 @@ impl Threads {
         work: impl Fn(usize, &mut [A], &mut S) + Sync + Send,
     ) {
         let rows_per_piece = (data.len() / row_length).div_ceil(scratch.len()).max(1);
-        let piece = |k: usize, rows: &mut [A], s: &mut S| {
+        self.for_each_chunk_pair((data, rows_per_piece * row_length), (scratch, 1), |k, rows, scratch| {
             for (i, row) in rows.chunks_exact_mut(row_length).enumerate() {
-                work(k * rows_per_piece + i, row, s);
+                work(k * rows_per_piece + i, row, &mut scratch[0]);
             }
-        };
-        let length = rows_per_piece * row_length;
-        match self.workers() {
-            None => {
-                data.chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
-            }
-            Some(workers) => workers.install(|| {
-                data.par_chunks_mut(length).zip(scratch).enumerate().for_each(|(k, (rows, s))| piece(k, rows, s));
-            }),
-        }
+        });
     }
 
-    /// Segments `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
+    /// Calls `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
     pub fn for_each_row_pair<A: Send, B: Send>(
         &self,
         (a, length_a): (&mut [A], usize),
@@ -143,17 +134,27 @@ impl Threads {
         work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
     ) {
         let rows_per_piece = a.len().div_ceil(length_a).div_ceil(self.pieces()).max(1);
-        let piece = |k: usize, a: &mut [A], b: &mut [B]| {
+        self.for_each_chunk_pair((a, rows_per_piece * length_a), (b, rows_per_piece * length_b), |k, a, b| {
             for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
                 work(k * rows_per_piece + i, a, b);
             }
-        };
-        let (chunk_a, chunk_b) = (rows_per_piece * length_a, rows_per_piece * length_b);
+        });
+    }
+
+    /// Calls `work(k, chunk of a, chunk of b)` on each pair of chunks.
+    fn for_each_chunk_pair<A: Send, B: Send>(
+        &self,
+        (a, length_a): (&mut [A], usize),
+        (b, length_b): (&mut [B], usize),
+        work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
+    ) {
         match self.workers() {
-            None => a.chunks_mut(chunk_a).zip(b.chunks_mut(chunk_b)).enumerate().for_each(|(k, (a, b))| piece(k, a, b)),
+            None => {
+                a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate().for_each(|(k, (a, b))| work(k, a, b))
+            }
             Some(workers) => workers.install(|| {
-                let chunks = a.par_chunks_mut(chunk_a).zip(b.par_chunks_mut(chunk_b)).enumerate();
-                chunks.for_each(|(k, (a, b))| piece(k, a, b));
+                let chunks = a.par_chunks_mut(length_a).zip(b.par_chunks_mut(length_b)).enumerate();
+                chunks.for_each(|(k, (a, b))| work(k, a, b));
             }),
         }
     }

@@ -10,6 +10,10 @@ impl State {
     /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
     /// Call before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S) -> Option<f64> {
+        if S::FIXED && self.load == Load::Force(0.0) {
+            self.remove_mean();
+            return None;
+        }
         if !S::LIMITED {
             return self.balance_force();
         }
@@ -57,6 +61,12 @@ impl State {
         }
         let uniform = pressures / self.contact_count().max(1) as f64;
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
+    }
+
+    /// On a given contact area no force is a sum of pressures that push and pull.
+    fn remove_mean(&mut self) {
+        let mean = self.p.iter().sum::<f64>() / self.contact_count().max(1) as f64;
+        self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p -= mean);
     }
 
     /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.

@@ -17,8 +17,9 @@ pub struct Certificate {
     pub min_pressure: f64,
 }
 
-/// Distances this many units of round-off of their terms are nothing but round-off: bodies that fit exactly.
-const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+/// The round-off of `h - approach` where h is the approach: a sum and a mean of equal numbers. Distances below it are those of bodies that
+/// fit exactly; larger ones, though round-off of a huge offset they may be, are not taken for none.
+const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 /// What one pass over a state whose u is A p tells.
 #[derive(Clone, Copy, Debug)]
@@ -156,7 +157,7 @@ impl Survey {
         Certificate {
             residual: relative(self.residual, self.distance),
             penetration: self.penetration,
-            complementarity: relative(self.work.0, self.work.1),
+            complementarity: relative(self.work.0.max(0.0), self.work.1),
             min_pressure: self.range.0,
         }
     }

@@ -1,6 +1,6 @@
 //! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
 
-use super::{Effect, Value};
+use super::{check_values, Effect, Value};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
@@ -30,19 +30,14 @@ impl Effect for Layer<'_> {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let require = |name: &dyn Fn() -> String, c: f64| match c {
-            c if !c.is_finite() => Err(Error::NotFinite(format!("{} is {c}; it must be finite", name()))),
-            c if c < 0.0 => invalid(format!("{} is {c}; a compliance must not be negative", name())),
+        let require = |name: &str, c: f64| match c {
+            c if !c.is_finite() => Err(Error::NotFinite(format!("{name} is {c}; it must be finite"))),
+            c if c < 0.0 => invalid(format!("{name} is {c}; a compliance must not be negative")),
             _ => Ok(()),
         };
         match self {
-            Layer::Uniform(c) => require(&|| "layer->compliance".into(), *c),
-            Layer::PerElement(c) if c.len() != grid.len() => {
-                invalid(format!("layer->compliances has {} values; the grid has {} elements", c.len(), grid.len()))
-            }
-            Layer::PerElement(c) => c.iter().enumerate().try_for_each(|(i, c)| {
-                require(&|| format!("layer->compliances of element ({}, {})", i % grid.mx, i / grid.mx), *c)
-            }),
+            Layer::Uniform(c) => require("layer->compliance", *c),
+            Layer::PerElement(c) => check_values("layer->compliances", c, grid, require),
         }
     }
 

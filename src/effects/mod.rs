@@ -26,7 +26,7 @@ pub use patches::Patches;
 pub use period::Period;
 pub use pressure_limit::PressureLimit;
 
-use crate::error::{Error, Result};
+use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace, Kernel};
 use crate::scene::Scene;
@@ -71,6 +71,17 @@ pub trait Effect {
 
     /// Tells each value that a set-up depends on, with its name.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+}
+
+/// Checks one value per element; the message names the first one that `require` refuses.
+fn check_values(name: &str, values: &[f64], grid: &Grid, require: impl Fn(&str, f64) -> Result<()>) -> Result<()> {
+    if values.len() != grid.len() {
+        return invalid(format!("{name} has {} values; the grid has {} elements", values.len(), grid.len()));
+    }
+    match values.iter().position(|value| require(name, *value).is_err()) {
+        Some(i) => require(&format!("{name} of {}", grid.element(i)), values[i]),
+        None => Ok(()),
+    }
 }
 
 /// Number of effects.

@@ -38,13 +38,8 @@ impl Effect for Patches<'_> {
             ));
         }
         if let Some(i) = self.patch.iter().position(|patch| !(0..count as i32).contains(patch)) {
-            return invalid(format!(
-                "patches->patch of element ({}, {}) is {}; it must lie in 0..{}",
-                i % grid.mx,
-                i / grid.mx,
-                self.patch[i],
-                count - 1
-            ));
+            let (element, patch) = (grid.element(i), self.patch[i]);
+            return invalid(format!("patches->patch of {element} is {patch}; it must lie in 0..{}", count - 1));
         }
         for (k, &factor) in self.factors.iter().enumerate() {
             let (a, b) = (k / count, k % count);

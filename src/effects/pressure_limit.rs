@@ -9,8 +9,7 @@
 //! p = p_max,      e <= 0    at the limit
 //! ```
 
-use super::Effect;
-use crate::contact::Limited;
+use super::{check_values, Effect};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Load, Scene};
@@ -32,14 +31,6 @@ impl PressureLimit<'_> {
             PressureLimit::PerElement(limits) => limits[i],
         }
     }
-
-    /// The pressures that it allows.
-    pub fn admissible(&self) -> Limited<'_> {
-        match self {
-            PressureLimit::Uniform(limit) => Limited::Uniform(*limit),
-            PressureLimit::PerElement(limits) => Limited::PerElement(limits),
-        }
-    }
 }
 
 impl Effect for PressureLimit<'_> {
@@ -48,23 +39,16 @@ impl Effect for PressureLimit<'_> {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let require = |name: &dyn Fn() -> String, limit: f64| match limit {
-            limit if limit.is_nan() => Err(Error::NotFinite(format!("{} is {limit}; it must be a number", name()))),
+        let require = |name: &str, limit: f64| match limit {
+            limit if limit.is_nan() => Err(Error::NotFinite(format!("{name} is {limit}; it must be a number"))),
             limit if limit <= 0.0 => {
-                invalid(format!("{} is {limit}; a pressure limit must be positive; +infinity: none", name()))
+                invalid(format!("{name} is {limit}; a pressure limit must be positive; +infinity: none"))
             }
             _ => Ok(()),
         };
         match self {
-            PressureLimit::Uniform(limit) => require(&|| "pressure_limit->limit".into(), *limit),
-            PressureLimit::PerElement(limits) if limits.len() != grid.len() => invalid(format!(
-                "pressure_limit->limits has {} values; the grid has {} elements",
-                limits.len(),
-                grid.len()
-            )),
-            PressureLimit::PerElement(limits) => limits.iter().enumerate().try_for_each(|(i, limit)| {
-                require(&|| format!("pressure_limit->limits of element ({}, {})", i % grid.mx, i / grid.mx), *limit)
-            }),
+            PressureLimit::Uniform(limit) => require("pressure_limit->limit", *limit),
+            PressureLimit::PerElement(limits) => check_values("pressure_limit->limits", limits, grid, require),
         }
     }
 

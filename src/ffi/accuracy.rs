@@ -12,7 +12,7 @@ use super::scene::{contact_normal_scene, Named};
 use super::solve::{watcher, Outcome};
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::solver::{solve_to_accuracy, Accuracy, ProgressCallback, SurfaceCallback};
 
@@ -56,28 +56,7 @@ pub struct contact_normal_accuracy {
     pub seconds: f64,
 }
 
-// SAFETY: integers, floats, raw pointers and an optional function pointer only, struct_size first.
-unsafe impl Versioned for contact_normal_accuracy {
-    const NAME: &'static str = "contact_normal_accuracy";
-    const FIRST_SIZE: usize = 96;
-    fn defaults() -> Self {
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            target: 1e-3,
-            max_seconds: 0.0,
-            max_bytes: 0,
-            max_elements: 0,
-            surface: None,
-            user: std::ptr::null_mut(),
-            mx: 0,
-            my: 0,
-            dx: 0.0,
-            dy: 0.0,
-            reached: -1.0,
-            seconds: 0.0,
-        }
-    }
-}
+versioned! { contact_normal_accuracy, 96, target: 1e-3, reached: -1.0 }
 
 /// Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
 #[no_mangle]
@@ -116,7 +95,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         named.add_to(&mut regions, scene)?;
         translated.add_to(&mut regions, options)?;
         outputs.add_to(&mut regions, 0)?;
-        regions.output_struct("accuracy", accuracy, &given)?;
+        regions.output_struct(accuracy, &given)?;
         regions.output("solver", solver, 1)?;
         regions.check()?;
         let options = translated;
@@ -127,16 +106,17 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let scene = unsafe { named.with_distance(&h)? };
         let (asked, user) = (translate(&given)?, given.user);
 
-        let mut write = |grid: &Grid, h: &mut [f64]| match given.surface {
+        let mut write = given.surface.map(|surface| {
             // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
-            Some(surface) => in_host_environment(|| unsafe {
-                surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
-            }),
-            None => false,
-        };
+            move |grid: &Grid, h: &mut [f64]| {
+                in_host_environment(|| unsafe {
+                    surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
+                })
+            }
+        });
         let mut callback = watcher(&options);
-        let surface: Option<SurfaceCallback<'_>> = given.surface.is_some().then_some(&mut write);
-        let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
+        let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
+        let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
         let outcome = solve_to_accuracy(&scene, &options.options, &asked, surface, progress)?;
 
         let found = outcome.solver.as_ref();

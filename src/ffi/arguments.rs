@@ -2,6 +2,7 @@
 
 use super::status::Refusal;
 use super::structs::{size_of_callers, Versioned};
+use crate::grid::Grid;
 use crate::memory::reserve;
 
 /// A positive count from a C integer.
@@ -79,13 +80,13 @@ impl Regions {
     }
 
     /// A struct that was read from `at`.
-    pub fn input_struct<T: Versioned>(&mut self, name: &'static str, at: *const T, read: &T) -> Result<(), Refusal> {
-        self.add(name, at as usize, size_of_callers(read), false)
+    pub fn input_struct<T: Versioned>(&mut self, at: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(T::short_name(), at as usize, size_of_callers(read), false)
     }
 
     /// A struct that was read from `at` and is written.
-    pub fn output_struct<T: Versioned>(&mut self, name: &'static str, at: *const T, read: &T) -> Result<(), Refusal> {
-        self.add(name, at as usize, size_of_callers(read), true)
+    pub fn output_struct<T: Versioned>(&mut self, at: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(T::short_name(), at as usize, size_of_callers(read), true)
     }
 
     /// `count` values that are written.
@@ -133,34 +134,22 @@ fn overlap(one: &Region, other: &Region) -> Refusal {
     Refusal::invalid(format!("{} and {} overlap; each output needs memory of its own", said(one), said(other)))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of (start, end, is_output).
-    fn refused(regions: &[(usize, usize, bool)]) -> bool {
-        let mut list = Regions::default();
-        for &(start, end, is_output) in regions {
-            list.add("values", start, end - start, is_output).expect("memory");
-        }
-        list.check().is_err()
+/// An effect, as the caller's header has it.
+pub(super) trait GivenEffect: Versioned {
+    /// Adds the arrays that are read; none.
+    fn add_to(&self, _regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
+        Ok(())
     }
+}
 
-    #[test]
-    fn what_is_written_overlaps_with_nothing() {
-        // Every pair of intervals on a line of 6 places, in both roles, beside the definition.
-        let intervals: Vec<_> = (1..6).flat_map(|start| (start + 1..7).map(move |end| (start, end))).collect();
-        for &(a, b) in &intervals {
-            for &(c, d) in &intervals {
-                for (first, second) in [(false, false), (false, true), (true, false), (true, true)] {
-                    let overlap = a < d && c < b && (first || second);
-                    assert_eq!(refused(&[(a, b, first), (c, d, second)]), overlap, "{a}..{b} {c}..{d}");
-                }
-            }
-        }
-        // A long input or output reaches beyond the short ones that follow it.
-        assert!(refused(&[(1, 100, false), (2, 3, false), (50, 51, true)]));
-        assert!(refused(&[(1, 100, true), (150, 151, true), (99, 100, false)]));
-        assert!(!refused(&[(1, 100, false), (2, 3, false), (100, 101, true)]));
-    }
+/// Adds an effect that was read from `at`, if there is one, and its arrays.
+pub(super) fn add<T: GivenEffect>(
+    regions: &mut Regions,
+    grid: &Grid,
+    at: *const T,
+    read: &Option<T>,
+) -> Result<(), Refusal> {
+    let Some(effect) = read else { return Ok(()) };
+    regions.input_struct(at, effect)?;
+    effect.add_to(regions, grid)
 }

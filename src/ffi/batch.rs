@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::arguments::Regions;
+use super::arguments::{not_negative, Regions};
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::outputs::{Buffers, Outputs};
@@ -14,7 +14,7 @@ use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::structs::{self, Versioned};
-use crate::memory::reserve;
+use crate::memory::collected;
 use crate::solver::{Options, Solver};
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
@@ -43,15 +43,13 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
-        let Ok(count) = usize::try_from(count) else {
-            return Err(Refusal::invalid(format!("count is {count}; it must not be negative")));
-        };
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
+        let count = not_negative("count", count)?;
         let options_at = options;
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let options = unsafe { options::translate(options)? };
-        if options.progress.is_some() {
+        if options.given.progress.is_some() {
             let message = "progress is given; in a batch it must be NULL: no callback is called from another thread";
             return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message.into()));
         }
@@ -135,9 +133,7 @@ impl Batch {
                 let fields = fields.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "fields"))?;
                 Outputs::of(fields, report)
             };
-            let mut outputs = Vec::new();
-            reserve(&mut outputs, count, "the outputs of a batch")?;
-            outputs.extend((0..count).map(outputs_of));
+            let outputs = collected((0..count).map(outputs_of), "the outputs of a batch")?;
             Ok(Batch { scenes, outputs, statuses })
         }
     }
@@ -179,15 +175,10 @@ impl Batch {
 }
 
 /// What the call returns: of the first problem that was refused, or else of the first that stopped early.
+#[derive(Default)]
 struct Worst {
     problem: usize,
     outcome: Outcome,
-}
-
-impl Default for Worst {
-    fn default() -> Worst {
-        Worst { problem: usize::MAX, outcome: Outcome { status: CONTACT_NORMAL_OK, message: String::new() } }
-    }
 }
 
 impl Worst {
@@ -196,11 +187,7 @@ impl Worst {
         let rank =
             |problem: usize, outcome: &Outcome| (outcome.status >= 0, outcome.status == CONTACT_NORMAL_OK, problem);
         if rank(problem, &outcome) < rank(self.problem, &self.outcome) {
-            let message = if outcome.message.is_empty() {
-                String::new()
-            } else {
-                format!("problem {problem}: {}", outcome.message)
-            };
+            let message = format!("problem {problem}: {}", outcome.message);
             *self = Worst { problem, outcome: Outcome { message, ..outcome } };
         }
     }

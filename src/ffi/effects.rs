@@ -1,8 +1,8 @@
 //! The effects that a scene may name beside coefficients of its own (`influence`): one struct each, NULL in the scene: not simulated.
 
-use super::arguments::{self, Regions};
+use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::status::Refusal;
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::scene::{Layer, Patches, Period, PressureLimit};
 
@@ -19,14 +19,7 @@ pub struct contact_normal_period {
     pub y: i32,
 }
 
-// SAFETY: integers only, struct_size first.
-unsafe impl Versioned for contact_normal_period {
-    const NAME: &'static str = "contact_normal_period";
-    const FIRST_SIZE: usize = 16;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, x: 0, y: 0 }
-    }
-}
+versioned! { contact_normal_period, 16 }
 
 /// Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain what the layer gives way.
 #[repr(C)]
@@ -40,14 +33,7 @@ pub struct contact_normal_layer {
     pub compliances: *const f64,
 }
 
-// SAFETY: integers, floats and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_layer {
-    const NAME: &'static str = "contact_normal_layer";
-    const FIRST_SIZE: usize = 24;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, compliance: 0.0, compliances: std::ptr::null() }
-    }
-}
+versioned! { contact_normal_layer, 24 }
 
 /// Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
 /// `deformed_distance` <= 0: the plastic penetration, with its sign turned.
@@ -62,14 +48,7 @@ pub struct contact_normal_pressure_limit {
     pub limits: *const f64,
 }
 
-// SAFETY: integers, floats and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_pressure_limit {
-    const NAME: &'static str = "contact_normal_pressure_limit";
-    const FIRST_SIZE: usize = 24;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, limit: f64::INFINITY, limits: std::ptr::null() }
-    }
-}
+versioned! { contact_normal_pressure_limit, 24, limit: f64::INFINITY }
 
 /// Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
 #[repr(C)]
@@ -88,15 +67,7 @@ pub struct contact_normal_patches {
     pub factors: *const f64,
 }
 
-// SAFETY: integers and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_patches {
-    const NAME: &'static str = "contact_normal_patches";
-    const FIRST_SIZE: usize = 32;
-    fn defaults() -> Self {
-        let (patch, factors) = (std::ptr::null(), std::ptr::null());
-        Self { struct_size: size_of::<Self>() as i64, count: 0, reserved: 0, patch, factors }
-    }
-}
+versioned! { contact_normal_patches, 32 }
 
 /// Fills patches with none. Since 0.1.
 #[no_mangle]
@@ -137,18 +108,18 @@ impl contact_normal_period {
     }
 }
 
+impl GivenEffect for contact_normal_period {}
+
 impl contact_normal_layer {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Layer<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        match unsafe { arguments::optional(self.compliances, grid.len()) } {
-            Some(compliances) => Layer::PerElement(compliances),
-            None => Layer::Uniform(self.compliance),
-        }
+        unsafe { optional(self.compliances, grid.len()) }.map_or(Layer::Uniform(self.compliance), Layer::PerElement)
     }
+}
 
-    /// Adds the array that is read.
-    pub(super) fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+impl GivenEffect for contact_normal_layer {
+    fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
         regions.input("layer->compliances", self.compliances, grid.len())
     }
 }
@@ -157,14 +128,13 @@ impl contact_normal_pressure_limit {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> PressureLimit<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        match unsafe { arguments::optional(self.limits, grid.len()) } {
-            Some(limits) => PressureLimit::PerElement(limits),
-            None => PressureLimit::Uniform(self.limit),
-        }
+        unsafe { optional(self.limits, grid.len()) }
+            .map_or(PressureLimit::Uniform(self.limit), PressureLimit::PerElement)
     }
+}
 
-    /// Adds the array that is read.
-    pub(super) fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+impl GivenEffect for contact_normal_pressure_limit {
+    fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
         regions.input("pressure_limit->limits", self.limits, grid.len())
     }
 }
@@ -175,26 +145,27 @@ const MOST_PATCHES: usize = 64;
 impl contact_normal_patches {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Patches<'a>, Refusal> {
-        arguments::reserved("patches->reserved", self.reserved)?;
-        let count = arguments::count("patches->count", self.count)?;
+        reserved("patches->reserved", self.reserved)?;
+        let count = count("patches->count", self.count)?;
         // SAFETY: NULL or count by count values, and one per element, by the conventions of the ABI.
         let (factors, patch) = unsafe {
             (
-                arguments::required("scene->patches->factors", self.factors, self.factor_count())?,
-                arguments::required("scene->patches->patch", self.patch, grid.len())?,
+                required("scene->patches->factors", self.factors, self.factor_count())?,
+                required("scene->patches->patch", self.patch, grid.len())?,
             )
         };
         Ok(Patches { count, patch, factors })
     }
 
-    /// Adds the arrays that are read.
-    pub(super) fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
-        regions.input("patches->patch", self.patch, grid.len())?;
-        regions.input("patches->factors", self.factors, self.factor_count())
-    }
-
     /// Factors that are read.
     fn factor_count(&self) -> usize {
         usize::try_from(self.count).ok().filter(|count| *count <= MOST_PATCHES).map_or(0, |count| count * count)
+    }
+}
+
+impl GivenEffect for contact_normal_patches {
+    fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+        regions.input("patches->patch", self.patch, grid.len())?;
+        regions.input("patches->factors", self.factors, self.factor_count())
     }
 }

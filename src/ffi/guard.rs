@@ -61,30 +61,3 @@ fn silence_our_panics() {
         }));
     });
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Set in the process that panics below.
-    const CHILD: &str = "CONTACT_NORMAL_TEST_PANICS";
-
-    #[test]
-    fn a_panic_becomes_a_status_and_is_not_announced() {
-        if std::env::var_os(CHILD).is_some() {
-            assert_eq!(guard(|| panic!("on purpose")), CONTACT_NORMAL_INTERNAL);
-            // SAFETY: the message is valid until the next call on this thread.
-            let message = unsafe { std::ffi::CStr::from_ptr(super::super::contact_normal_last_error()) };
-            assert_eq!(message.to_str(), Ok("internal error: on purpose; please report it"));
-            return;
-        }
-        // The test harness catches what a test prints: only a process of its own shows what comes out on stderr.
-        let itself = std::env::current_exe().expect("this test's path");
-        let arguments = ["--exact", "ffi::guard::tests::a_panic_becomes_a_status_and_is_not_announced", "--nocapture"];
-        let output = std::process::Command::new(itself).args(arguments).env(CHILD, "1").output().expect("a process");
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
-        assert!(String::from_utf8_lossy(&output.stdout).contains("1 passed"), "the child ran no test");
-        assert!(said.trim().is_empty(), "{said}");
-    }
-}

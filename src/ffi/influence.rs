@@ -1,8 +1,8 @@
 //! Coefficients of the caller's own: `contact_normal_influence`, `contact_normal_row_tables`.
 
-use super::arguments::{count, required, Regions};
+use super::arguments::{count, required, GivenEffect, Regions};
 use super::status::Refusal;
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};
 
@@ -25,14 +25,7 @@ pub struct contact_normal_influence {
     pub scale: f64,
 }
 
-// SAFETY: integers, a float and a raw pointer only, struct_size first.
-unsafe impl Versioned for contact_normal_influence {
-    const NAME: &'static str = "contact_normal_influence";
-    const FIRST_SIZE: usize = 32;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, cx: 0, cy: 0, coefficients: std::ptr::null(), scale: 1.0 }
-    }
-}
+versioned! { contact_normal_influence, 32, scale: 1.0 }
 
 /// Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
 /// y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
@@ -54,14 +47,7 @@ pub struct contact_normal_row_tables {
     pub scale: f64,
 }
 
-// SAFETY: integers, a float and a raw pointer only, struct_size first.
-unsafe impl Versioned for contact_normal_row_tables {
-    const NAME: &'static str = "contact_normal_row_tables";
-    const FIRST_SIZE: usize = 32;
-    fn defaults() -> Self {
-        Self { struct_size: size_of::<Self>() as i64, cx: 0, rows: 0, coefficients: std::ptr::null(), scale: 1.0 }
-    }
-}
+versioned! { contact_normal_row_tables, 32, scale: 1.0 }
 
 /// Fills an influence table with nothing, and a scale of 1. Since 0.1.
 #[no_mangle]
@@ -86,16 +72,22 @@ pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
 impl contact_normal_influence {
     /// Copies what the grid needs of the caller's table.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<Table, Refusal> {
-        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
+        let (cx, cy, size) = self.size()?;
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
-        let values = unsafe { required("influence->coefficients", self.coefficients, table_size(cx, cy)?)? };
+        let values = unsafe { required("influence->coefficients", self.coefficients, size)? };
         Ok(Table::scaled(cx, cy, values, self.scale, grid)?)
     }
 
-    /// Adds the array that is read.
-    pub(super) fn add_to(&self, regions: &mut Regions) -> Result<(), Refusal> {
+    /// cx, cy, and the number of values.
+    fn size(&self) -> Result<(usize, usize, usize), Refusal> {
         let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
-        regions.input("influence->coefficients", self.coefficients, table_size(cx, cy)?)
+        Ok((cx, cy, table_size(cx, cy)?))
+    }
+}
+
+impl GivenEffect for contact_normal_influence {
+    fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
+        regions.input("influence->coefficients", self.coefficients, self.size()?.2)
     }
 }
 
@@ -108,12 +100,6 @@ impl contact_normal_row_tables {
         Ok(RowTables::scaled(cx, rows, values, self.scale, grid)?)
     }
 
-    /// Adds the array that is read.
-    pub(super) fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
-        let (_, _, size) = self.size(grid)?;
-        regions.input("row_tables->coefficients", self.coefficients, size)
-    }
-
     /// cx, rows, and the number of values that are read.
     fn size(&self, grid: &Grid) -> Result<(usize, usize, usize), Refusal> {
         let (cx, rows) = (count("row_tables->cx", self.cx)?, count("row_tables->rows", self.rows)?);
@@ -124,5 +110,11 @@ impl contact_normal_row_tables {
             Refusal::invalid(format!("rows * rows * 2 cx is {rows} * {rows} * 2 * {cx}; no row tables are that large"))
         })?;
         Ok((cx, rows, size))
+    }
+}
+
+impl GivenEffect for contact_normal_row_tables {
+    fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+        regions.input("row_tables->coefficients", self.coefficients, self.size(grid)?.2)
     }
 }

@@ -1,6 +1,7 @@
 //! The C ABI: translation only, no numerics. Each export goes through `guard.rs`.
 
 #![allow(non_camel_case_types)]
+#![allow(clippy::doc_lazy_continuation)] // comments of members are those of the header
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
 
 mod accuracy;

@@ -5,7 +5,7 @@ use libc::c_void;
 use super::arguments::{count, not_negative, reserved, Regions};
 use super::report::contact_normal_progress;
 use super::status::Refusal;
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned, Versioned};
 use crate::methods::multigrid::SmootherKind;
 use crate::solver::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 
@@ -103,33 +103,14 @@ pub struct contact_normal_options {
     pub user: *mut c_void,
 }
 
-// SAFETY: integers, floats, a raw pointer and an optional function pointer, struct_size first.
-unsafe impl Versioned for contact_normal_options {
-    const NAME: &'static str = "contact_normal_options";
-    const FIRST_SIZE: usize = 96;
-    fn defaults() -> Self {
-        let defaults = Options::default();
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            method: CONTACT_NORMAL_METHOD_AUTO,
-            smoother: CONTACT_NORMAL_SMOOTHER_AUTO,
-            pre_sweeps: defaults.pre_sweeps as i32,
-            post_sweeps: defaults.post_sweeps as i32,
-            relaxation: defaults.relaxation,
-            coarsest: defaults.coarsest as i32,
-            active_set: CONTACT_NORMAL_ACTIVE_SET_FREE,
-            initial_guess: CONTACT_NORMAL_INITIAL_GUESS_NONE,
-            criterion: CONTACT_NORMAL_CRITERION_RESIDUAL,
-            tolerance: defaults.tolerance,
-            error_ratio: defaults.error_ratio,
-            max_cycles: defaults.max_cycles as i32,
-            threads: defaults.threads as i32,
-            precision: CONTACT_NORMAL_PRECISION_AUTO,
-            reserved: 0,
-            progress: None,
-            user: std::ptr::null_mut(),
-        }
-    }
+versioned! {
+    contact_normal_options, 96,
+    pre_sweeps: Options::default().pre_sweeps as i32,
+    post_sweeps: Options::default().post_sweeps as i32,
+    coarsest: Options::default().coarsest as i32,
+    tolerance: Options::default().tolerance,
+    max_cycles: Options::default().max_cycles as i32,
+    threads: Options::default().threads as i32,
 }
 
 /// Fills options with the defaults. Since 0.1.
@@ -139,18 +120,16 @@ pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_norma
     unsafe { structs::init(options) }
 }
 
-/// Options and the callback with its user pointer.
+/// Options, and as the caller gave them: with the callback and its user pointer.
 pub(super) struct Translated {
-    given: contact_normal_options,
+    pub given: contact_normal_options,
     pub options: Options,
-    pub progress: contact_normal_progress_callback,
-    pub user: *mut c_void,
 }
 
 impl Translated {
     /// Adds the struct, which stands at `at`, NULL or not.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_options) -> Result<(), Refusal> {
-        regions.input_struct("options", at, &self.given)
+        regions.input_struct(at, &self.given)
     }
 }
 
@@ -196,7 +175,7 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
         estimates: false,
     };
     options.check()?;
-    Ok(Translated { given, options, progress: given.progress, user: given.user })
+    Ok(Translated { given, options })
 }
 
 fn method(value: i32) -> Result<Method, Refusal> {

@@ -103,13 +103,13 @@ impl Outputs {
     /// Adds what a solve on `n` elements writes, and the struct that says where.
     pub fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         let fields = &self.fields;
-        regions.input_struct("fields", self.fields_at, fields)?;
+        regions.input_struct(self.fields_at, fields)?;
         regions.output("pressure", fields.pressure, n)?;
         regions.output("displacement", fields.displacement, n)?;
         regions.output("deformed_distance", fields.deformed_distance, n)?;
         regions.output("contact", fields.contact, n)?;
         if let Some(report) = &self.given_report {
-            regions.output_struct("report", self.report, report)?;
+            regions.output_struct(self.report, report)?;
             regions.output("ledger", report.ledger, self.ledger_capacity())?;
         }
         Ok(())

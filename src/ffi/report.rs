@@ -1,6 +1,6 @@
 //! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
 
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned, Versioned};
 use crate::solver::{LedgerRow, Limit, Progress, Report};
 
 /// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
@@ -20,20 +20,7 @@ pub struct contact_normal_fields {
     pub contact: *mut i32,
 }
 
-// SAFETY: an integer and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_fields {
-    const NAME: &'static str = "contact_normal_fields";
-    const FIRST_SIZE: usize = 40;
-    fn defaults() -> Self {
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            pressure: std::ptr::null_mut(),
-            deformed_distance: std::ptr::null_mut(),
-            displacement: std::ptr::null_mut(),
-            contact: std::ptr::null_mut(),
-        }
-    }
-}
+versioned! { contact_normal_fields, 40 }
 
 /// `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
 pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
@@ -94,29 +81,31 @@ pub struct contact_normal_ledger_row {
     pub reserved: i32,
 }
 
+/// Copies members of the same name, converted as C has them.
+macro_rules! copy {
+    ($from:expr => $to:ident: $($member:ident),+) => { $($to.$member = $from.$member as _;)+ };
+}
+
+/// Sets what rows of the ledger and reports both have.
+macro_rules! set_result {
+    ($to:ident, $measures:expr, $error:expr) => {
+        copy!($measures.certificate => $to: residual);
+        copy!($measures => $to: approach, force, max_pressure, contact_area, corrected_area, contact_count);
+        copy!($error => $to: untrusted);
+        $to.error_force = $error.force;
+        $to.error_max_pressure = $error.max_pressure;
+        $to.error_contact_area = $error.contact_area;
+        $to.error_corrected_area = $error.corrected_area;
+        $to.error_pressure = $error.pressure;
+    };
+}
+
 impl From<&LedgerRow> for contact_normal_ledger_row {
     fn from(row: &LedgerRow) -> Self {
-        Self {
-            mx: row.mx as i32,
-            my: row.my as i32,
-            cycles: row.cycles as i64,
-            seconds: row.seconds,
-            work_units: row.work_units,
-            residual: row.measures.certificate.residual,
-            approach: row.measures.approach,
-            force: row.measures.force,
-            max_pressure: row.measures.max_pressure,
-            contact_area: row.measures.contact_area,
-            corrected_area: row.measures.corrected_area,
-            error_force: row.error.force,
-            error_max_pressure: row.error.max_pressure,
-            error_contact_area: row.error.contact_area,
-            error_corrected_area: row.error.corrected_area,
-            error_pressure: row.error.pressure,
-            contact_count: row.measures.contact_count as i64,
-            untrusted: row.error.untrusted as i32,
-            reserved: 0,
-        }
+        let mut to = Self::default();
+        copy!(row => to: mx, my, cycles, seconds, work_units);
+        set_result!(to, row.measures, row.error);
+        to
     }
 }
 
@@ -196,48 +185,16 @@ pub struct contact_normal_report {
     pub tolerance: f64,
 }
 
-// SAFETY: integers, floats and a raw pointer only, struct_size first.
-unsafe impl Versioned for contact_normal_report {
-    const NAME: &'static str = "contact_normal_report";
-    const FIRST_SIZE: usize = 264;
-    fn defaults() -> Self {
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            cycles: 0,
-            active_set_steps: 0,
-            active_set_changes: 0,
-            matrix_products: 0,
-            work_units: 0.0,
-            update: 0.0,
-            residual: 0.0,
-            penetration: 0.0,
-            complementarity: 0.0,
-            min_pressure: 0.0,
-            approach: 0.0,
-            force: 0.0,
-            max_pressure: 0.0,
-            contact_area: 0.0,
-            contact_count: 0,
-            edge_count: 0,
-            error_force: -1.0,
-            error_max_pressure: -1.0,
-            error_contact_area: -1.0,
-            setup_seconds: 0.0,
-            solve_seconds: 0.0,
-            bytes: 0,
-            ledger_rows: 0,
-            ledger_capacity: 0,
-            ledger: std::ptr::null_mut(),
-            corrected_area: -1.0,
-            error_corrected_area: -1.0,
-            error_pressure: -1.0,
-            untrusted: 0,
-            limited_by: CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
-            halved_seconds: -1.0,
-            halved_error_force: -1.0,
-            tolerance: 0.0,
-        }
-    }
+versioned! {
+    contact_normal_report, 264,
+    error_force: -1.0,
+    error_max_pressure: -1.0,
+    error_contact_area: -1.0,
+    corrected_area: -1.0,
+    error_corrected_area: -1.0,
+    error_pressure: -1.0,
+    halved_seconds: -1.0,
+    halved_error_force: -1.0,
 }
 
 impl contact_normal_report {
@@ -248,53 +205,25 @@ impl contact_normal_report {
         ledger: *mut contact_normal_ledger_row,
         ledger_capacity: i64,
     ) -> Self {
-        let (measures, certificate) = (&report.measures, &report.measures.certificate);
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            cycles: report.cycles as i64,
-            active_set_steps: report.active_set_steps as i64,
-            active_set_changes: report.active_set_changes as i64,
-            matrix_products: report.matrix_products as i64,
-            work_units: report.work_units,
-            update: report.update,
-            residual: certificate.residual,
-            penetration: certificate.penetration,
-            complementarity: certificate.complementarity,
-            min_pressure: certificate.min_pressure,
-            approach: measures.approach,
-            force: measures.force,
-            max_pressure: measures.max_pressure,
-            contact_area: measures.contact_area,
-            contact_count: measures.contact_count as i64,
-            edge_count: measures.edge_count as i64,
-            error_force: report.error.force,
-            error_max_pressure: report.error.max_pressure,
-            error_contact_area: report.error.contact_area,
-            setup_seconds: report.setup_seconds,
-            solve_seconds: report.solve_seconds,
-            bytes: report.bytes as i64,
-            ledger_rows: ledger_rows as i64,
-            ledger_capacity,
-            ledger,
-            corrected_area: measures.corrected_area,
-            error_corrected_area: report.error.corrected_area,
-            error_pressure: report.error.pressure,
-            untrusted: report.error.untrusted as i32,
-            limited_by: match report.limit {
-                Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
-                Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
-                Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
-            },
-            halved_seconds: report.halving.seconds,
-            halved_error_force: report.halving.force,
-            tolerance: report.tolerance,
-        }
+        let mut to = Self { ledger_rows: ledger_rows as i64, ledger_capacity, ledger, ..Self::defaults() };
+        copy!(report => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
+        copy!(report.measures.certificate => to: penetration, complementarity, min_pressure);
+        copy!(report.measures => to: edge_count);
+        copy!(report => to: setup_seconds, solve_seconds, bytes, tolerance);
+        set_result!(to, report.measures, report.error);
+        (to.halved_seconds, to.halved_error_force) = (report.halving.seconds, report.halving.force);
+        to.limited_by = match report.limit {
+            Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
+            Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
+            Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
+        };
+        to
     }
 }
 
 /// What the progress callback is told after each cycle.
 #[repr(C)]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct contact_normal_progress {
     /// Size of this struct in the library.
     pub struct_size: i64,
@@ -318,17 +247,9 @@ pub struct contact_normal_progress {
 
 impl From<&Progress> for contact_normal_progress {
     fn from(progress: &Progress) -> Self {
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            mx: progress.mx as i32,
-            my: progress.my as i32,
-            cycles: progress.cycles as i64,
-            active_set_changes: progress.active_set_changes as i64,
-            seconds: progress.seconds,
-            work_units: progress.work_units,
-            update: progress.update,
-            residual: progress.residual,
-        }
+        let mut to = Self { struct_size: size_of::<Self>() as i64, ..Self::default() };
+        copy!(progress => to: mx, my, cycles, active_set_changes, seconds, work_units, update, residual);
+        to
     }
 }
 

@@ -1,14 +1,14 @@
 //! `contact_normal_scene`.
 
-use super::arguments::{self, Regions};
+use super::arguments::{self, add, Regions};
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned};
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::collected;
 use crate::scene::{Bodies, Load, Scene};
 
 /// `load`: the approach of the bodies is given.
@@ -59,39 +59,25 @@ pub struct contact_normal_scene {
     pub row_tables: *const contact_normal_row_tables,
 }
 
-// SAFETY: integers, floats and raw pointers only, struct_size first.
-unsafe impl Versioned for contact_normal_scene {
-    const NAME: &'static str = "contact_normal_scene";
-    const FIRST_SIZE: usize = 144;
-    fn defaults() -> Self {
-        Self {
-            struct_size: size_of::<Self>() as i64,
-            mx: 0,
-            my: 0,
-            dx: 0.0,
-            dy: 0.0,
-            undeformed_distance: std::ptr::null(),
-            shear_modulus: [0.0; 2],
-            poisson_ratio: [0.0; 2],
-            load: CONTACT_NORMAL_PRESCRIBED_APPROACH,
-            reserved: 0,
-            approach: 0.0,
-            force: 0.0,
-            influence: std::ptr::null(),
-            layer: std::ptr::null(),
-            pressure_limit: std::ptr::null(),
-            period: std::ptr::null(),
-            patches: std::ptr::null(),
-            row_tables: std::ptr::null(),
-        }
-    }
-}
+versioned! { contact_normal_scene, 144 }
 
 /// Fills a scene with nothing: sizes, elastic constants and the undeformed distance have to be set. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_scene_init(scene: *mut contact_normal_scene) {
     // SAFETY: NULL or a whole struct, by the conventions of the ABI.
     unsafe { structs::init(scene) }
+}
+
+/// The load that the constants and values of the boundary mean.
+pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {
+    match load {
+        CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
+        CONTACT_NORMAL_PRESCRIBED_FORCE => Ok(Load::Force(force)),
+        other => {
+            let rule = "it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)";
+            Err(Refusal::invalid(format!("load is {other}; {rule}")))
+        }
+    }
 }
 
 /// A scene and the effects that it names, as the caller's header has them; no array was looked at.
@@ -133,42 +119,20 @@ impl Named {
     /// Adds all that is read of the scene, which stands at `at`.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
-        regions.input_struct("scene", at, scene)?;
+        regions.input_struct(at, scene)?;
         regions.input("undeformed_distance", scene.undeformed_distance, grid.len())?;
-        if let Some(influence) = &self.influence {
-            regions.input_struct("influence", scene.influence, influence)?;
-            influence.add_to(regions)?;
-        }
-        if let Some(layer) = &self.layer {
-            regions.input_struct("layer", scene.layer, layer)?;
-            layer.add_to(regions, grid)?;
-        }
-        if let Some(limit) = &self.pressure_limit {
-            regions.input_struct("pressure_limit", scene.pressure_limit, limit)?;
-            limit.add_to(regions, grid)?;
-        }
-        if let Some(period) = &self.period {
-            regions.input_struct("period", scene.period, period)?;
-        }
-        if let Some(patches) = &self.patches {
-            regions.input_struct("patches", scene.patches, patches)?;
-            patches.add_to(regions, grid)?;
-        }
-        if let Some(tables) = &self.row_tables {
-            regions.input_struct("row_tables", scene.row_tables, tables)?;
-            tables.add_to(regions, grid)?;
-        }
-        Ok(())
+        add(regions, grid, scene.influence, &self.influence)?;
+        add(regions, grid, scene.layer, &self.layer)?;
+        add(regions, grid, scene.pressure_limit, &self.pressure_limit)?;
+        add(regions, grid, scene.period, &self.period)?;
+        add(regions, grid, scene.patches, &self.patches)?;
+        add(regions, grid, scene.row_tables, &self.row_tables)
     }
 
     /// A copy of the undeformed distance.
     pub unsafe fn copy_of_distance(&self) -> Result<Vec<f64>, Refusal> {
         // SAFETY: by the caller.
-        let h = unsafe { self.distance()? };
-        let mut copy = Vec::new();
-        reserve(&mut copy, h.len(), "undeformed distances")?;
-        copy.extend_from_slice(h);
-        Ok(copy)
+        Ok(collected(unsafe { self.distance()? }.iter().copied(), "undeformed distances")?)
     }
 
     unsafe fn distance<'a>(&self) -> Result<&'a [f64], Refusal> {
@@ -187,15 +151,7 @@ impl Named {
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         arguments::reserved("scene->reserved", scene.reserved)?;
-        let load = match scene.load {
-            CONTACT_NORMAL_PRESCRIBED_APPROACH => Load::Approach(scene.approach),
-            CONTACT_NORMAL_PRESCRIBED_FORCE => Load::Force(scene.force),
-            other => {
-                return Err(Refusal::invalid(format!(
-                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
-                )))
-            }
-        };
+        let load = load_of(scene.load, scene.approach, scene.force)?;
         let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
         // SAFETY (all): NULL or arrays of as many values as each says, by the conventions of the ABI.
         unsafe {

@@ -1,5 +1,6 @@
 //! `contact_normal_solve`, and what it shares with the solver handle.
 
+use super::arguments::Regions;
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
@@ -22,7 +23,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, &mut buffers)? };
+            unsafe { Request::read(scene, options, fields, report, &mut buffers, |_| Ok(()))? };
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let mut solver = Solver::new(&scene, &options.options)?;
@@ -38,13 +39,14 @@ pub(super) struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// Reads the structs, and refuses outputs that overlap. The caller's arrays must live as long as the result is used.
+    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written. The caller's arrays must live as long as the result is used.
     pub unsafe fn read<'a>(
         scene: *const contact_normal_scene,
         options: *const contact_normal_options,
         fields: *mut contact_normal_fields,
         report: *mut contact_normal_report,
         buffers: &mut Buffers,
+        also: impl FnOnce(&mut Regions) -> Result<(), Refusal>,
     ) -> Result<Request<'a>, Refusal> {
         // SAFETY (all): by the caller.
         unsafe {
@@ -55,6 +57,7 @@ impl Request<'_> {
             named.add_to(regions, scene)?;
             translated.add_to(regions, options)?;
             outputs.add_to(regions, named.len())?;
+            also(regions)?;
             regions.check()?;
             Ok(Request { scene: named.translate()?, options: translated, outputs })
         }
@@ -62,6 +65,7 @@ impl Request<'_> {
 }
 
 /// How a solve ended, and its message; none after OK.
+#[derive(Default)]
 pub(super) struct Outcome {
     pub status: contact_normal_status,
     pub message: String,
@@ -80,17 +84,15 @@ impl Outcome {
     }
 }
 
-/// Tells the caller's progress callback, if there is one; whether to cancel.
-pub(super) fn watcher(options: &Translated) -> impl FnMut(&Progress) -> bool + '_ {
-    |progress| match options.progress {
-        Some(callback) => {
-            let progress = contact_normal_progress::from(progress);
-            // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
-            // handle that solves refuses to be used.
-            in_host_environment(|| unsafe { callback(&progress, options.user) != 0 })
-        }
-        None => false,
-    }
+/// What tells the caller's progress callback, and whether to cancel; none where there is none.
+pub(super) fn watcher(options: &Translated) -> Option<impl FnMut(&Progress) -> bool> {
+    let (callback, user) = (options.given.progress?, options.given.user);
+    Some(move |progress: &Progress| {
+        let progress = contact_normal_progress::from(progress);
+        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
+        // handle that solves refuses to be used.
+        in_host_environment(|| unsafe { callback(&progress, user) != 0 })
+    })
 }
 
 /// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches.
@@ -102,7 +104,7 @@ pub(super) fn run_watched(
     buffers: &mut Buffers,
 ) -> Result<contact_normal_status, Refusal> {
     let mut callback = watcher(options);
-    let progress: Option<ProgressCallback<'_>> = options.progress.is_some().then_some(&mut callback);
+    let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
     run(solver, scene, &options.options, progress, outputs, buffers)?.conclude()
 }
 

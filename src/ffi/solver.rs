@@ -1,16 +1,16 @@
 //! `contact_normal_solver`: a handle for many solves on one grid and one pair of bodies.
 
 use std::cell::UnsafeCell;
-use std::ops::{Deref, DerefMut};
+use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arguments::Regions;
 use super::guard::guard;
 use super::influence::contact_normal_influence;
-use super::options::{self, contact_normal_options};
+use super::options::contact_normal_options;
 use super::outputs::{Buffers, Outputs};
 use super::report::{contact_normal_fields, contact_normal_report};
-use super::scene::{contact_normal_scene, Named};
+use super::scene::contact_normal_scene;
 use super::solve::{run_watched, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs;
@@ -56,19 +56,9 @@ impl InUse<'_> {
         }
         Ok(InUse { handle })
     }
-}
 
-impl Deref for InUse<'_> {
-    type Target = Held;
-    fn deref(&self) -> &Held {
-        // SAFETY: `is_in_use` lets one InUse of a handle exist.
-        unsafe { &*self.handle.held.get() }
-    }
-}
-
-impl DerefMut for InUse<'_> {
-    fn deref_mut(&mut self) -> &mut Held {
-        // SAFETY: as above.
+    pub fn held(&mut self) -> &mut Held {
+        // SAFETY: `is_in_use` lets one InUse of a handle exist, and this one is borrowed mutably.
         unsafe { &mut *self.handle.held.get() }
     }
 }
@@ -93,14 +83,11 @@ pub unsafe extern "C" fn contact_normal_solver_new(
             return Err(Refusal::null("solver"));
         }
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let (named, translated) = unsafe { (Named::read(scene)?, options::translate(options)?) };
-        let mut regions = Regions::default();
-        named.add_to(&mut regions, scene)?;
-        translated.add_to(&mut regions, options)?;
-        regions.output("solver", solver, 1)?;
-        regions.check()?;
-        // SAFETY: as above.
-        let new = Solver::new(&unsafe { named.translate()? }, &translated.options)?;
+        let Request { scene, options, .. } = unsafe {
+            let also = |regions: &mut Regions| regions.output("solver", solver, 1);
+            Request::read(scene, options, null_mut(), null_mut(), &mut Buffers::default(), also)?
+        };
+        let new = Solver::new(&scene, &options.options)?;
         // SAFETY: not null: room for a pointer.
         unsafe { solver.write(contact_normal_solver::holding(new)) };
         Ok(CONTACT_NORMAL_OK)
@@ -122,10 +109,11 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
-        let Request { scene, options, outputs } = unsafe { Request::read(scene, options, fields, report, buffers)? };
+        let Request { scene, options, outputs } =
+            unsafe { Request::read(scene, options, fields, report, buffers, |_| Ok(()))? };
         run_watched(solver, &scene, &options, &outputs, buffers)
     })
 }
@@ -140,10 +128,11 @@ pub unsafe extern "C" fn contact_normal_solver_set_influence(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, .. } = in_use.held();
         // SAFETY: NULL or a struct that declares its size, with a table of the size that it says.
-        let table = unsafe { structs::read(influence, "influence")?.translate(held.solver.grid())? };
-        held.solver.set_influence(table)?;
+        let table = unsafe { structs::read(influence, "influence")?.translate(solver.grid())? };
+        solver.set_influence(table)?;
         Ok(CONTACT_NORMAL_OK)
     })
 }
@@ -158,13 +147,13 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
-        let mut held = unsafe { InUse::begin(solver)? };
-        let Held { solver, buffers } = &mut *held;
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, buffers } = in_use.held();
         if fields.is_null() {
             return Err(Refusal::null("fields"));
         }
         // SAFETY: not null: a struct that declares its size.
-        let outputs = unsafe { Outputs::of(fields, std::ptr::null_mut())? };
+        let outputs = unsafe { Outputs::of(fields, null_mut())? };
         buffers.regions.clear();
         outputs.add_to(&mut buffers.regions, solver.grid().len())?;
         buffers.regions.check()?;

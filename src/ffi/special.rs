@@ -1,15 +1,16 @@
 //! Closed forms and coefficient tables.
 
-use super::arguments::count;
+use super::arguments::{count, required};
 use super::guard::guard;
 use super::influence::table_size;
+use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
-use crate::analytic;
+use crate::analytic::{self, Hertz};
 use crate::error::require;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
-use crate::scene::Bodies;
+use crate::scene::{Bodies, Load};
 
 /// The exact Hertz solution.
 #[repr(C)]
@@ -29,19 +30,12 @@ pub struct contact_normal_hertz_solution {
     pub area: f64,
 }
 
+/// The bodies of two values each.
 unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
-    for (name, pointer) in [("shear_modulus", shear_modulus), ("poisson_ratio", poisson_ratio)] {
-        if pointer.is_null() {
-            return Err(Refusal::null(name));
-        }
-    }
-    // SAFETY: not null: two values each, by the conventions of the ABI.
-    let bodies = unsafe {
-        Bodies {
-            shear_modulus: [shear_modulus.read(), shear_modulus.add(1).read()],
-            poisson_ratio: [poisson_ratio.read(), poisson_ratio.add(1).read()],
-        }
-    };
+    // SAFETY: NULL or two values each, by the conventions of the ABI.
+    let (moduli, ratios) =
+        unsafe { (required("shear_modulus", shear_modulus, 2)?, required("poisson_ratio", poisson_ratio, 2)?) };
+    let bodies = Bodies { shear_modulus: [moduli[0], moduli[1]], poisson_ratio: [ratios[0], ratios[1]] };
     bodies.check()?;
     Ok(bodies)
 }
@@ -64,25 +58,14 @@ pub unsafe extern "C" fn contact_normal_hertz(
         }
         // SAFETY: NULL or two values each, by the conventions of the ABI.
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
-        let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load {
-            super::CONTACT_NORMAL_PRESCRIBED_APPROACH => ("amount, the approach,", analytic::hertz),
-            super::CONTACT_NORMAL_PRESCRIBED_FORCE => ("amount, the force,", analytic::hertz_by_force),
-            other => {
-                return Err(Refusal::invalid(format!(
-                    "load is {other}; it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)"
-                )))
-            }
+        let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load_of(load, amount, amount)? {
+            Load::Approach(_) => ("amount, the approach,", analytic::hertz),
+            Load::Force(_) => ("amount, the force,", analytic::hertz_by_force),
         };
         require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;
-        let exact = exact(curvature_x, curvature_y, amount, compliance)?;
-        let value = contact_normal_hertz_solution {
-            semi_axis_x: exact.semi_axis_x,
-            semi_axis_y: exact.semi_axis_y,
-            max_pressure: exact.max_pressure,
-            approach: exact.approach,
-            force: exact.force,
-            area: exact.area,
-        };
+        let Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force, area } =
+            exact(curvature_x, curvature_y, amount, compliance)?;
+        let value = contact_normal_hertz_solution { semi_axis_x, semi_axis_y, max_pressure, approach, force, area };
         // SAFETY: not null: room for the struct.
         unsafe { solution.write(value) };
         Ok(CONTACT_NORMAL_OK)

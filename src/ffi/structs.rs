@@ -3,7 +3,7 @@
 
 use std::mem::size_of;
 
-use super::status::{Refusal, CONTACT_NORMAL_STRUCT_SIZE};
+use super::status::Refusal;
 
 /// A struct of the ABI.
 ///
@@ -17,7 +17,32 @@ pub unsafe trait Versioned: Copy {
     const FIRST_SIZE: usize;
     /// What its `_init` writes.
     fn defaults() -> Self;
+
+    /// What it is called in messages.
+    fn short_name() -> &'static str {
+        Self::NAME.trim_start_matches("contact_normal_")
+    }
 }
+
+/// Makes a struct [`Versioned`] that is what that asks for: `struct_size` first, integers, floats, raw pointers and optional function
+/// pointers only. Gives its size in the first version that had it, and the defaults that are not 0 or NULL.
+macro_rules! versioned {
+    ($name:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
+        // SAFETY: by the struct, see above.
+        unsafe impl $crate::ffi::structs::Versioned for $name {
+            const NAME: &'static str = stringify!($name);
+            const FIRST_SIZE: usize = $first_size;
+            fn defaults() -> Self {
+                // SAFETY: any bytes are valid.
+                let mut defaults: Self = unsafe { std::mem::zeroed() };
+                defaults.struct_size = size_of::<Self>() as i64;
+                $(defaults.$member = $value;)*
+                defaults
+            }
+        }
+    };
+}
+pub(super) use versioned;
 
 /// No struct of ours will ever be larger: a bound for what is read of longer ones.
 const LARGEST: usize = 4096;
@@ -30,10 +55,7 @@ pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> 
     // SAFETY: not null, and the caller's struct begins with its size, by the conventions of the ABI.
     let declared = unsafe { from.cast::<i64>().read_unaligned() };
     let refuse = |rule: &str| {
-        Err(Refusal::new(
-            CONTACT_NORMAL_STRUCT_SIZE,
-            format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME),
-        ))
+        Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME)))
     };
     let Ok(size) = usize::try_from(declared) else { return refuse("it must be positive") };
     if size < T::FIRST_SIZE {

@@ -81,18 +81,19 @@ impl Coefficients {
     }
 
     /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
-    /// [typical](Layer::typical) layer, and what has no inverse gets one.
+    /// [typical](Layer::typical) layer. What has no inverse gets one, but where a uniform layer gives it that: the typical layer of some
+    /// elements may be next to none.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
-        match &self.diagonal {
-            Some(layer) if ky == 0 => out[0] += layer.typical(),
-            Some(_) => {}
-            None => {
-                let constant = self.kernel.constant_for_inverse();
-                if constant != 0.0 {
-                    out.iter_mut().for_each(|value| *value += constant);
-                }
-            }
+        let constant = match &self.diagonal {
+            Some(layer) if layer.more().is_none() => 0.0,
+            _ => self.kernel.constant_for_inverse(),
+        };
+        if constant != 0.0 {
+            out.iter_mut().for_each(|value| *value += constant);
+        }
+        if let (Some(layer), 0) = (&self.diagonal, ky) {
+            out[0] += layer.typical();
         }
     }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::collected;
 
 /// What memory is for.
 const LAYER: &str = "the layer";
@@ -30,14 +30,6 @@ pub struct Layer {
     typical: f64,
 }
 
-/// Values that are computed, in memory that is asked for.
-fn collected(values: impl ExactSizeIterator<Item = f64>) -> Result<Vec<f64>> {
-    let mut kept = Vec::new();
-    reserve(&mut kept, values.len(), LAYER)?;
-    kept.extend(values);
-    Ok(kept)
-}
-
 impl Layer {
     /// Of uniform compliance c.
     pub fn uniform(c: f64) -> Layer {
@@ -47,7 +39,7 @@ impl Layer {
     /// Of one c per element, on coefficients with this `self_influence`.
     pub fn per_element(c: &[f64], self_influence: f64) -> Result<Layer> {
         let least = c.iter().copied().fold(f64::INFINITY, f64::min);
-        let more = Some(Arc::new(collected(c.iter().map(|c| c - least))?));
+        let more = Some(Arc::new(collected(c.iter().map(|c| c - least), LAYER)?));
         // The geometric mean of what waves meet of both.
         let short = SHORT * self_influence;
         let mean = c.iter().map(|c| (c + short).ln()).sum::<f64>() / c.len() as f64;
@@ -81,7 +73,7 @@ impl Layer {
     pub fn levels(&self, self_influence: f64) -> Result<Vec<(Layer, Vec<f64>)>> {
         let Some(more) = self.more() else { return Ok(vec![(self.clone(), Vec::new())]) };
         let short = SHORT * self_influence;
-        let meets = collected(more.iter().map(|more| (self.least + more + short).ln()))?;
+        let meets = collected(more.iter().map(|more| (self.least + more + short).ln()), LAYER)?;
         let (low, high) = meets.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
         let steps = ((high - low) / FACTOR.ln()).ceil().min(MOST_LEVELS - 1.0);
         let step = if steps > 0.0 { (high - low) / steps } else { 1.0 };
@@ -90,7 +82,7 @@ impl Layer {
             let typical = (meets_here.exp() - short).max(0.0);
             let weight =
                 |m: &f64| (0.5 * (meets_here - m)).exp() * (1.0 - (m - meets_here).abs() / step).max(0.0).sqrt();
-            Ok((Layer { typical, ..self.clone() }, collected(meets.iter().map(weight))?))
+            Ok((Layer { typical, ..self.clone() }, collected(meets.iter().map(weight), LAYER)?))
         };
         (0..=steps as usize).map(level).collect()
     }
@@ -107,6 +99,6 @@ impl Layer {
             let count = (columns.len() * rows.len()) as f64;
             rows.flat_map(|y| columns.clone().map(move |x| y * fine.mx + x)).map(|i| more[i]).sum::<f64>() / count
         };
-        Ok(Layer { more: Some(Arc::new(collected((0..coarse.len()).map(mean))?)), ..*self })
+        Ok(Layer { more: Some(Arc::new(collected((0..coarse.len()).map(mean), LAYER)?)), ..*self })
     }
 }

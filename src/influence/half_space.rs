@@ -57,7 +57,7 @@ pub struct HalfSpace {
 struct Shape {
     /// `q_k(t) = sum_j series[k][j] t^j`.
     series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
-    /// The integral of 1/rho, over dx, at offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row; NaN beyond. Empty if
+    /// The integral of 1/rho, over dx, at least at all offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row. Empty if
     /// there are too many.
     near: Vec<f64>,
     near_x: usize,
@@ -69,16 +69,13 @@ impl Shape {
         // Of a needle of an element there are more than can be counted.
         let count = |d: f64| ((reach / d) as usize).saturating_add(2);
         let (near_x, near_y) = (count(dx), count(dy));
-        let mut near = Vec::new();
-        if near_x.saturating_mul(near_y) <= MOST_KEPT {
-            let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
-            // Beyond 1.01 of the reach the series serves.
-            let is_near = |kx: f64, ky: f64| (kx * dx).hypot(ky * dy) <= 1.01 * reach;
-            near.extend(
-                offsets.map(|(kx, ky)| if is_near(kx, ky) { near_integral(kx, ky, dx, dy) / dx } else { f64::NAN }),
-            );
+        let series = multipole_series(dx, dy);
+        if near_x.saturating_mul(near_y) > MOST_KEPT {
+            return Shape { series, near: Vec::new(), near_x: 0 };
         }
-        Shape { series: multipole_series(dx, dy), near, near_x }
+        let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
+        let near = offsets.map(|(kx, ky)| near_integral(kx, ky, dx, dy) / dx).collect();
+        Shape { series, near, near_x }
     }
 }
 
@@ -128,14 +125,8 @@ impl HalfSpace {
     /// The integral of 1/rho at an offset nearer than the series reaches.
     fn near(&self, kx: usize, ky: usize) -> f64 {
         let Shape { near, near_x, .. } = &*self.shape;
-        // Nothing is kept where there is too much of it to be counted.
-        let is_kept = !near.is_empty() && kx < *near_x;
-        let kept = if is_kept { near.get(ky * near_x + kx).copied().unwrap_or(f64::NAN) } else { f64::NAN };
-        if kept.is_nan() {
-            near_integral(kx as f64, ky as f64, self.dx, self.dy)
-        } else {
-            kept * self.dx
-        }
+        let kept = if kx < *near_x { near.get(ky * near_x + kx) } else { None };
+        kept.map_or_else(|| near_integral(kx as f64, ky as f64, self.dx, self.dy), |kept| kept * self.dx)
     }
 }
 

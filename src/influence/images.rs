@@ -171,7 +171,7 @@ impl Far {
     }
 
     /// The polynomial's means over elements at the first offsets: in x and in y.
-    pub fn means(&self, near: &Near) -> [impl Iterator<Item = [f64; NODES]>; 2] {
+    pub fn means(&self, near: &Near) -> [impl ExactSizeIterator<Item = [f64; NODES]>; 2] {
         let means = |count: usize, d: f64| (0..count).map(move |k| chebyshev_means(k as f64, d));
         [means(near.offsets.0, near.element.0 / self.half.0), means(near.offsets.1, near.element.1 / self.half.1)]
     }

@@ -17,7 +17,7 @@ mod images;
 mod patches;
 mod periodic;
 mod row_tables;
-mod special;
+pub mod special;
 mod table;
 
 use std::fmt::Debug;

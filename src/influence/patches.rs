@@ -11,7 +11,10 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::collected;
+
+/// What memory is for.
+const PATCHES: &str = "the patches";
 
 /// Patches and factors.
 #[derive(Clone, Debug)]
@@ -23,19 +26,11 @@ pub struct Patches {
     factors: Arc<[f64]>,
 }
 
-/// Patches of elements, in memory that is asked for.
-fn collected(patches: impl ExactSizeIterator<Item = u16>) -> Result<Arc<Vec<u16>>> {
-    let mut kept = Vec::new();
-    reserve(&mut kept, patches.len(), "the patches")?;
-    kept.extend(patches);
-    Ok(Arc::new(kept))
-}
-
 impl Patches {
     /// The patch of each element, 0 to `count - 1`, and the factors between them.
     pub fn new(count: usize, patch: impl ExactSizeIterator<Item = u16>, factors: &[f64]) -> Result<Patches> {
         assert_eq!(factors.len(), count * count);
-        Ok(Patches { count, patch: collected(patch)?, factors: factors.into() })
+        Ok(Patches { count, patch: Arc::new(collected(patch, PATCHES)?), factors: factors.into() })
     }
 
     /// Number of patches.
@@ -68,6 +63,6 @@ impl Patches {
         let factor = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
         let (by_x, by_y) = (factor(fine.mx, coarse.mx), factor(fine.my, coarse.my));
         let first = |i: usize| self.patch[fine.index(by_x * (i % coarse.mx), by_y * (i / coarse.mx))];
-        Ok(Patches { patch: collected((0..coarse.len()).map(first))?, ..self.clone() })
+        Ok(Patches { patch: Arc::new(collected((0..coarse.len()).map(first), PATCHES)?), ..self.clone() })
     }
 }

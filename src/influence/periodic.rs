@@ -31,7 +31,7 @@ use super::images::{lengths, offsets, Far, Lines, Near, NODES};
 use super::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{reserve, zeros};
+use crate::memory::{collected, zeros};
 
 /// What memory is for.
 const PERIODIC: &str = "the coefficients of a period";
@@ -69,7 +69,7 @@ impl Periodic {
         let periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, far, table: Arc::default(), row };
         let near = periodic.far.near(grid);
         periodic.add_images(grid, &near, &mut table)?;
-        periodic.add_lines(grid, &near, &mut table);
+        periodic.add_lines(grid, &near, &mut table)?;
         if x && y {
             periodic.remove_mean(&mut table);
         }
@@ -82,9 +82,7 @@ impl Periodic {
         let half_space = self.half_space.for_element(near.element.0, near.element.1);
         let strength = half_space.compliance() * (near.element.0 * near.element.1);
         let [means_x, means_y] = far.means(near);
-        let mut in_x: Vec<[f64; NODES]> = Vec::new();
-        reserve(&mut in_x, near.offsets.0, PERIODIC)?;
-        in_x.extend(means_x);
+        let in_x = collected(means_x, PERIODIC)?;
         let (last_x, last_y) = (far.images.0 * grid.mx, (far.images.1 * grid.my) as i64);
         let mut from_image = zeros(last_x + near.offsets.0, PERIODIC)?;
         for ((ky, in_y), out) in (0..).zip(means_y).zip(table.chunks_exact_mut(self.row)) {
@@ -107,26 +105,27 @@ impl Periodic {
 
     /// Adds the means of lines of images: all there is at far offsets; at near ones the rest of an element that was cut off, and what
     /// a second period changes.
-    fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) {
+    fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let (length_x, length_y) = lengths(grid);
         let (row, c) = (self.row, self.half_space.compliance());
-        let line = match self.far.lines {
-            None => return,
-            Some(Lines::X) => Line { d: grid.dy, cut: near.element.1, near: near.offsets.1, width: length_y },
-            Some(Lines::Y) => Line { d: grid.dx, cut: near.element.0, near: near.offsets.0, width: length_x },
+        let (line, strength) = match self.far.lines {
+            None => return Ok(()),
+            Some(Lines::X) => (
+                Line { d: grid.dy, cut: near.element.1, near: near.offsets.1, width: length_y },
+                2.0 * c * grid.dx / length_x,
+            ),
+            Some(Lines::Y) => (
+                Line { d: grid.dx, cut: near.element.0, near: near.offsets.0, width: length_x },
+                2.0 * c * grid.dy / length_y,
+            ),
         };
-        let two = self.x && self.y;
-        if self.far.lines == Some(Lines::X) {
-            for (k, out) in table.chunks_exact_mut(row).enumerate() {
-                let mean = 2.0 * c * grid.dx / length_x * line.beyond(k, two);
-                out.iter_mut().for_each(|value| *value += mean);
-            }
-        } else {
-            for k in 0..row {
-                let mean = 2.0 * c * grid.dy / length_y * line.beyond(k, two);
-                table[k..].iter_mut().step_by(row).for_each(|value| *value += mean);
-            }
+        let (two, along_x) = (self.x && self.y, self.far.lines == Some(Lines::X));
+        let count = if along_x { table.len() / row } else { row };
+        let means = collected((0..count).map(|k| strength * line.beyond(k, two)), PERIODIC)?;
+        for (i, value) in table.iter_mut().enumerate() {
+            *value += means[if along_x { i / row } else { i % row }];
         }
+        Ok(())
     }
 
     fn remove_mean(&self, table: &mut [f64]) {

@@ -41,13 +41,6 @@ impl<T: Real> Operator<T> {
         period: (usize, usize),
         threads: &Threads,
     ) -> Result<Option<Operator<T>>> {
-        let mut inverse = Operator::of_period(grid, period, threads);
-        Ok(inverse.renew_inverse(coefficients, factor, &mut SetUp::default())?.then_some(inverse))
-    }
-
-    /// Computes an [inverse](Self::inverse_circulant) anew, of other coefficients times a factor, in the memory that there is. False if
-    /// it is not positive: then it is of no use before it is computed again.
-    pub fn renew_inverse(&mut self, coefficients: &Coefficients, factor: f64, set_up: &mut SetUp) -> Result<bool> {
         let positive = AtomicBool::new(true);
         let finish = |value: f64| {
             if !(value > 0.0) {
@@ -55,9 +48,10 @@ impl<T: Real> Operator<T> {
             }
             1.0 / (factor * value)
         };
+        let mut inverse = Operator::of_period(grid, period, threads);
+        let given = (period.0 / 2 + 1, period.1 / 2 + 1);
         let fill = |ky: i64, row: &mut [f64]| coefficients.fill_even_row(ky, row);
-        let given = |period: (usize, usize)| (period.0 / 2 + 1, period.1 / 2 + 1);
-        self.set_even(set_up, |period| Even { period, given: given(period), fill, finish })?;
-        Ok(positive.into_inner())
+        inverse.set_even(&Even { given, fill, finish }, &mut SetUp::default())?;
+        Ok(positive.into_inner().then_some(inverse))
     }
 }

@@ -33,7 +33,7 @@ impl<T> Shared<T> {
     }
 }
 
-/// Segments `work` on each block of columns of the matrix `data`, `width` columns wide, a run of blocks per piece of scratch.
+/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, a run of blocks per piece of scratch.
 pub fn for_each_block<T: Real, S: Send>(
     data: &mut [Complex<T>],
     width: usize,

@@ -15,7 +15,7 @@ use super::rows::{Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::reserve;
+use crate::memory::{collected, reserve};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -38,8 +38,6 @@ pub(super) struct Convolution<T: Real> {
 
 /// Even coefficients of both directions.
 pub(super) struct Even<F, G> {
-    /// The period.
-    pub period: (usize, usize),
     /// Coefficients that are not zero: offsets less than that.
     pub given: (usize, usize),
     /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
@@ -96,17 +94,10 @@ impl<T: Real> Convolution<T> {
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => {
-                let mut to = Vec::new();
-                reserve(&mut to, from.len(), SPECTRUM)?;
-                to.extend(from.iter().map(|from| convert(*from)));
-                Spectrum::Even(to)
-            }
+            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|from| convert(*from)), SPECTRUM)?),
             Spectrum::General(from) => {
-                let mut to = Vec::new();
-                reserve(&mut to, from.len(), SPECTRUM)?;
-                to.extend(from.iter().map(|from| Complex::new(convert(from.re), convert(from.im))));
-                Spectrum::General(to)
+                let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
+                Spectrum::General(collected(from.iter().map(convert), SPECTRUM)?)
             }
         };
         Ok(Convolution { columns: ColumnTransform::new(self.columns.length()), spectrum })
@@ -160,12 +151,12 @@ impl<T: Real> Convolution<T> {
     }
 
     /// Computes the spectrum of even coefficients, in the memory that there is.
-    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, threads: &Threads, set_up: &mut SetUp) -> Result<()>
+    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, px: usize, threads: &Threads, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        let (px, py) = even.period;
+        let py = self.columns.length();
         let (row_given, rows_given) = even.given;
         let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
         let nb = rows.bins();

@@ -8,7 +8,6 @@ pub mod dense;
 pub mod fft;
 #[allow(clippy::module_inception)]
 mod operator;
-mod patches;
 mod row_tables;
 mod rows;
 

@@ -12,13 +12,12 @@ use std::ops::Range;
 use super::columns::BLOCK;
 use super::convolution::{Convolution, Even, SetUp};
 use super::fft::{good_length, Complex, Real, RowTransform};
-use super::patches::Mask;
 use super::row_tables::PerRow;
 use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::Coefficients;
-use crate::memory::{reserve, zeros};
+use crate::influence::{Coefficients, Patches};
+use crate::memory::{collected, reserve, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -37,7 +36,7 @@ pub struct Operator<T: Real> {
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
-    coupling: Option<Mask<T>>,
+    coupling: Option<Patches>,
 }
 
 /// Memory that a product needs, so that it allocates nothing.
@@ -133,7 +132,7 @@ impl<T: Real> Operator<T> {
         self.diagonal.clear();
         reserve(&mut self.diagonal, diagonal.len(), DIAGONAL)?;
         self.diagonal.extend(diagonal.iter().map(|d| T::of(factor * d)));
-        self.coupling = coefficients.patches().map(Mask::new).transpose()?;
+        self.coupling = coefficients.patches().cloned();
         Ok(())
     }
 
@@ -147,45 +146,38 @@ impl<T: Real> Operator<T> {
         if coefficients.is_even(grid) {
             let repeats = coefficients.repeats(grid);
             let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
-            return self.set_even(set_up, |period| Even {
-                period,
+            let even = Even {
                 given: (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
                 fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
-                finish: move |value| factor * value,
-            });
+                finish: |value| factor * value,
+            };
+            return self.set_even(&even, set_up);
         }
         let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
         convolution.set_general(coefficients, grid, (rows.transform.length(), factor), &rows.threads, set_up)
     }
 
     /// Computes a spectrum of even coefficients, of the period that there is.
-    pub(super) fn set_even<F, G>(
-        &mut self,
-        set_up: &mut SetUp,
-        even: impl FnOnce((usize, usize)) -> Even<F, G>,
-    ) -> Result<()>
+    pub(super) fn set_even<F, G>(&mut self, even: &Even<F, G>, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
         let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        let period = (rows.transform.length(), convolution.columns.length());
-        convolution.set_even(&even(period), &rows.threads, set_up)
+        convolution.set_even(even, rows.transform.length(), &rows.threads, set_up)
     }
 
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
-        let mut diagonal = Vec::new();
-        reserve(&mut diagonal, self.diagonal.len(), DIAGONAL)?;
-        diagonal.extend(self.diagonal.iter().map(|d| S::of(factor * d.to_double())));
+        let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         Ok(Operator {
-            rows: self.rows.in_precision(),
+            rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
                 Columns::Convolution(convolution) => Columns::Convolution(convolution.in_precision(factor)?),
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },
             diagonal,
-            coupling: self.coupling.as_ref().map(Mask::in_precision).transpose()?,
+            coupling: self.coupling.clone(),
         })
     }
 
@@ -194,7 +186,7 @@ impl<T: Real> Operator<T> {
         let transform = &self.rows.transform;
         let (length, sums) = match &self.columns {
             Columns::Convolution(convolution) => (convolution.columns.length(), 0),
-            Columns::PerRow(per_row) => (self.rows.my, per_row.scratch()),
+            Columns::PerRow(_) => (self.rows.my, 2 * self.rows.my),
         };
         let piece = |_| {
             let mut scratch = transform.scratch();
@@ -220,7 +212,7 @@ impl<T: Real> Operator<T> {
             Columns::Convolution(convolution) => convolution.bytes(),
             Columns::PerRow(per_row) => per_row.bytes(),
         };
-        columns + size_of_val(&self.diagonal[..]) + self.coupling.as_ref().map_or(0, Mask::bytes)
+        columns + size_of_val(&self.diagonal[..])
     }
 
     /// `u = A p`.
@@ -230,7 +222,7 @@ impl<T: Real> Operator<T> {
         let Workspace { product, masked, .. } = workspace;
         match &self.coupling {
             None => self.without_coupling(p, u, product),
-            Some(mask) => mask.apply(p, u, masked, |p, u| self.without_coupling(p, u, product)),
+            Some(coupling) => apply_coupled(coupling, p, u, masked, |p, u| self.without_coupling(p, u, product)),
         }
     }
 
@@ -238,9 +230,9 @@ impl<T: Real> Operator<T> {
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         assert!(p.len() == self.rows.mx * self.rows.my);
         let Workspace { product, masked, given } = workspace;
-        if let Some(mask) = &self.coupling {
+        if let Some(coupling) = &self.coupling {
             given.copy_from_slice(p);
-            return mask.apply(given, p, masked, |p, u| self.without_coupling(p, u, product));
+            return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
         }
         let loaded = self.rows.forward(p, product);
         self.convolve(loaded, product);
@@ -272,6 +264,31 @@ impl<T: Real> Operator<T> {
         match &self.columns {
             Columns::Convolution(convolution) => convolution.apply(&self.rows, loaded, product),
             Columns::PerRow(per_row) => per_row.apply(&self.rows, loaded, product),
+        }
+    }
+}
+
+/// `u = A p` with patches, by products `multiply(p, u)` without factors: one for each patch,
+///
+/// ```text
+/// u on patch a = A (sum over patches b of F(a, b) p on b)
+/// ```
+fn apply_coupled<T: Real>(
+    patches: &Patches,
+    p: &[T],
+    u: &mut [T],
+    [scaled, product]: &mut [Vec<T>; 2],
+    mut multiply: impl FnMut(&[T], &mut [T]),
+) {
+    for a in 0..patches.count() {
+        for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(patches.patch()) {
+            *scaled = *p * T::of(patches.factor(a, b.into()));
+        }
+        multiply(scaled, product);
+        for ((u, product), &b) in u.iter_mut().zip(&*product).zip(patches.patch()) {
+            if usize::from(b) == a {
+                *u = *product;
+            }
         }
     }
 }

@@ -15,7 +15,7 @@ use super::fft::{Complex, Real, RowTransform};
 use super::rows::{Product, Rows};
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
-use crate::memory::zeros;
+use crate::memory::{collected, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -73,18 +73,12 @@ impl<T: Real> PerRow<T> {
 
     /// The same in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
-        let mut values = zeros(self.values.len(), MATRICES)?;
-        values.iter_mut().zip(&self.values).for_each(|(to, from)| *to = S::of(factor * from.to_double()));
+        let values = collected(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
         Ok(PerRow { my: self.my, planes: self.planes, values })
     }
 
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
-    }
-
-    /// Numbers that [`multiply`](Self::multiply) needs for sums.
-    pub fn scratch(&self) -> usize {
-        2 * self.my
     }
 
     /// Multiplies all columns; rows `loaded` hold pressures.

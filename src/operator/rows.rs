@@ -32,11 +32,6 @@ impl<T: Real> Rows<T> {
         Rows { mx, my, transform: RowTransform::new(period), threads: threads.clone() }
     }
 
-    /// The same in another precision.
-    pub fn in_precision<S: Real>(&self) -> Rows<S> {
-        Rows::new(self.mx, self.my, self.transform.length(), &self.threads)
-    }
-
     /// Transforms the rows that hold pressures; returns which.
     pub fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
         let loaded = rows_with_pressure(p, self.mx);

@@ -79,9 +79,8 @@ impl<'a> Scene<'a> {
         }
         if let Some(i) = h.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
             return Err(Error::NotFinite(format!(
-                "undeformed_distance of element ({}, {}) is {}; it must be a number, or +infinity where there is no surface",
-                i % self.grid.mx,
-                i / self.grid.mx,
+                "undeformed_distance of {} is {}; it must be a number, or +infinity where there is no surface",
+                self.grid.element(i),
                 h[i]
             )));
         }

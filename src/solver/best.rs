@@ -81,9 +81,13 @@ impl Best {
             problem.refresh(state, set);
         }
         let found = violation(&Survey::of(state), set);
-        if by_approach && !S::FIXED && !(found <= 1.0) {
-            state.unload();
-            state.start(problem.self_influence());
+        if by_approach && !(found <= 1.0) {
+            state.p.fill(0.0);
+            state.u.fill(0.0);
+            if !S::FIXED {
+                state.unload();
+                state.start(problem.self_influence());
+            }
         }
         monitor.count_products(problem.take_products(), problem.work);
     }

@@ -150,7 +150,7 @@ pub fn is_without_contact(state: &mut State, fixed: bool) -> bool {
     let lowest = state.h.iter().copied().fold(f64::INFINITY, f64::min);
     let nothing = match state.load {
         Load::Approach(approach) => !fixed && lowest > approach,
-        Load::Force(force) => force == 0.0,
+        Load::Force(force) => !fixed && force == 0.0,
     };
     if nothing {
         state.unload();

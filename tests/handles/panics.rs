@@ -84,3 +84,26 @@ fn on_a_worker() {
         assert!(p.iter().all(|&p| if panicked { p == -7.0 } else { p >= 0.0 }), "block {block}");
     }
 }
+
+/// Set in the process that panics below.
+const CHILD: &str = "CONTACT_NORMAL_TEST_PANICS";
+
+/// In a process of its own: the test harness catches what a test prints, so only that shows what comes out on stderr; and the demand
+/// for a panic is not that of the test above.
+#[test]
+fn a_panic_is_not_announced() {
+    if std::env::var_os(CHILD).is_some() {
+        let mut call = Call::new();
+        BLOCKS.store(0, Ordering::Relaxed);
+        let text = "internal error: on demand of a test; please report it".to_string();
+        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_INTERNAL, text));
+        return;
+    }
+    let itself = std::env::current_exe().expect("this test's path");
+    let arguments = ["--exact", "a_panic_is_not_announced", "--nocapture"];
+    let output = std::process::Command::new(itself).args(arguments).env(CHILD, "1").output().expect("a process");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("1 passed"), "the child ran no test");
+    assert!(said.trim().is_empty(), "{said}");
+}

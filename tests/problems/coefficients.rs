@@ -120,11 +120,6 @@ fn a_renewed_operator_is_a_new_one() {
         renewed.renew(&other, 1.0, &grid, &mut set_up).unwrap();
         assert_eq!(product(&renewed), product(&Operator::new(&other, &grid, &Threads::One).unwrap()));
     }
-    let period = Operator::<f64>::circulant_period(&half_space(1.0), &grid);
-    let inverse = |c: f64| Operator::inverse_circulant(&half_space(c), &grid, period, &Threads::One).unwrap().unwrap();
-    let mut renewed = inverse(1.0);
-    assert!(renewed.renew_inverse(&half_space(2.5), 1.0, &mut set_up).unwrap());
-    assert_eq!(product(&renewed), product(&inverse(2.5)));
 }
 
 /// `integral over |s| < dx/2 of -2 log|2 sin(pi (x - s)/L)|` by its Fourier series, `sum 2/n cos(2 pi n x/L)`: with factors of

@@ -23,6 +23,9 @@ const AIM: f64 = 0.75;
 /// The first u on the finest grid is of single precision if the noise that this may leave in p is at most so many tolerances. Errors
 /// of transforms are some tenth of `EPSILON u`: what is left is below ten tolerances in the largest pressure.
 const NOISE: f64 = 25.0;
+/// Iterations at most before a certificate: with the [patience](Step::habits) of three of them, what does not halve its violation in 180
+/// iterations is handed over. Whatever converges needs fewer for all of its digits, or halves it in some 40.
+const ROUND: u64 = 60;
 /// A last update is believed where the residual by a fresh product is at most this many times the recursive one.
 const BELIEVED: f64 = 2.0;
 
@@ -178,7 +181,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
             tolerance: if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance },
             by_update: goal.by_update(),
             fixed: S::FIXED,
-            iterations: goal.max_cycles.saturating_sub(monitor.count.cycles),
+            iterations: goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND),
         };
         self.finest.run(state, set, was, &stopping, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;

@@ -117,3 +117,37 @@ fn the_other_calls_refuse_overlaps_too() {
     let status = unsafe { contact_normal_solver_fields(handle.0, &mut fields) };
     assert_refused((status, last_error()), INVALID, &["pressure", "displacement", "overlap"]);
 }
+
+/// Every placement of four arrays in a row of places of 8 bytes, beside the definition: distances (3 places, read), the factors of one
+/// patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
+#[test]
+fn what_is_written_overlaps_with_nothing() {
+    const PLACES: usize = 9;
+    let patch = [0i32; 3];
+    let mut refused = [0, 0];
+    for k in 0..7 * PLACES * 7 * (PLACES - 1) {
+        let (h, factor, pressure, contact) = (k % 7, k / 7 % PLACES, k / (7 * PLACES) % 7, k / (49 * PLACES));
+        // In halves of a place: start, end, whether it is written.
+        let regions = [(h, 6, false), (factor, 2, false), (pressure, 6, true), (contact, 3, true)];
+        let regions = regions.map(|(place, length, is_written)| (2 * place, 2 * place + length, is_written));
+        let overlap = (0..4).any(|i| {
+            let (a, b, first) = regions[i];
+            regions[..i].iter().any(|&(c, d, second)| a < d && c < b && (first || second))
+        });
+        let mut places = [1.0; PLACES];
+        let at = |place: usize, places: &mut [f64; PLACES]| places[place..].as_mut_ptr();
+        let mut patches = initialised(contact_normal_patches_init);
+        (patches.count, patches.patch, patches.factors) = (1, patch.as_ptr(), at(factor, &mut places));
+        let mut scene = initialised(contact_normal_scene_init);
+        (scene.mx, scene.my, scene.dx, scene.dy) = (3, 1, 1.0, 1.0);
+        (scene.shear_modulus, scene.undeformed_distance) = ([1.0; 2], at(h, &mut places));
+        scene.patches = &patches;
+        let mut fields = initialised(contact_normal_fields_init);
+        (fields.pressure, fields.contact) = (at(pressure, &mut places), at(contact, &mut places).cast());
+        // SAFETY: structs with their arrays.
+        let status = unsafe { contact_normal_solve(&scene, null(), &mut fields, null_mut()) };
+        assert_eq!(status, if overlap { INVALID } else { CONTACT_NORMAL_OK }, "{regions:?}: {}", last_error());
+        refused[usize::from(overlap)] += 1;
+    }
+    assert!(refused.iter().all(|count| *count > 0), "{refused:?}");
+}
