@@ -14,7 +14,7 @@
 //!
 //! The methods are those of J. Zhao, E.A.H. Vollebregt and C.W. Oosterlee, "A Full Multigrid Method for Linear
 //! Complementarity Problems arising from Elastic Normal Contact Problems" ("the paper"; its section and step numbers are
-//! used throughout), Kalker's NORM, and the production method [`projected_cg`], which is what `AUTO` is.
+//! used throughout), Kalker's NORM, and the production method [`methods::projected_cg`], with which `AUTO` begins.
 //!
 //! ```
 //! use contact_normal::grid::Grid;
@@ -39,19 +39,18 @@
 //!
 //! # Map of the modules
 //!
-//! Arrows point one way: `ffi -> solver -> {multigrid, active_set, norm, projected_cg} -> operator -> influence -> grid, error`.
+//! Arrows point one way: `ffi -> solver -> methods -> contact, progress -> operator -> influence -> grid, error`.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`scene`] | what is simulated: bodies, undeformed distance, load, effects |
-//! | [`effects`] | one file per effect, and the list of them |
-//! | [`solver`] | how: options, the loops of the methods as prose, the report and its ledger; an accuracy instead of a grid |
-//! | [`projected_cg`] | projected preconditioned conjugate gradients on one grid, and its window |
-//! | [`multigrid`] | section 4.2: grids, transfers, smoothers, the V-cycle |
-//! | [`active_set`] | steps 4.1 and 4.2, the guard against cycling, the certificate |
-//! | [`norm`] | section 3: the inner solves of NORM |
+//! | [`scene`] | what is simulated: bodies, undeformed distance, load, and the effects that it names |
+//! | [`effects`] | one file per effect, and the one list of them |
+//! | [`influence`] | kernels (half-space, periodic, the caller's tables) and the coefficients made of them |
 //! | [`operator`] | u = A p by FFT, and by direct summation |
-//! | [`influence`] | kernels (Love's, periodic, the caller's own tables), diagonal and coupling |
+//! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
+//! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
+//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
+//! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`analytic`] | the Hertz solution |
 //! | [`threads`] | the pool |
 //! | [`ffi`] | the C ABI, translation only |

@@ -1,0 +1,64 @@
+//! Unit tests of `solver/iterate.rs`.
+
+use super::*;
+use crate::contact::NonNegative;
+use crate::grid::Grid;
+use crate::influence::{Coefficients, HalfSpace};
+use crate::methods::descent::Descent;
+use crate::progress::Criterion;
+use crate::scene::Load;
+use crate::threads::Threads;
+
+/// A wavy punch, that makes elements leave and enter.
+fn scene(load: Load, wave: f64) -> (Problem, State) {
+    let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
+    let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
+    let h = (0..grid.len()).map(h).collect();
+    let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
+    let problem = Problem::new(grid, influence, &Threads::One).expect("a problem");
+    (problem, State::new(grid, h, load, 0.0).expect("a state"))
+}
+
+fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Stop {
+    let goal = Goal { criterion: Criterion::Residual, tolerance: 1e-9, max_cycles: cycles };
+    let (mut best, mut monitor) = (Best::default(), Monitor::silent());
+    best.forget();
+    let mut descent = Descent::default();
+    iterate(&mut descent, problem, state, NonNegative, &goal, &mut best, &mut monitor).expect("a solve")
+}
+
+#[test]
+fn every_cycle_of_descent_lowers_the_energy_until_the_conditions_hold() {
+    let waves = (0..20).map(|k| 0.1 + 0.15 * f64::from(k));
+    for (load, wave) in waves.flat_map(|wave| [(Load::Approach(0.015), wave), (Load::Force(0.02), wave)]) {
+        let (mut problem, mut state) = scene(load, wave);
+        let mut last = f64::INFINITY;
+        for cycle in 0.. {
+            assert!(cycle < 200, "{load:?}: no end");
+            let stop = descend(&mut problem, &mut state, 1);
+            let distance = |i: usize| state.h[i] - if let Load::Approach(a) = load { a } else { 0.0 };
+            let energy: f64 = (0..state.p.len()).map(|i| state.p[i] * (0.5 * state.u[i] + distance(i))).sum();
+            assert!(state.p.iter().all(|p| *p >= 0.0));
+            if stop == Stop::Converged {
+                break;
+            }
+            // Some round-off of sums of 154 terms where the decrease is below that.
+            assert!(energy < last + 1e-13 * last.abs(), "{load:?}, cycle {cycle}: {energy:e} after {last:e}");
+            last = energy;
+        }
+        let survey = Survey::of(&state);
+        assert!(survey.residual <= 1e-9 * survey.distance && survey.penetration <= 1e-9, "{survey:?}");
+        assert!(state.contact_count() > 10 && state.contact_count() < 154, "{}", state.contact_count());
+    }
+}
+
+#[test]
+fn descent_takes_over_from_any_pressures() {
+    for start in [0.0, -1.0, 1e6, f64::NAN] {
+        let (mut problem, mut state) = scene(Load::Force(0.05), 2.1);
+        state.p.fill(start);
+        assert_eq!(descend(&mut problem, &mut state, 1000), Stop::Converged, "from {start}");
+        // Sums of 154 pressures.
+        assert!((state.force() - 0.05).abs() <= 1e-15);
+    }
+}
