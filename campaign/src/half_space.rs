@@ -72,8 +72,9 @@ pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, b
             }
         }
     }
-    // Sums of terms of which each is good to some units of round-off, and the trapezoidal rule's 7e-18.
-    Quadrant { mx, values, rounding: 64.0 * f64::EPSILON * sizes }
+    // Sums of terms of which each is good to some units of round-off, and the trapezoidal rule's 7e-18. The modes of a single element of
+    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient.
+    Quadrant { mx, values, rounding: 64.0 * f64::EPSILON * (sizes + c * dx.max(dy)) }
 }
 
 /// Mode j = 0 for ky = 0..my.

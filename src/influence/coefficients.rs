@@ -81,13 +81,13 @@ impl Coefficients {
     }
 
     /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
-    /// [typical](Layer::typical) layer. What has no inverse gets one, but where a uniform layer gives it that: the typical layer of some
-    /// elements may be next to none.
+    /// [typical](Layer::typical) layer. Where a uniform pressure displaces nothing it gets a response: that of the layer, which is its
+    /// mean, or without one the kernel's own.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
         let constant = match &self.diagonal {
-            Some(layer) if layer.more().is_none() => 0.0,
-            _ => self.kernel.constant_for_inverse(),
+            Some(layer) => self.kernel.constant_for(layer.mean() - layer.typical()),
+            None => self.kernel.constant_for_inverse(),
         };
         if constant != 0.0 {
             out.iter_mut().for_each(|value| *value += constant);

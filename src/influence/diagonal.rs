@@ -28,12 +28,14 @@ pub struct Layer {
     /// What is more, per element; none when c is uniform.
     more: Option<Arc<Vec<f64>>>,
     typical: f64,
+    /// The mean c: what a uniform pressure meets.
+    mean: f64,
 }
 
 impl Layer {
     /// Of uniform compliance c.
     pub fn uniform(c: f64) -> Layer {
-        Layer { least: c, more: None, typical: c }
+        Layer { least: c, more: None, typical: c, mean: c }
     }
 
     /// Of one c per element, on coefficients with this `self_influence`.
@@ -42,8 +44,9 @@ impl Layer {
         let more = Some(Arc::new(collected(c.iter().map(|c| c - least), LAYER)?));
         // The geometric mean of what waves meet of both.
         let short = SHORT * self_influence;
-        let mean = c.iter().map(|c| (c + short).ln()).sum::<f64>() / c.len() as f64;
-        Ok(Layer { least, more, typical: (mean.exp() - short).max(0.0) })
+        let n = c.len() as f64;
+        let geometric = (c.iter().map(|c| (c + short).ln()).sum::<f64>() / n).exp();
+        Ok(Layer { least, more, typical: (geometric - short).max(0.0), mean: c.iter().sum::<f64>() / n })
     }
 
     /// What is added to the coefficient at offset (0, 0), everywhere.
@@ -54,6 +57,11 @@ impl Layer {
     /// The one c of preconditioners.
     pub fn typical(&self) -> f64 {
         self.typical
+    }
+
+    /// The mean c.
+    pub fn mean(&self) -> f64 {
+        self.mean
     }
 
     /// What is added to the displacements of single elements: for the operator.

@@ -75,6 +75,11 @@ pub trait Kernel: Debug + Send + Sync {
         (false, false)
     }
 
+    /// Added to all coefficients, this gives a uniform pressure the response asked for where it has none; 0 where it has.
+    fn constant_for(&self, _response: f64) -> f64 {
+        0.0
+    }
+
     /// Added to all coefficients, this gives A an inverse where a uniform pressure displaces nothing; 0 where A has one.
     fn constant_for_inverse(&self) -> f64 {
         0.0

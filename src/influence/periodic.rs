@@ -155,14 +155,18 @@ impl Kernel for Periodic {
         (self.x && grid.mx == self.mx, self.y && grid.my == self.my)
     }
 
+    fn constant_for(&self, response: f64) -> f64 {
+        match self.x && self.y {
+            true => response / (self.mx as f64 * self.my as f64),
+            false => 0.0,
+        }
+    }
+
     // The mode of zero gets about the response `2 pi c/|q|` of the longest wave.
     fn constant_for_inverse(&self) -> f64 {
-        if !(self.x && self.y) {
-            return 0.0;
-        }
         let (dx, dy) = self.half_space.element();
         let longest = f64::max(self.mx as f64 * dx, self.my as f64 * dy);
-        self.half_space.compliance() * longest / (self.mx as f64 * self.my as f64)
+        self.constant_for(self.half_space.compliance() * longest)
     }
 
     // An odd count makes it longer by an element: good enough to start from.
