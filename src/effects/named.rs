@@ -123,10 +123,14 @@ impl Named {
             (Some(Kept::Number(kept)), Value::Number(number)) => {
                 Some(format!("{name} is {number}; this solver was set up with {kept}"))
             }
-            (Some(Kept::Shared(_)), _) => Some(format!(
-                "{name} holds other coefficients than those of this solver; leave them out, or set up another solver (for influence: use \
-                 contact_normal_solver_set_influence)"
-            )),
+            (Some(Kept::Shared(kept)), Value::Shared(values)) => {
+                let other = kept.iter().zip(&**values).find(|(kept, now)| kept != now);
+                let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
+                Some(format!(
+                    "{name} holds other coefficients: {now} where those of this solver have {kept}; leave them out, or set them first (for influence: \
+                     contact_normal_solver_set_influence)"
+                ))
+            }
             (Some(_), _) => Some(format!("{name} has other values than this solver was set up with")),
             (None, _) => Some(format!("{name} is given, but this solver was set up without")),
         }

@@ -66,14 +66,15 @@ impl Methods {
         monitor: &mut Monitor<'_>,
     ) -> Result<Stop> {
         self.best.forget();
-        let mut stop = Stop::Stagnated;
-        for (k, &stage) in stages.iter().enumerate() {
-            let from_nothing = match k {
-                0 => match self.take_over(stage, state, set, from, goal)? {
+        let has_direct = self.direct.is_some();
+        let (mut stop, mut first) = (Stop::Stagnated, true);
+        for &stage in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct) {
+            let from_nothing = match std::mem::take(&mut first) {
+                true => match self.take_over(stage, state, set, from, goal)? {
                     Some(from_nothing) => from_nothing,
                     None => return Ok(Stop::Converged),
                 },
-                _ => self.hand_over(stage, problem, state, set, monitor),
+                false => self.hand_over(stage, problem, state, set, monitor),
             };
             if from_nothing {
                 self.start(stage, problem, state, set, goal, monitor)?;
@@ -137,11 +138,11 @@ impl Methods {
         set: S,
         monitor: &mut Monitor<'_>,
     ) -> bool {
-        log::info!("no further progress on this scene: {stage:?} takes over");
         // What the direct solve leaves, having done nothing, is the start of the next.
         if stage == Stage::ProjectedCg {
             return false;
         }
+        log::info!("no further progress on this scene: {stage:?} takes over");
         self.best.restore(problem, state, set, monitor);
         stage == Stage::FullMultigrid && !(self.best.violation() <= WORTHLESS)
     }

@@ -173,7 +173,7 @@ macro_rules! layout {
 #[test]
 fn ctypes_structs_have_the_layout_of_the_library() {
     let mut ours: BTreeMap<String, usize> = BTreeMap::new();
-    layout!(ours, "Influence", contact_normal_influence, struct_size, cx, cy, coefficients);
+    layout!(ours, "Influence", contact_normal_influence, struct_size, cx, cy, coefficients, scale);
     layout!(
         ours,
         "Scene",
@@ -197,7 +197,7 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         patches,
         row_tables
     );
-    layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients);
+    layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
     layout!(ours, "Patches", contact_normal_patches, struct_size, count, reserved, patch, factors);
     layout!(ours, "Layer", contact_normal_layer, struct_size, compliance, compliances);
     layout!(ours, "PressureLimit", contact_normal_pressure_limit, struct_size, limit, limits);
@@ -286,7 +286,8 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         limited_by,
         halved_seconds,
         halved_error_force,
-        edge_count
+        edge_count,
+        tolerance
     );
     layout!(
         ours,

@@ -100,7 +100,7 @@ fn a_panic_is_not_announced() {
         return;
     }
     let itself = std::env::current_exe().expect("this test's path");
-    let arguments = ["--exact", "a_panic_is_not_announced", "--nocapture"];
+    let arguments = ["--exact", "panics::a_panic_is_not_announced", "--nocapture"];
     let output = std::process::Command::new(itself).args(arguments).env(CHILD, "1").output().expect("a process");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");

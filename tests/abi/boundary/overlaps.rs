@@ -19,7 +19,10 @@ const ROWS: &[Row] = &[
     (&["pressure", "deformed_distance"], |c| c.fields.known.pressure = c.fields.known.deformed_distance),
     // By one element, at either end.
     (&["pressure", "displacement"], |c| c.fields.known.pressure = c.fields.known.displacement.wrapping_add(N - 1)),
-    (&["pressure", "deformed_distance"], |c| c.fields.known.pressure = c.fields.known.deformed_distance.wrapping_sub(N - 1)),
+    (&["pressure", "deformed_distance"], |c| {
+        c.fields.known.pressure = c.fields.known.deformed_distance.wrapping_add(N - 1);
+        c.fields.known.displacement = null_mut();
+    }),
     (&["contact", "pressure"], |c| c.fields.known.contact = c.fields.known.pressure.cast::<i32>().wrapping_add(2 * N - 1)),
     (&["ledger", "pressure"], |c| c.report.known.ledger = c.fields.known.pressure.cast()),
     (&["ledger", "report"], |c| c.report.known.ledger = (&raw mut c.report.known).cast()),
