@@ -8,7 +8,6 @@ use super::coarse_grids::CoarseGrids;
 use super::coarser_solutions::{Sample, PREDICTS, SHOWS_ORDER};
 use super::level::Level;
 use super::predictor::Predictor;
-use super::Stopping;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::reserve;
@@ -174,13 +173,10 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
             reserve(&mut self.before, state.p.len(), "the pressures before")?;
             self.before.clone_from(&state.p);
         }
-        let stopping = Stopping {
-            tolerance: if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance },
-            by_update: goal.by_update(),
-            fixed: S::FIXED,
-            iterations: goal.max_cycles.saturating_sub(monitor.count.cycles),
-        };
-        self.finest.run(state, set, was, &stopping, problem.grid.len(), monitor)?;
+        let tolerance = if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance };
+        let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles);
+        let inner = Goal { tolerance, max_cycles, ..*goal };
+        self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;
         if !goal.by_update() {
             return Ok(Change::default());
