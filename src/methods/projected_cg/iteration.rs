@@ -228,11 +228,11 @@ impl<T: Real> Iteration<T> {
         self.debts.clear();
         self.find_contact(state);
         let mut update = Update::default();
-        self.limits.missing = 0.0;
+        (self.limits.missing, self.limits.shift) = (0.0, 0.0);
         if self.update_pressures(state, set, 0.0, None) > 0 {
             update.factor = self.carry_force::<S>(state);
         } else if S::LIMITED {
-            self.cannot_scale(state);
+            update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
@@ -300,7 +300,7 @@ impl<T: Real> Iteration<T> {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
         let pays = std::mem::take(&mut search.is_first) || S::LIMITED;
-        if pays && self.owed() + self.limits.missing.abs() > OWED * alpha.abs() * step.t1 {
+        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }

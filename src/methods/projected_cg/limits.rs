@@ -1,12 +1,20 @@
 //! What only a scene with limits of the pressures needs, `0 <= p <= p_max`.
 //!
 //! The limit is a second bound: elements are held back and truncated at both, and what was truncated at its limit enters C again where
-//! e > 0. The pressures there cannot be scaled. So with a prescribed force nothing is, once an element is at its limit: what is missing
-//! of the force the next direction restores, `sum of t = missing/alpha'`, evenly over C.
+//! e > 0. With a prescribed force pressures at their limit cannot be scaled up. What is missing of the force,
 //!
-//! No scaling keeps C from going and coming back. Instead the step is shortened to the least energy wherever a product has just paid
-//! all debts: both ends of it are known exactly then. Large debts, and what is much of the force, the next product pays whole, by a
-//! step of the length of the forecast.
+//! ```text
+//! m = force/(dx dy) - sum of p,
+//! ```
+//!
+//! the next direction restores, evenly over C: sum of t = m/alpha'. And the approach moves on by what an approach in proportion to the
+//! force would: by m/(sum of p) of (p, approach - h)/(sum of p). Without that, a thin C between what is at its limit and the exterior
+//! area stays where it is while all that is missing goes through it. Where far too much is carried, all of p is scaled down, which
+//! no limit forbids, and what was at its limit enters C.
+//!
+//! By approach no scaling keeps C from going and coming back. Instead the step is shortened to the least energy wherever a product has
+//! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
+//! forecast.
 
 use super::iteration::Iteration;
 use super::passes::Update;
@@ -21,11 +29,17 @@ use crate::scene::Load;
 /// work is 4 % more in the mean and 20 % more in the worst.
 const STEP_BACK: f64 = 0.7;
 
+/// Too much force by this part is scaled away. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
+/// the greatest pressure): never, the work is 1.17 times as much in the mean and 2.2 times in the worst; at 0.2 1.16 times.
+const TOO_MUCH: f64 = 0.05;
+
 /// What goes beyond the plain iteration.
 #[derive(Default)]
 pub(super) struct Beyond {
     /// What is missing of a prescribed force, as a sum of pressures.
     pub(super) missing: f64,
+    /// How far the approach moves on for that.
+    pub(super) shift: f64,
     /// The pressures that u knows of: those of before the iteration without what was owed then.
     known: Vec<f64>,
 }
@@ -43,14 +57,33 @@ impl<T: Real> Iteration<T> {
         reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")
     }
 
-    /// Whether elements are at their limit, so that pressures cannot be scaled; then it notes what is missing of the force.
-    pub(super) fn cannot_scale(&mut self, state: &State) -> bool {
-        let held = state.at_limit.contains(&true);
-        self.limits.missing = match state.load {
-            Load::Force(force) if held => force / state.grid.element_area() - state.p.iter().sum::<f64>(),
-            _ => 0.0,
-        };
-        held
+    /// Where elements are at their limit: carries the force as far as p and the debts can be scaled, and notes what is missing. Returns
+    /// the factor of the scaling; none where no element is at its limit.
+    pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
+        (self.limits.missing, self.limits.shift) = (0.0, 0.0);
+        let Load::Force(force) = state.load else { return None };
+        if !state.at_limit.contains(&true) {
+            return None;
+        }
+        let pressures = force / state.grid.element_area();
+        let carried: f64 = state.p.iter().sum();
+        if carried > (1.0 + TOO_MUCH) * pressures {
+            let factor = pressures / carried;
+            state.p.iter_mut().for_each(|p| *p *= factor);
+            self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+            for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
+                *inside |= std::mem::take(at_limit);
+            }
+            self.find_contact(state);
+            return Some(factor);
+        }
+        let loaded = state.p.iter().zip(&state.h).filter(|(p, _)| **p > 0.0);
+        let depth = loaded.map(|(p, h)| p * (state.approach - h)).sum::<f64>() / carried;
+        self.limits.missing = pressures - carried;
+        // An approach that is twice as deep is far enough for one step.
+        let shift = (self.limits.missing / carried).min(1.0) * depth;
+        self.limits.shift = if shift.is_finite() { shift } else { 0.0 };
+        Some(1.0)
     }
 
     /// With a limit: keeps the pressures that u knows of.

@@ -55,7 +55,7 @@ impl<T: Real> Iteration<T> {
             }
         });
         if self.runs.count() > 0 {
-            state.approach = sum / self.runs.count() as f64;
+            state.approach = sum / self.runs.count() as f64 + self.limits.shift;
         }
     }
 
@@ -221,8 +221,10 @@ impl<T: Real> Iteration<T> {
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         self.runs.find(&state.contact);
-        if S::LIMITED && self.cannot_scale(state) {
-            return 1.0;
+        if S::LIMITED {
+            if let Some(factor) = self.carry_beside_limits(state) {
+                return factor;
+            }
         }
         let p = &state.p;
         let [carried] = self.runs.sum(|block, sums| {
