@@ -62,8 +62,9 @@ const FAR_OFF: f64 = 3.0;
 /// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
 /// many roundings without a fresh u.
 const ROUNDINGS: f64 = 200.0;
-/// Iterations without a new least residual after which the contact area may be cycling.
-const PATIENCE: u32 = 40;
+/// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
+/// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
+const PATIENCE: u32 = 20;
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
@@ -106,8 +107,10 @@ pub enum End {
     Limit,
     /// The caller cancelled.
     Cancelled,
-    /// The search direction is no longer one (round-off, or an operator that is not positive definite), or nothing is gained any more.
+    /// The search direction is no longer one: round-off, or an operator that is not positive definite.
     Breakdown,
+    /// Nothing is gained any more.
+    Stagnated,
 }
 
 impl<T: Real> Iteration<T> {
@@ -211,7 +214,7 @@ impl<T: Real> Iteration<T> {
                 (least, since_least) = (residual, 1);
             }
             if since_least > PATIENCE {
-                return End::Breakdown;
+                return End::Stagnated;
             }
             iterations += 1;
             cycle = self.iterate(state, set, &mut search);

@@ -8,6 +8,7 @@ use super::coarse_grids::CoarseGrids;
 use super::coarser_solutions::{Sample, PREDICTS, SHOWS_ORDER};
 use super::level::Level;
 use super::predictor::Predictor;
+use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::reserve;
@@ -176,15 +177,21 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let tolerance = if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance };
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles);
         let inner = Goal { tolerance, max_cycles, ..*goal };
-        self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
+        let end = self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;
+        let gives_up = end == End::Stagnated;
+        if gives_up {
+            problem.refresh(state, set);
+        }
         if !goal.by_update() {
-            return Ok(Change::default());
+            return Ok(Change { gives_up, ..Change::default() });
         }
         self.recursive = monitor.count.residual;
-        problem.refresh(state, set);
+        if !gives_up {
+            problem.refresh(state, set);
+        }
         let update = self.update(state, was, monitor.count.update);
-        Ok(Change { update, ..Change::default() })
+        Ok(Change { update, gives_up, ..Change::default() })
     }
 }
 
