@@ -265,7 +265,7 @@ impl<T: Real> Iteration<T> {
         if !(step.tq > 0.0 && step.rt.is_finite()) {
             return None;
         }
-        let alpha = self.step_length::<S>(&step, search);
+        let alpha = self.step_length(&step, search, S::LIMITED && state.at_limit.contains(&true));
         self.pay(state, forecast, alpha);
 
         // p = p + alpha t, 4.1
@@ -275,13 +275,19 @@ impl<T: Real> Iteration<T> {
 
         // u = u + alpha q, 4.2
         let mut update = Update { alpha, ..Update::default() };
+        let limited = S::LIMITED && state.at_limit.contains(&true);
         let owed = self.owed();
         if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
-            self.settle(state, set, &mut update, search);
+            self.settle();
+            update.settled = true;
+            if limited {
+                self.step_back(state, set, &mut update);
+                search.tq = 0.0;
+            }
         }
         match state.load {
             Load::Force(_) => update.factor = self.carry_force::<S>(state),
-            Load::Approach(_) if update.settled && !S::LIMITED && !S::FIXED => {
+            Load::Approach(_) if update.settled && !limited && !S::FIXED => {
                 update.factor = self.least_energy(state, &update);
             }
             Load::Approach(_) => {}
@@ -298,11 +304,11 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha; that of the forecast where it pays what is owed.
-    fn step_length<S: AdmissibleSet>(&self, step: &Step, search: &mut Search) -> f64 {
+    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
+    fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
-        let pays = std::mem::take(&mut search.is_first) || S::LIMITED;
+        let pays = std::mem::take(&mut search.is_first) || limited;
         if pays && self.owed() > OWED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
@@ -326,17 +332,12 @@ impl<T: Real> Iteration<T> {
     }
 
     /// z = A d: a product pays all debts.
-    fn settle<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update, search: &mut Search) {
+    fn settle(&mut self) {
         self.z.fill(T::zero());
         for (i, d) in self.debts.drain(..) {
             self.z[i] += T::of(d);
         }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
-        update.settled = true;
-        if S::LIMITED {
-            self.step_back(state, set, update);
-            search.tq = 0.0;
-        }
     }
 }
 
