@@ -18,6 +18,12 @@ pub trait AdmissibleSet: Copy + Send + Sync {
     /// Whether the contact area is given: nobody enters or leaves it, and pressures may be negative.
     const FIXED: bool = false;
 
+    /// The set on a part of the grid, or on a coarser one.
+    type Within<'a>: AdmissibleSet;
+
+    /// That set, where `limits` are those of its elements, if there are any.
+    fn within(limits: &[f64]) -> Self::Within<'_>;
+
     /// The greatest pressure of element i; `+infinity` where there is none.
     fn limit(&self, i: usize) -> f64;
 
@@ -49,6 +55,12 @@ pub struct NonNegative;
 impl AdmissibleSet for NonNegative {
     const LIMITED: bool = false;
 
+    type Within<'a> = NonNegative;
+
+    fn within(_: &[f64]) -> NonNegative {
+        NonNegative
+    }
+
     fn limit(&self, _: usize) -> f64 {
         f64::INFINITY
     }
@@ -61,6 +73,12 @@ pub struct Fixed;
 impl AdmissibleSet for Fixed {
     const LIMITED: bool = false;
     const FIXED: bool = true;
+
+    type Within<'a> = Fixed;
+
+    fn within(_: &[f64]) -> Fixed {
+        Fixed
+    }
 
     fn limit(&self, _: usize) -> f64 {
         f64::INFINITY
@@ -82,6 +100,12 @@ pub enum Limited<'a> {
 
 impl AdmissibleSet for Limited<'_> {
     const LIMITED: bool = true;
+
+    type Within<'a> = Limited<'a>;
+
+    fn within(limits: &[f64]) -> Limited<'_> {
+        Limited::PerElement(limits)
+    }
 
     fn limit(&self, i: usize) -> f64 {
         match self {

@@ -132,6 +132,22 @@ fn up_to_the_greatest_force_and_not_beyond() {
     assert!(message.contains("pressure_limit") && message.contains(&format!("{greatest}")), "{message}");
 }
 
+/// Every second square of elements carries little.
+#[test]
+fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
+    let grid = Grid::new(32, 32, 0.05, 0.05).unwrap();
+    for (h, side) in [(ball(&grid), 1), (ball(&grid), 4), (rough(&grid), 1), (rough(&grid), 4)] {
+        let dark = |i: usize| (i % 32 / side + i / 32 / side) % 2 == 0;
+        let limits: Vec<f64> = (0..grid.len()).map(|i| if dark(i) { 0.05 } else { 1.0 }).collect();
+        let force = 0.95 * limits.iter().sum::<f64>() * grid.element_area();
+        let limit = Some(PressureLimit::PerElement(&limits));
+        let scene = Scene { pressure_limit: limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(force)) };
+        let (solver, report) = run(&scene, &tight(Method::Auto));
+        let count = assert_holds(&scene, &solver, &report, &format!("squares of {side}"));
+        assert!(count > 500, "{count}");
+    }
+}
+
 #[test]
 fn with_a_layer_and_with_a_period() {
     let grid = Grid::new(32, 24, 0.05, 0.05).unwrap();

@@ -67,7 +67,6 @@ impl Norm {
         &mut self,
         problem: &mut Problem,
         state: &mut State,
-        set: S,
         goal: &Goal,
         monitor: &mut Monitor<'_>,
     ) -> Result<Inner> {
@@ -92,7 +91,7 @@ impl Norm {
         };
         monitor.count.update = inner.update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
-        problem.refresh(state, set);
+        refresh::<S>(problem, state);
         Ok(inner)
     }
 
@@ -154,8 +153,26 @@ fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, s
     }
     state.u_is = Freshness::Exact;
     if held || matches!(state.load, Load::Force(_)) {
-        problem.refresh(state, set);
+        refresh::<S>(problem, state);
     }
+}
+
+/// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
+/// is for the next exchange.
+fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State) {
+    match state.load {
+        Load::Force(force) if S::LIMITED && state.at_limit.contains(&true) => {
+            let missing = force / state.grid.element_area() - state.p.iter().sum::<f64>();
+            let even = missing / state.contact_count().max(1) as f64;
+            state.p.iter_mut().zip(&state.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += even);
+        }
+        _ => {
+            state.balance_force();
+        }
+    }
+    problem.displace(&state.p, &mut state.u);
+    state.u_is = Freshness::Exact;
+    state.fit_approach();
 }
 
 fn violators<S: AdmissibleSet>(state: &State, set: S) -> usize {
@@ -215,7 +232,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
                 start_from_zero(problem, state, set);
             }
         }
-        let inner = self.solve(problem, state, set, goal, monitor)?;
+        let inner = self.solve::<S>(problem, state, goal, monitor)?;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
         monitor.count.active_set_changes += changes;

@@ -9,16 +9,15 @@
 use std::f64::consts::PI;
 
 use super::level::Level;
-use super::{End, Stopping};
-use crate::contact::{norm_of_distance, residual_norm, Freshness, State};
-use crate::contact::{AdmissibleSet, Limited, NonNegative};
+use super::End;
+use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::methods::multigrid::{coarsen, transfer};
 use crate::operator::Precision;
 use crate::operator::{reserve, zeros};
-use crate::progress::{Goal, Monitor};
+use crate::progress::{Criterion, Goal, Monitor};
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -27,6 +26,8 @@ const COARSEST: usize = 8;
 /// direction. Measured: with 3 or 4 the finest grid needs no fewer.
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
+/// Where elements are at their limit: 3, 4, 6 take 2.0, 1.95, 1.87 times the work of the plain scene in the mean of 36 scenes.
+const LIMITED_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
 pub(super) struct Coarse {
@@ -113,11 +114,7 @@ impl CoarseGrids {
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
-        if S::LIMITED {
-            coarsest.state.carry_force(Limited::PerElement(&coarsest.limits));
-        } else {
-            coarsest.state.balance_force();
-        }
+        coarsest.state.carry_force(S::within(&coarsest.limits));
         let mut displacement = Freshness::Stale;
         for l in (0..count).rev() {
             if !monitor.is_cancelled() {
@@ -140,7 +137,7 @@ impl CoarseGrids {
                 let (to, _) = self.pair(l, fine);
                 match limits {
                     Some(limits) => {
-                        truncate_to(to, Limited::PerElement(&limits));
+                        truncate_to(to, S::within(&limits));
                         self.grids[l - 1].limits = limits;
                     }
                     None => truncate_to(to, set),
@@ -174,14 +171,14 @@ impl CoarseGrids {
         goal: &Goal,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
-        let iterations = if l + 1 == self.grids.len() { COARSEST_ITERATIONS } else { COARSE_ITERATIONS };
-        let stop = Stopping { tolerance: goal.tolerance, by_update: false, fixed: false, iterations };
-        let Coarse { level, state, limits, .. } = &mut self.grids[l];
-        let end = if S::LIMITED {
-            level.run(state, Limited::PerElement(limits), displacement, &stop, self.finest, monitor)?
-        } else {
-            level.run(state, NonNegative, displacement, &stop, self.finest, monitor)?
+        let max_cycles = match l + 1 == self.grids.len() {
+            true => COARSEST_ITERATIONS,
+            false if self.grids[l].state.at_limit.contains(&true) => LIMITED_ITERATIONS,
+            false => COARSE_ITERATIONS,
         };
+        let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance, max_cycles };
+        let Coarse { level, state, limits, .. } = &mut self.grids[l];
+        let end = level.run(state, S::within(limits), displacement, &goal, self.finest, monitor)?;
         level.take_displacements(state);
         Ok(end)
     }

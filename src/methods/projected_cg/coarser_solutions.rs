@@ -4,13 +4,12 @@
 //! its centre by `(d^2/24) laplace h`, as much as the discretisation changes.
 
 use super::coarse_grids::{Coarse, CoarseGrids};
-use super::Stopping;
 use crate::contact::NonNegative;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
-use crate::progress::Monitor;
+use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
 
 /// What a coarser grid finds for the same surface, sampled at its elements.
@@ -87,10 +86,10 @@ impl CoarseGrids {
             return Ok(None);
         }
         let tolerance = TOLERANCE / count as f64;
-        let stop = Stopping { tolerance, by_update: false, fixed: false, iterations: ITERATIONS };
+        let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: ITERATIONS };
         let mut silent = Monitor::silent();
         state.at_limit.clear();
-        level.run(state, NonNegative, Freshness::Stale, &stop, finest, &mut silent)?;
+        level.run(state, NonNegative, Freshness::Stale, &goal, finest, &mut silent)?;
         monitor.count_work(silent.count.work_units);
         state.balance_force();
         let (mut highest, mut squares, mut differences) = (0.0_f64, 0.0, 0.0);

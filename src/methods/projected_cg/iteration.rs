@@ -26,12 +26,6 @@
 //! paid all debts: it costs none of its own. Measured on 66 scenes of white noise: 19 were not solved without it, none with it, and the
 //! rough surface by approach takes 11 to 32 % less work.
 //!
-//! *Limits of the pressures* (`0 <= p <= p_max`) are a second bound: elements are held back and truncated at both, and what was truncated
-//! at its limit enters C again where e > 0. The pressures there cannot be scaled, so that with a prescribed force C alone is, and u is
-//! owed the change as it is owed truncations. As a scene with limits has no scaling that stops C from going and coming back, the step
-//! itself is shortened to the least energy wherever a product has just paid all debts: both ends of it are known exactly then. Without
-//! that, 34 of 84 scenes cycled. Large debts the next product pays whole, by a step of the length of the forecast.
-//!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
 //! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
@@ -40,21 +34,23 @@
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
+use super::limits::Beyond;
+use super::passes::{Step, Update};
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
-use crate::contact::AdmissibleSet;
-use crate::contact::State;
+use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::fft::Real;
 use crate::operator::{reserve, zeros, Operator, Workspace};
+use crate::progress::Goal;
 use crate::scene::Load;
 use crate::threads::Threads;
 
 /// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
-const OWED: f64 = 0.1;
+pub(super) const OWED: f64 = 0.1;
 /// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
 const FIRST_STEP: f64 = 0.4;
 /// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
@@ -66,55 +62,25 @@ const FAR_OFF: f64 = 3.0;
 /// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
 /// many roundings without a fresh u.
 const ROUNDINGS: f64 = 200.0;
-/// Iterations without a new least residual after which the contact area may be cycling.
-const PATIENCE: u32 = 40;
-/// With a limit a step goes back where the least energy lies before this part of it. Measured over 84 scenes: at 0.5 one is not solved,
-/// at 1 the work is 4 % more in the mean and 20 % more in the worst.
-const STEP_BACK: f64 = 0.7;
-/// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
-const HELD_BACK: f64 = 1e-6;
-
+/// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
+/// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
+const PATIENCE: u32 = 20;
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
-    operator: Operator<T>,
-    preconditioner: Option<Preconditioner<T>>,
-    workspace: Workspace<T>,
-    t: Vec<T>,
-    q: Vec<T>,
-    z: Vec<T>,
-    runs: Segments,
+    pub(super) operator: Operator<T>,
+    pub(super) preconditioner: Option<Preconditioner<T>>,
+    pub(super) workspace: Workspace<T>,
+    pub(super) t: Vec<T>,
+    pub(super) q: Vec<T>,
+    pub(super) z: Vec<T>,
+    pub(super) runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
-    debts: Vec<(usize, f64)>,
-    /// With a limit and a prescribed force: what C gained to carry the force, and u still lacks; else empty.
-    lacking: Vec<f64>,
-    /// With a limit: the pressures that u knows of, those of before the iteration without what was owed then.
-    known: Vec<f64>,
+    pub(super) debts: Vec<(usize, f64)>,
+    /// With limits.
+    pub(super) limits: Beyond,
     /// Whether an element of a row enters.
-    entering: Vec<bool>,
-    threads: Threads,
-}
-
-/// When the iteration stops.
-#[derive(Clone, Copy, Debug)]
-pub struct Stopping {
-    /// Of the relative residual, or of the update.
-    pub tolerance: f64,
-    /// Whether rms(last change of p) <= tolerance * rms(p) over C is asked for, instead of the residual.
-    pub by_update: bool,
-    /// Whether the contact area is given.
-    pub fixed: bool,
-    /// Iterations at most.
-    pub iterations: u64,
-}
-
-impl Stopping {
-    fn met_by(&self, cycle: &Cycle, floor: f64) -> bool {
-        if self.by_update {
-            cycle.update <= self.tolerance * cycle.pressure
-        } else {
-            cycle.residual <= self.tolerance.max(floor)
-        }
-    }
+    pub(super) entering: Vec<bool>,
+    pub(super) threads: Threads,
 }
 
 /// What one iteration did.
@@ -141,13 +107,15 @@ pub enum End {
     Limit,
     /// The caller cancelled.
     Cancelled,
-    /// The search direction is no longer one (round-off, or an operator that is not positive definite), or nothing is gained any more.
+    /// The search direction is no longer one: round-off, or an operator that is not positive definite.
     Breakdown,
+    /// Nothing is gained any more.
+    Stagnated,
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's circulant is not positive, the
-    /// iteration does without.
+    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's
+    /// circulant is not positive, the iteration does without.
     pub fn new(
         operator: Operator<T>,
         influence: &Coefficients,
@@ -174,18 +142,10 @@ impl<T: Real> Iteration<T> {
             z: directions()?,
             runs: Segments::new(grid, threads)?,
             debts,
-            lacking: Vec::new(),
-            known: Vec::new(),
+            limits: Beyond::default(),
             entering: vec![false; grid.my],
             threads: threads.clone(),
         })
-    }
-
-    /// Memory that a scene with a limit of the pressures needs beyond that of one without.
-    pub fn reserve_for_limits(&mut self) -> Result<()> {
-        self.lacking.clear();
-        reserve(&mut self.known, self.t.len(), "pressures with a limit")?;
-        reserve(&mut self.lacking, self.t.len(), "pressures with a limit")
     }
 
     /// Bytes held.
@@ -209,12 +169,12 @@ impl<T: Real> Iteration<T> {
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {
             state.fit_approach();
-            self.update_displacements::<S>(state, &Update::default(), false);
+            self.update_displacements(state, set, &Update::default());
             self.find_contact(state);
             self.residual(state);
             self.precondition(state);
             self.direct(state, set, 0.0, None);
-            self.update_pressures(state, set, FIRST_STEP, None, false);
+            self.update_pressures(state, set, FIRST_STEP, None);
             self.debts.clear();
             state.carry_force(set);
         }
@@ -225,37 +185,13 @@ impl<T: Real> Iteration<T> {
         &mut self,
         state: &mut State,
         set: S,
-        stop: &Stopping,
+        goal: &Goal,
         mut after_cycle: impl FnMut(&Cycle) -> bool,
     ) -> End {
-        let by_force = matches!(state.load, Load::Force(_));
-        self.t.fill(T::zero());
-        self.q.fill(T::zero());
-        self.debts.clear();
-        self.lacking.clear();
-        // Without a preconditioner the first forecast is missing.
-        let mut forecast = self.preconditioner.as_ref().map(|_| FIRST_FORECAST);
-        // Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
-        let mut may_hold_back = true;
-        let mut tq = 0.0;
+        let mut search = self.begin(state, set);
         let mut cycle: Option<Cycle> = None;
         let (mut iterations, mut floor) = (0, None);
         let (mut least, mut since_least) = (f64::INFINITY, 0);
-        // 4.1 and 4.2
-        self.find_contact(state);
-        let mut update = Update::default();
-        if self.update_pressures(state, set, 0.0, None, stop.fixed) > 0 {
-            self.runs.find(&state.contact);
-            update.factor = self.carry_force::<S>(state);
-        }
-        if by_force {
-            self.fit_approach(state, &update);
-        }
-        self.update_displacements::<S>(state, &update, stop.fixed);
-        self.runs.find(&state.contact);
-        if self.owed() > 0.0 {
-            forecast = forecast.map(|_| FIRST_STEP);
-        }
         loop {
             // r = -e on C
             let residual = self.residual(state);
@@ -266,309 +202,133 @@ impl<T: Real> Iteration<T> {
                 }
             }
             let floor = *floor.get_or_insert(ROUNDINGS * T::epsilon().to_double() * residual);
-            if residual == 0.0 || cycle.as_ref().is_some_and(|cycle| stop.met_by(cycle, floor)) {
+            let met = residual == 0.0 || cycle.as_ref().is_some_and(|cycle| cycle.meets(goal, floor));
+            if met && (!S::LIMITED || self.limits.carries(state, goal)) {
                 return End::Met;
             }
-            if iterations == stop.iterations {
+            if iterations == goal.max_cycles {
                 return End::Limit;
             }
-            if residual < least {
-                (least, since_least) = (residual, 0);
-            }
             since_least += 1;
+            if residual < least {
+                (least, since_least) = (residual, 1);
+            }
             if since_least > PATIENCE {
-                return End::Breakdown;
+                return End::Stagnated;
             }
             iterations += 1;
-
-            // z = M r
-            self.precondition(state);
-
-            // t = z + beta t, held back, and the debts
-            self.direct(state, set, tq, forecast.filter(|_| may_hold_back && !stop.fixed));
-            let before = forecast.unwrap_or(1.0);
-            for &(i, d) in &self.debts {
-                self.t[i] += T::of(d / before);
-            }
-            self.add_lacking(1.0 / before);
-
-            if S::LIMITED {
-                self.remember(state);
-            }
-
-            // q = A t, alpha = (r, t)/(t, q)
-            self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-            let step = self.step(state);
-            let count = self.runs.count() as f64;
-            if !(step.tq > 0.0 && step.rt.is_finite()) {
+            cycle = self.iterate(state, set, &mut search);
+            if cycle.is_none() {
                 return End::Breakdown;
             }
-            tq = step.tq;
-            let mut alpha = step.rt / step.tq;
-            if (iterations == 1 || S::LIMITED) && self.owed() > OWED * alpha.abs() * step.t1 {
-                (alpha, tq) = (before, 0.0);
-            }
-            self.add_lacking(-1.0 / before);
-            self.lacking.iter_mut().for_each(|d| *d *= 1.0 - alpha / before);
-            for debt in &mut self.debts {
-                // What it is owed is no part of its direction.
-                let owed = T::of(debt.1 / before);
-                self.t[debt.0] = if state.contact[debt.0] { self.t[debt.0] - owed } else { T::zero() };
-                debt.1 *= 1.0 - alpha / before;
-            }
-            self.debts.retain(|debt| debt.1 != 0.0);
+        }
+    }
 
-            // p = p + alpha t, 4.1
-            let mut update = Update { alpha, ..Update::default() };
-            // A forecast that was far off holds nobody back.
-            let good_forecast = forecast.filter(|forecast| may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
-            may_hold_back = !may_hold_back || good_forecast.is_some();
-            if !may_hold_back {
-                tq = 0.0;
-            }
-            let left = self.update_pressures(state, set, alpha, good_forecast, stop.fixed);
-            forecast = Some(alpha).filter(|alpha| *alpha > 0.0);
-            if let (Some(alpha), Some(_)) = (&mut forecast, &self.preconditioner) {
-                let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
-                if within_factor(*alpha, usual, FAR_OFF) {
-                    *alpha = usual;
-                }
-            }
-            if S::LIMITED && by_force && state.at_limit.contains(&true) {
-                self.scale_free(state);
-            }
-            let owed = self.owed();
-            let mut products = 1;
-            if owed > OWED * alpha.abs() * step.t1 || forecast.is_none() && owed > 0.0 {
-                self.settle();
-                update.settled = true;
-                products += 1;
-                if S::LIMITED && !stop.fixed {
-                    self.step_back(state, set, &mut update);
-                    tq = 0.0;
-                }
-            }
+    /// 4.1 and 4.2 before the first iteration.
+    fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Search {
+        self.t.fill(T::zero());
+        self.q.fill(T::zero());
+        self.debts.clear();
+        self.find_contact(state);
+        let mut update = Update::default();
+        (self.limits.missing, self.limits.shift) = (0.0, 0.0);
+        if self.update_pressures(state, set, 0.0, None) > 0 {
+            update.factor = self.carry_force::<S>(state);
+        } else if S::LIMITED {
+            update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
+        }
+        self.fit_approach(state, &update);
+        self.update_displacements(state, set, &update);
+        self.runs.find(&state.contact);
+        let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
+        // Without a preconditioner the first forecast is missing.
+        let forecast = self.preconditioner.as_ref().map(|_| first);
+        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true }
+    }
 
-            // u = u + alpha q, 4.2
-            if by_force {
-                if left > 0 {
-                    self.runs.find(&state.contact);
-                }
-                update.factor = self.carry_force::<S>(state);
-                self.fit_approach(state, &update);
-            } else if update.settled && !stop.fixed && !S::LIMITED {
-                if left > 0 {
-                    self.runs.find(&state.contact);
-                }
+    /// One iteration, r being what z holds; none where there is no direction.
+    fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
+        // z = M r, t = max(z + beta t, -p/alpha'), and what is owed
+        self.precondition(state);
+        self.direct(state, set, search.tq, search.forecast.filter(|_| search.may_hold_back && !S::FIXED));
+        let forecast = search.forecast.unwrap_or(1.0);
+        for &(i, d) in &self.debts {
+            self.t[i] += T::of(d / forecast);
+        }
+        if S::LIMITED {
+            self.remember(state);
+        }
+
+        // q = A t, alpha = (r, t)/(t, q)
+        self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
+        let (step, count) = (self.step(state), self.runs.count() as f64);
+        if !(step.tq > 0.0 && step.rt.is_finite()) {
+            return None;
+        }
+        let alpha = self.step_length(&step, search, S::LIMITED && state.at_limit.contains(&true));
+        self.pay(state, forecast, alpha);
+
+        // p = p + alpha t, 4.1
+        let held_back = search.believed(alpha);
+        let left = self.update_pressures(state, set, alpha, held_back);
+        search.expect(alpha, self.preconditioner.is_some());
+
+        // u = u + alpha q, 4.2
+        let mut update = Update { alpha, ..Update::default() };
+        let limited = S::LIMITED && state.at_limit.contains(&true);
+        let owed = self.owed();
+        if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
+            self.settle();
+            update.settled = true;
+            if limited {
+                self.step_back(state, set, &mut update);
+                search.tq = 0.0;
+            }
+        }
+        match state.load {
+            Load::Force(_) => update.factor = self.carry_force::<S>(state),
+            Load::Approach(_) if update.settled && !limited && !S::FIXED => {
                 update.factor = self.least_energy(state, &update);
             }
-            let entered = self.update_displacements::<S>(state, &update, stop.fixed);
-            self.runs.find(&state.contact);
-            let mean_square = |sum: f64| (sum / count).sqrt();
-            cycle = Some(Cycle {
-                changes: left + entered,
-                update: alpha.abs() * mean_square(step.tt),
-                pressure: mean_square(step.pp),
-                residual,
-                products,
-            });
+            Load::Approach(_) => {}
         }
-    }
-
-    /// The runs of a contact area of which nothing is known.
-    fn find_contact(&mut self, state: &State) {
-        self.runs.change_all();
+        self.fit_approach(state, &update);
+        let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
+        Some(Cycle {
+            changes: left + entered,
+            update: alpha.abs() * (step.tt / count).sqrt(),
+            pressure: (step.pp / count).sqrt(),
+            residual: f64::INFINITY,
+            products: 1 + u64::from(update.settled),
+        })
     }
 
-    /// With a prescribed force: the approach is the mean over C of h + u, u as `update` will leave it.
-    fn fit_approach(&mut self, state: &mut State, update: &Update) {
-        let (q, z, Update { alpha, settled, factor }) = (&self.q, &self.z, *update);
-        let [sum] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
-                sums.add(h.len(), |i| {
-                    let repair = if settled { z[i].to_double() } else { 0.0 };
-                    [h[i] + factor * (u[i] + alpha * q[i].to_double() + repair)]
-                });
-            }
-        });
-        if self.runs.count() > 0 {
-            state.approach = sum / self.runs.count() as f64;
+    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
+    fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
+        let alpha = step.rt / step.tq;
+        search.tq = step.tq;
+        let pays = std::mem::take(&mut search.is_first) || limited;
+        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
+            search.tq = 0.0;
+            return search.forecast.unwrap_or(1.0);
         }
+        alpha
     }
 
-    /// z = r = -e on C, 0 outside; the relative residual.
-    fn residual(&mut self, state: &State) -> f64 {
-        let approach = state.approach;
-        let [rr, hh] = self.runs.sum_changing(&mut self.z, |block, z, sums| {
-            z.fill(T::zero());
-            for (run, local) in block.runs() {
-                let (h, u, z) = (&state.h[run.clone()], &state.u[run], &mut z[local]);
-                sums.add(h.len(), |i| {
-                    let distance = h[i] - approach;
-                    let e = distance + u[i];
-                    z[i] = T::of(-e);
-                    [e * e, distance * distance]
-                });
-            }
-        });
-        if rr == 0.0 {
-            0.0
-        } else {
-            (rr / hh).sqrt()
+    /// What alpha leaves of the debts, which are no part of the direction.
+    fn pay(&mut self, state: &State, forecast: f64, alpha: f64) {
+        for debt in &mut self.debts {
+            let owed = T::of(debt.1 / forecast);
+            self.t[debt.0] = if state.contact[debt.0] { self.t[debt.0] - owed } else { T::zero() };
+            debt.1 *= 1.0 - alpha / forecast;
         }
-    }
-
-    /// z = M r, r being what z holds.
-    fn precondition(&mut self, state: &State) {
-        if let Some(m) = &mut self.preconditioner {
-            let by_force = matches!(state.load, Load::Force(_));
-            m.apply(&mut self.z, by_force.then_some(&state.contact[..]));
-        }
-    }
-
-    /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C; held back by the forecast, if there is one.
-    /// `tq` is (t, q) of the last direction, 0 if there is none.
-    fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S, tq: f64, forecast: Option<f64>) {
-        let by_force = matches!(state.load, Load::Force(_));
-        let count = self.runs.count() as f64;
-        let (mut mean, mut beta) = (0.0, 0.0);
-        if by_force || tq > 0.0 {
-            let (z, q) = (&self.z, &self.q);
-            let [z1, q1, zq] = self.runs.sum(|block, sums| {
-                for (run, _) in block.runs() {
-                    let (z, q) = (&z[run.clone()], &q[run]);
-                    sums.add(z.len(), |i| {
-                        let (z, q) = (z[i].to_double(), q[i].to_double());
-                        [z, q, z * q]
-                    });
-                }
-            });
-            mean = if by_force { z1 / count } else { 0.0 };
-            beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
-        }
-        let (z, z_mean, beta) = (&self.z, T::of(mean), T::of(beta));
-        let held = |i: usize, p: f64, t: T| match forecast {
-            Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
-            Some(forecast) if S::LIMITED && p + forecast * t.to_double() > set.limit(i) => {
-                T::of((set.limit(i) - p) / forecast)
-            }
-            _ => t,
-        };
-        let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
-            for (run, local) in block.runs() {
-                let (start, p, z, t) = (run.start, &state.p[run.clone()], &z[run], &mut t[local]);
-                sums.add(z.len(), |i| {
-                    let direction = z[i] - z_mean + beta * t[i];
-                    t[i] = if by_force { direction } else { held(start + i, p[i], direction) };
-                    [direction.to_double()]
-                });
-            }
-        });
-        if by_force {
-            let mean = T::of(sum / count);
-            let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
-                for (run, local) in block.runs() {
-                    for ((t, p), i) in t[local].iter_mut().zip(&state.p[run.clone()]).zip(run) {
-                        *t = held(i, *p, *t - mean);
-                    }
-                }
-            });
-        }
-    }
-
-    /// The sums over C that the step length needs.
-    fn step(&mut self, state: &State) -> Step {
-        let (t, q) = (&self.t, &self.q);
-        let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (t, q) = (&t[run.clone()], &q[run]);
-                sums.add(h.len(), |i| {
-                    let (t, e) = (t[i].to_double(), h[i] - state.approach + u[i]);
-                    [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
-                });
-            }
-        });
-        Step { rt, tq, tt, t1, pp }
-    }
-
-    /// p = p + alpha t on C, and 4.1 unless C is fixed: elements beyond a bound, and those held back by the forecast, leave for it;
-    /// what they gain is owed. Returns how many.
-    fn update_pressures<S: AdmissibleSet>(
-        &mut self,
-        state: &mut State,
-        set: S,
-        alpha: f64,
-        forecast: Option<f64>,
-        fixed: bool,
-    ) -> u64 {
-        let t = &self.t;
-        let leaves = |i: usize, p: f64, t: T| {
-            let held = forecast.is_some_and(|forecast| {
-                let to = p + forecast * t.to_double();
-                to <= HELD_BACK * p || S::LIMITED && to >= set.limit(i) * (1.0 - HELD_BACK)
-            });
-            !fixed & (set.leaves(i, p + alpha * t.to_double()) | held)
-        };
-        // Blocks that no element leaves; the others have a sum of 1.
-        let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
-            let some_leave = block.runs().any(|(run, local)| {
-                let elements = p[local].iter().zip(&t[run.clone()]).zip(run);
-                elements.fold(false, |some, ((p, t), i)| some | leaves(i, *p, *t))
-            });
-            if some_leave {
-                sums.add(1, |_| [1.0]);
-                return;
-            }
-            for (run, local) in block.runs() {
-                p[local].iter_mut().zip(&t[run]).for_each(|(p, t)| *p += alpha * t.to_double());
-            }
-        });
-        let before = self.debts.len();
-        let mut left = 0;
-        let n = state.p.len();
-        for i in self.runs.blocks_with_sum().flatten().filter(|&i| i < n) {
-            if !state.contact[i] {
-                continue;
-            }
-            let (p, t) = (state.p[i], self.t[i]);
-            let to = p + alpha * t.to_double();
-            state.p[i] = to;
-            if leaves(i, p, t) {
-                let mut bound = 0.0;
-                if S::LIMITED && (to > set.limit(i) || to >= 0.0 && t > T::zero()) {
-                    bound = set.limit(i);
-                    state.at_limit[i] = true;
-                }
-                self.debts.push((i, bound - to));
-                state.p[i] = bound;
-                self.t[i] = T::zero();
-                state.contact[i] = false;
-                left += 1;
-            }
-        }
-        for debt in &self.debts[before..] {
-            self.runs.change(debt.0);
-        }
-        left
+        self.debts.retain(|debt| debt.1 != 0.0);
     }
 
     /// The sum of |d|.
     fn owed(&self) -> f64 {
-        let truncated: f64 = self.debts.iter().map(|debt| debt.1.abs()).sum();
-        if self.lacking.is_empty() {
-            return truncated;
-        }
-        truncated + self.lacking.iter().map(|d| d.abs()).sum::<f64>()
-    }
-
-    /// t = t + factor d, d being what u lacks of the force.
-    fn add_lacking(&mut self, factor: f64) {
-        for (t, d) in self.t.iter_mut().zip(&self.lacking) {
-            *t += T::of(factor * d);
-        }
+        self.debts.iter().map(|debt| debt.1.abs()).sum()
     }
 
     /// z = A d: a product pays all debts.
@@ -577,220 +337,50 @@ impl<T: Real> Iteration<T> {
         for (i, d) in self.debts.drain(..) {
             self.z[i] += T::of(d);
         }
-        for (z, d) in self.z.iter_mut().zip(&mut self.lacking) {
-            *z += T::of(std::mem::take(d));
-        }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
+}
 
-    /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
-    fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
-        let Load::Force(force) = state.load else { return 1.0 };
-        if S::LIMITED && state.at_limit.contains(&true) {
-            return self.carry_force_beside_limits(state, force / state.grid.element_area());
-        }
-        let p = &state.p;
-        let [carried] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let p = &p[run];
-                sums.add(p.len(), |i| [p[i]]);
-            }
-        });
-        let factor = force / (carried * state.grid.element_area());
-        if !factor.is_finite() {
-            return 1.0;
-        }
-        self.scale(state, factor);
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        factor
-    }
-
-    /// The same where elements are at their limit: only C is scaled, and u lacks what it gains. Where C is left nothing to carry, or
-    /// carries nothing, all pressures are scaled, and what was at its limit enters C.
-    fn carry_force_beside_limits(&mut self, state: &mut State, pressures: f64) -> f64 {
-        if self.scale_free(state) {
-            return 1.0;
-        }
-        let factor = pressures / state.p.iter().sum::<f64>();
-        state.p.iter_mut().chain(&mut self.lacking).for_each(|p| *p *= factor);
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
-            *inside |= std::mem::take(at_limit);
-        }
-        self.find_contact(state);
-        factor
-    }
-
-    /// Scales p of C alone to carry a prescribed force, and owes u the change; false where C cannot.
-    fn scale_free(&mut self, state: &mut State) -> bool {
-        let Load::Force(force) = state.load else { return true };
-        let (mut free, mut all) = (0.0, 0.0);
-        for (p, &inside) in state.p.iter().zip(&state.contact) {
-            all += p;
-            free += if inside { *p } else { 0.0 };
-        }
-        let factor = 1.0 + (force / state.grid.element_area() - all) / free;
-        if !(factor.is_finite() && factor > 0.0) {
-            return false;
-        }
-        // In the memory of `reserve_for_limits`.
-        self.lacking.resize(state.p.len(), 0.0);
-        for ((p, d), _) in state.p.iter_mut().zip(&mut self.lacking).zip(&state.contact).filter(|(_, &inside)| inside) {
-            *d += (factor - 1.0) * *p;
-            *p *= factor;
-        }
-        true
-    }
-
-    /// With a limit: keeps the pressures that u knows of.
-    fn remember(&mut self, state: &State) {
-        self.known.clear();
-        self.known.extend_from_slice(&state.p);
-        self.known.iter_mut().zip(&self.lacking).for_each(|(p, d)| *p -= d);
-        for &(i, d) in &self.debts {
-            self.known[i] -= d;
+impl Cycle {
+    fn meets(&self, goal: &Goal, floor: f64) -> bool {
+        if goal.by_update() {
+            self.update <= goal.tolerance * self.pressure
+        } else {
+            self.residual <= goal.tolerance.max(floor)
         }
     }
+}
 
-    /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
-    /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
-    fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
-        let (mut work, mut energy) = (0.0, 0.0);
-        for i in 0..state.p.len() {
-            let d = state.p[i] - self.known[i];
-            if d != 0.0 {
-                work -= d * (state.h[i] - state.approach + state.u[i]);
-                energy += d * (update.alpha * self.q[i].to_double() + self.z[i].to_double());
-            }
+/// What an iteration leaves to the next.
+struct Search {
+    /// alpha', if there is one.
+    forecast: Option<f64>,
+    /// Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
+    may_hold_back: bool,
+    /// (t, q); 0 where the next direction is conjugate to none.
+    tq: f64,
+    is_first: bool,
+}
+
+impl Search {
+    /// The forecast, unless it was far off: then it holds nobody back.
+    fn believed(&mut self, alpha: f64) -> Option<f64> {
+        let good = self.forecast.filter(|forecast| self.may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
+        self.may_hold_back = !self.may_hold_back || good.is_some();
+        if !self.may_hold_back {
+            self.tq = 0.0;
         }
-        let s = work / energy;
-        if !(s > 0.0 && s < STEP_BACK) {
-            return;
-        }
-        update.alpha *= s;
-        self.z.iter_mut().for_each(|z| *z = T::of(s * z.to_double()));
-        for i in 0..state.p.len() {
-            let d = state.p[i] - self.known[i];
-            if d == 0.0 {
-                continue;
-            }
-            let to = self.known[i] + s * d;
-            state.p[i] = set.project(i, to);
-            if state.p[i] != to {
-                self.debts.push((i, state.p[i] - to));
-            }
-            let at_limit = state.p[i] >= set.limit(i);
-            state.at_limit[i] = at_limit;
-            state.contact[i] = state.p[i] > 0.0 && !at_limit;
-        }
-        self.find_contact(state);
+        good
     }
 
-    /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
-    /// returns the factor, with which u is to be scaled. It costs no product.
-    fn least_energy(&mut self, state: &mut State, update: &Update) -> f64 {
-        let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
-        let [work, energy] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (q, z) = (&q[run.clone()], &z[run]);
-                sums.add(h.len(), |i| {
-                    let repair = if settled { z[i].to_double() } else { 0.0 };
-                    let u = u[i] + alpha * q[i].to_double() + repair;
-                    [p[i] * (state.approach - h[i]), p[i] * u]
-                });
-            }
-        });
-        let factor = work / energy;
-        if !(factor.is_finite() && factor > 0.0) {
-            return 1.0;
-        }
-        self.scale(state, factor);
-        factor
-    }
-
-    /// p = factor p on C.
-    fn scale(&mut self, state: &mut State, factor: f64) {
-        let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
-            for (_, local) in block.runs() {
-                p[local].iter_mut().for_each(|p| *p *= factor);
-            }
-        });
-    }
-
-    /// u = factor (u + alpha q + A d), and 4.2: exterior elements with e < 0 enter. Returns how many. One pass over the grid,
-    /// because its arrays are longer than the caches.
-    fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update, fixed: bool) -> u64 {
-        let State { h, u, contact, at_limit, approach, grid, .. } = state;
-        let (mx, approach) = (grid.mx, *approach);
-        let (q, z) = (&self.q, &self.z);
-        let Update { alpha, settled, factor } = *update;
-        self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
-            let row = iy * mx..(iy + 1) * mx;
-            for (u, q) in u.iter_mut().zip(&q[row.clone()]) {
-                *u += alpha * q.to_double();
-            }
-            if settled {
-                u.iter_mut().zip(&z[row.clone()]).for_each(|(u, z)| *u += z.to_double());
-            }
-            if factor != 1.0 {
-                u.iter_mut().for_each(|u| *u *= factor);
-            }
-            // Most rows have no element that enters, and this the compiler can vectorise.
-            let mut any = false;
-            for ((h, u), inside) in h[row.clone()].iter().zip(&*u).zip(&contact[row.clone()]) {
-                any |= (h - approach + *u < 0.0) & !inside;
-            }
-            if S::LIMITED {
-                for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
-                    any |= (h - approach + *u > 0.0) & at_limit;
-                }
-            }
-            entering[0] = any;
-        });
-        let mut entered = 0;
-        for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| !fixed && any) {
-            self.runs.change(iy * mx);
-            for i in iy * mx..(iy + 1) * mx {
-                let e = h[i] - approach + u[i];
-                let enters = if S::LIMITED && at_limit[i] { e > 0.0 } else { !contact[i] && e < 0.0 };
-                if enters {
-                    contact[i] = true;
-                    entered += 1;
-                    if S::LIMITED {
-                        at_limit[i] = false;
-                    }
-                }
-            }
-        }
-        entered
+    /// The next forecast: this alpha, within the usual range where it is near that.
+    fn expect(&mut self, alpha: f64, preconditioned: bool) {
+        let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
+        let near = preconditioned && within_factor(alpha, usual, FAR_OFF);
+        self.forecast = Some(if near { usual } else { alpha }).filter(|_| alpha > 0.0);
     }
 }
 
 fn within_factor(value: f64, other: f64, factor: f64) -> bool {
     value * factor > other && value < factor * other
-}
-
-/// What becomes of u: factor (u + alpha q + A d).
-#[derive(Clone, Copy)]
-struct Update {
-    alpha: f64,
-    /// Whether z holds A d.
-    settled: bool,
-    factor: f64,
-}
-
-impl Default for Update {
-    fn default() -> Update {
-        Update { alpha: 0.0, settled: false, factor: 1.0 }
-    }
-}
-
-/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p).
-struct Step {
-    rt: f64,
-    tq: f64,
-    tt: f64,
-    t1: f64,
-    pp: f64,
 }

@@ -3,16 +3,15 @@
 use std::sync::Arc;
 
 use super::scaling::Scaling;
-use super::{Cycle, End, Iteration, Stopping, Window};
-use crate::contact::{AdmissibleSet, Limited, NonNegative};
-use crate::contact::{Freshness, State};
+use super::{Cycle, End, Iteration, Window};
+use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::fft::Real;
 use crate::operator::Precision;
 use crate::operator::{reserve, zeros, Operator};
-use crate::progress::Monitor;
+use crate::progress::{Goal, Monitor};
 use crate::threads::Threads;
 
 /// The iteration in the precision asked for.
@@ -51,13 +50,10 @@ impl Inner {
         })
     }
 
-    fn correct<S: AdmissibleSet>(&mut self, state: &mut State, limits: &[f64]) {
-        let limited = Limited::PerElement(limits);
-        match (self, S::LIMITED) {
-            (Inner::Single(iteration), false) => iteration.correct(state, NonNegative),
-            (Inner::Single(iteration), true) => iteration.correct(state, limited),
-            (Inner::Double(iteration), false) => iteration.correct(state, NonNegative),
-            (Inner::Double(iteration), true) => iteration.correct(state, limited),
+    fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        match self {
+            Inner::Single(iteration) => iteration.correct(state, set),
+            Inner::Double(iteration) => iteration.correct(state, set),
         }
     }
 
@@ -68,20 +64,16 @@ impl Inner {
         }
     }
 
-    /// `limits` are those of the state's elements, if the set has any.
     fn run<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
-        limits: &[f64],
-        stop: &Stopping,
+        set: S,
+        goal: &Goal,
         after_cycle: impl FnMut(&Cycle) -> bool,
     ) -> End {
-        let limited = Limited::PerElement(limits);
-        match (self, S::LIMITED) {
-            (Inner::Single(iteration), false) => iteration.run(state, NonNegative, stop, after_cycle),
-            (Inner::Single(iteration), true) => iteration.run(state, limited, stop, after_cycle),
-            (Inner::Double(iteration), false) => iteration.run(state, NonNegative, stop, after_cycle),
-            (Inner::Double(iteration), true) => iteration.run(state, limited, stop, after_cycle),
+        match self {
+            Inner::Single(iteration) => iteration.run(state, set, goal, after_cycle),
+            Inner::Double(iteration) => iteration.run(state, set, goal, after_cycle),
         }
     }
 
@@ -178,23 +170,23 @@ impl Level {
         state: &mut State,
         set: S,
         displacement: Freshness,
-        stop: &Stopping,
+        goal: &Goal,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
         if displacement != Freshness::Exact {
             state.carry_force(set);
         }
-        self.on_window(state, set, displacement, |inner, grid, units, state, limits| {
+        self.on_window(state, set, displacement, |inner, grid, units, state, set| {
             let work = grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
-                inner.correct::<S>(state, limits);
+                inner.correct(state, set);
             }
             if displacement != Freshness::Exact {
                 inner.displace(state);
                 monitor.count_products(1, work);
             }
-            inner.run::<S>(state, limits, stop, |cycle| {
+            inner.run(state, set, goal, |cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
                 monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
@@ -205,7 +197,7 @@ impl Level {
     /// Improves p where u is near A p, without a product; u is not known afterwards.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set);
-        self.on_window(state, set, Freshness::Near, |inner, _, _, state, limits| inner.correct::<S>(state, limits))
+        self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| inner.correct(state, set))
     }
 
     /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
@@ -214,7 +206,7 @@ impl Level {
         state: &mut State,
         set: S,
         displacement: Freshness,
-        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State, &[f64]) -> R,
+        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State, S::Within<'_>) -> R,
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
         let Windowed { window, inner, units, part } = self.choose_window(state)?;
@@ -228,7 +220,7 @@ impl Level {
             inner.reserve_for_limits()?;
         }
         let Some(part) = part else {
-            let result = work(inner, &grid, units, state, &limits);
+            let result = work(inner, &grid, units, state, S::within(&limits));
             self.limits = limits;
             return Ok(result);
         };
@@ -249,7 +241,7 @@ impl Level {
         if *units != Scaling::SAME {
             units.convert(part);
         }
-        let result = work(inner, &grid, units, part, &limits);
+        let result = work(inner, &grid, units, part, S::within(&limits));
         if *units != Scaling::SAME {
             units.convert_back(part);
         }

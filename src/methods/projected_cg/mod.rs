@@ -5,6 +5,8 @@ mod coarse_grids;
 mod coarser_solutions;
 mod iteration;
 mod level;
+mod limits;
+mod passes;
 mod preconditioner;
 mod predictor;
 mod scaling;
@@ -13,6 +15,6 @@ mod step;
 mod window;
 
 pub use coarser_solutions::Sample;
-pub use iteration::{Cycle, End, Iteration, Stopping};
+pub use iteration::{Cycle, End, Iteration};
 pub use step::ProjectedCg;
 pub use window::Window;

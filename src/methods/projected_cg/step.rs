@@ -8,7 +8,7 @@ use super::coarse_grids::CoarseGrids;
 use super::coarser_solutions::{Sample, PREDICTS, SHOWS_ORDER};
 use super::level::Level;
 use super::predictor::Predictor;
-use super::Stopping;
+use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::reserve;
@@ -177,21 +177,21 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
             reserve(&mut self.before, state.p.len(), "the pressures before")?;
             self.before.clone_from(&state.p);
         }
-        let stopping = Stopping {
-            tolerance: if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance },
-            by_update: goal.by_update(),
-            fixed: S::FIXED,
-            iterations: goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND),
-        };
-        self.finest.run(state, set, was, &stopping, problem.grid.len(), monitor)?;
+        let tolerance = if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance };
+        let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
+        let inner = Goal { tolerance, max_cycles, ..*goal };
+        let end = self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;
+        let gives_up = end == End::Stagnated;
+        if gives_up || goal.by_update() {
+            problem.refresh(state, set);
+        }
         if !goal.by_update() {
-            return Ok(Change::default());
+            return Ok(Change { gives_up, ..Change::default() });
         }
         self.recursive = monitor.count.residual;
-        problem.refresh(state, set);
         let update = self.update(state, was, monitor.count.update);
-        Ok(Change { update, ..Change::default() })
+        Ok(Change { update, gives_up, ..Change::default() })
     }
 }
 

@@ -1,0 +1,131 @@
+//! What only a scene with limits of the pressures needs, `0 <= p <= p_max`.
+//!
+//! The limit is a second bound: elements are held back and truncated at both, and what was truncated at its limit enters C again where
+//! e > 0. With a prescribed force pressures at their limit cannot be scaled up. What is missing of the force,
+//!
+//! ```text
+//! m = force/(dx dy) - sum of p,
+//! ```
+//!
+//! the next direction restores, evenly over C: sum of t = m/alpha'. And the approach moves on by what an approach in proportion to the
+//! force would: by m/(sum of p) of (p, approach - h)/(sum of p). Without that, a thin C between what is at its limit and the exterior
+//! area stays where it is while all that is missing goes through it. Where far too much is carried, all of p is scaled down, which
+//! no limit forbids, and what was at its limit enters C.
+//!
+//! By approach no scaling keeps C from going and coming back. Instead the step is shortened to the least energy wherever a product has
+//! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
+//! forecast.
+
+use super::iteration::Iteration;
+use super::passes::Update;
+use crate::contact::{AdmissibleSet, State};
+use crate::error::Result;
+use crate::operator::fft::Real;
+use crate::operator::reserve;
+use crate::progress::Goal;
+use crate::scene::Load;
+
+/// A step goes back where the least energy lies before this part of it. Measured over 84 scenes: at 0.5 one is not solved, at 1 the
+/// work is 4 % more in the mean and 20 % more in the worst.
+const STEP_BACK: f64 = 0.7;
+
+/// Too much force by this part is scaled away. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
+/// the greatest pressure): without, the work is 1.16 times as much in the mean and 2.2 times in the worst.
+const TOO_MUCH: f64 = 0.05;
+
+/// What goes beyond the plain iteration.
+#[derive(Default)]
+pub(super) struct Beyond {
+    /// What is missing of a prescribed force, as a sum of pressures.
+    pub(super) missing: f64,
+    /// How far the approach moves on for that.
+    pub(super) shift: f64,
+    /// The pressures that u knows of: those of before the iteration without what was owed then.
+    known: Vec<f64>,
+}
+
+impl Beyond {
+    /// Whether the force is carried.
+    pub(super) fn carries(&self, state: &State, goal: &Goal) -> bool {
+        self.missing.abs() <= goal.tolerance * state.p.iter().sum::<f64>()
+    }
+}
+
+impl<T: Real> Iteration<T> {
+    /// Memory that a scene with limits needs beyond that of one without.
+    pub fn reserve_for_limits(&mut self) -> Result<()> {
+        reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")
+    }
+
+    /// Where elements are at their limit: carries the force as far as p and the debts can be scaled, and notes what is missing. Returns
+    /// the factor of the scaling; none where no element is at its limit.
+    pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
+        (self.limits.missing, self.limits.shift) = (0.0, 0.0);
+        let Load::Force(force) = state.load else { return None };
+        if !state.at_limit.contains(&true) {
+            return None;
+        }
+        let pressures = force / state.grid.element_area();
+        let carried: f64 = state.p.iter().sum();
+        if carried > (1.0 + TOO_MUCH) * pressures {
+            let factor = pressures / carried;
+            state.p.iter_mut().for_each(|p| *p *= factor);
+            self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+            for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
+                *inside |= std::mem::take(at_limit);
+            }
+            self.find_contact(state);
+            return Some(factor);
+        }
+        let loaded = state.p.iter().zip(&state.h).filter(|(p, _)| **p > 0.0);
+        let depth = loaded.map(|(p, h)| p * (state.approach - h)).sum::<f64>() / carried;
+        self.limits.missing = pressures - carried;
+        // An approach that is twice as deep is far enough for one step.
+        let shift = (self.limits.missing / carried).min(1.0) * depth;
+        self.limits.shift = if shift.is_finite() { shift } else { 0.0 };
+        Some(1.0)
+    }
+
+    /// With a limit: keeps the pressures that u knows of.
+    pub(super) fn remember(&mut self, state: &State) {
+        self.limits.known.clear();
+        self.limits.known.extend_from_slice(&state.p);
+        for &(i, d) in &self.debts {
+            self.limits.known[i] -= d;
+        }
+    }
+
+    /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
+    /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
+    pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
+        let (mut work, mut energy) = (0.0, 0.0);
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.limits.known[i];
+            if d != 0.0 {
+                work -= d * (state.h[i] - state.approach + state.u[i]);
+                energy += d * (update.alpha * self.q[i].to_double() + self.z[i].to_double());
+            }
+        }
+        let s = work / energy;
+        if !(s > 0.0 && s < STEP_BACK) {
+            return;
+        }
+        update.alpha *= s;
+        self.z.iter_mut().for_each(|z| *z = T::of(s * z.to_double()));
+        for i in 0..state.p.len() {
+            let d = state.p[i] - self.limits.known[i];
+            if d == 0.0 {
+                continue;
+            }
+            let to = self.limits.known[i] + s * d;
+            state.p[i] = set.project(i, to);
+            if state.p[i] != to {
+                self.debts.push((i, state.p[i] - to));
+            }
+            let at_limit = state.p[i] >= set.limit(i);
+            state.at_limit[i] = at_limit;
+            state.contact[i] = state.p[i] > 0.0 && !at_limit;
+        }
+        self.find_contact(state);
+    }
+}
