@@ -17,6 +17,7 @@ use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Problem, State, 
 use crate::error::{Error, Result};
 use crate::methods::{Change, Habits, Step};
 use crate::progress::{Goal, Monitor, Stop};
+use crate::scene::Load;
 
 /// Runs one method on the grid of `problem` from what `state` holds. Unless it converges, `best` knows the best iterate.
 pub fn iterate<S: AdmissibleSet>(
@@ -59,7 +60,7 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) {
+        if state.u_is == Freshness::Exact && carries(state) && goal.holds(&survey, change.update, set) {
             chatter += u32::from(changes > 0);
             if changes == 0 || survives_chatter(&habits, chatter) {
                 return Ok(Stop::Converged);
@@ -77,6 +78,17 @@ pub fn iterate<S: AdmissibleSet>(
         }
     }
     Ok(monitor.interrupted())
+}
+
+/// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Whether p carries a prescribed force.
+fn carries(state: &State) -> bool {
+    let Load::Force(force) = state.load else { return true };
+    let (sum, all) = state.p.iter().fold((0.0, 0.0), |(sum, all), p| (sum + p, all + p.abs()));
+    let area = state.grid.element_area();
+    (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
 }
 
 /// Whether the certificate decides although elements still change sides.

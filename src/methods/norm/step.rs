@@ -67,6 +67,7 @@ impl Norm {
         &mut self,
         problem: &mut Problem,
         state: &mut State,
+        set: S,
         goal: &Goal,
         monitor: &mut Monitor<'_>,
     ) -> Result<Inner> {
@@ -91,7 +92,7 @@ impl Norm {
         };
         monitor.count.update = inner.update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
-        refresh::<S>(problem, state);
+        refresh(problem, state, set);
         Ok(inner)
     }
 
@@ -153,22 +154,22 @@ fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, s
     }
     state.u_is = Freshness::Exact;
     if held || matches!(state.load, Load::Force(_)) {
-        refresh::<S>(problem, state);
+        refresh(problem, state, set);
     }
 }
 
 /// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
 /// is for the next exchange.
-fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State) {
+fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+    let beside_limits = S::LIMITED && state.at_limit.contains(&true);
     match state.load {
-        Load::Force(force) if S::LIMITED && state.at_limit.contains(&true) => {
+        Load::Force(force) if beside_limits && state.contact.contains(&true) => {
             let missing = force / state.grid.element_area() - state.p.iter().sum::<f64>();
-            let even = missing / state.contact_count().max(1) as f64;
+            let even = missing / state.contact_count() as f64;
             state.p.iter_mut().zip(&state.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += even);
         }
-        _ => {
-            state.balance_force();
-        }
+        Load::Force(_) if S::LIMITED && !beside_limits => _ = state.balance_force(),
+        _ => _ = state.carry_force(set),
     }
     problem.displace(&state.p, &mut state.u);
     state.u_is = Freshness::Exact;
@@ -232,7 +233,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
                 start_from_zero(problem, state, set);
             }
         }
-        let inner = self.solve::<S>(problem, state, goal, monitor)?;
+        let inner = self.solve(problem, state, set, goal, monitor)?;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
         monitor.count.active_set_changes += changes;

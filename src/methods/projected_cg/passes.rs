@@ -234,7 +234,7 @@ impl<T: Real> Iteration<T> {
             }
         });
         let factor = force / (carried * state.grid.element_area());
-        if !factor.is_finite() {
+        if !(factor.is_finite() && factor > 0.0) {
             return 1.0;
         }
         self.scale(state, factor);
