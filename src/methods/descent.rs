@@ -129,7 +129,7 @@ impl Descent {
 
     /// The step cut off at the bounds, in `change`, and what it does to the energy.
     fn try_truncated<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &State, set: S, alpha: f64) -> f64 {
-        truncated_step(state, set, &self.t, alpha, &mut self.change);
+        truncated_step(state, set, (&self.t, &self.free), alpha, &mut self.change);
         problem.displace(&self.change, &mut self.product);
         // A change without force does not see the approach.
         let gain = |i: usize| self.change[i] * (state.deformed_distance(i) + 0.5 * self.product[i]);
@@ -206,19 +206,52 @@ fn find_free<S: AdmissibleSet>(state: &State, set: S, free: &mut Vec<bool>, resi
     }
 }
 
-/// The change from p to p + alpha t, projected and then scaled to carry a prescribed force.
-fn truncated_step<S: AdmissibleSet>(state: &State, set: S, t: &[f64], alpha: f64, change: &mut [f64]) {
-    let moved = |i: usize| set.project(i, state.p[i] + alpha * t[i]);
-    let factor = match state.load {
-        Load::Approach(_) => 1.0,
-        Load::Force(force) => force / state.grid.element_area() / (0..t.len()).map(moved).sum::<f64>(),
+/// The change from p to p + alpha t, projected: with a prescribed force scaled to carry it, or with limits moved on by the constant on
+/// the free elements with which it does.
+fn truncated_step<S: AdmissibleSet>(
+    state: &State,
+    set: S,
+    (t, free): (&[f64], &[bool]),
+    alpha: f64,
+    change: &mut [f64],
+) {
+    let moved = |i: usize, constant: f64| match free[i] {
+        true => set.project(i, state.p[i] + alpha * t[i] + constant),
+        false => state.p[i],
     };
-    let factor = if factor.is_finite() { factor } else { 1.0 };
-    // Where scaling would cross a limit there is no such step: none is made, and the feasible one is taken.
-    let crosses = S::LIMITED && factor > 1.0 && (0..t.len()).any(|i| factor * moved(i) > set.limit(i));
-    for (i, change) in change.iter_mut().enumerate() {
-        *change = if crosses { 0.0 } else { factor * moved(i) - state.p[i] };
+    let sum = |constant: f64| (0..t.len()).map(|i| moved(i, constant)).sum::<f64>();
+    let (mut factor, mut constant) = (1.0, 0.0);
+    if let Load::Force(force) = state.load {
+        let wanted = force / state.grid.element_area();
+        match S::LIMITED {
+            false => factor = wanted / sum(0.0),
+            true => constant = constant_for(wanted, sum, state.p.iter().copied().fold(0.0, f64::max)),
+        }
     }
+    let factor = if factor.is_finite() { factor } else { 1.0 };
+    for (i, change) in change.iter_mut().enumerate() {
+        *change = factor * moved(i, constant) - state.p[i];
+    }
+}
+
+/// The constant with which the sum, which grows with it, is `wanted`, by bisection; `size` is that of a pressure.
+fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, size: f64) -> f64 {
+    let (mut low, mut high) = (-size, size);
+    for _ in 0..60 {
+        let reach = high - low;
+        if sum(low) > wanted {
+            low -= reach;
+        } else if sum(high) < wanted {
+            high += reach;
+        } else {
+            break;
+        }
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if sum(middle) < wanted { &mut low } else { &mut high }) = middle;
+    }
+    0.5 * (low + high)
 }
 
 /// p = p + length t, u = u + length A t, and the contact area with them. Returns how many elements changed sides.

@@ -61,6 +61,10 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.unload();
+        // What the solve before found is nothing to start from.
+        if let Load::Force(_) = scene.load {
+            state.approach = 0.0;
+        }
         return Ok(from);
     }
     clean(state, set);
