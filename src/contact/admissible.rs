@@ -2,13 +2,15 @@
 //!
 //! ```text
 //! half-line   0 <= p              (NonNegative)
-//! box         0 <= p <= p_max     (Limited: effect pressure_limit)
+//! box         0 <= p <= p_max     (PressureLimit, the effect)
 //! ```
 //!
 //! The third is what a caller gives who keeps the contact area (active_set FIXED): any pressure, on the elements given ([`Fixed`]).
 //!
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). With a half-line the last does
 //! not exist: [`AdmissibleSet::LIMITED`] is a constant, and what asks for a limit is not compiled.
+
+use crate::scene::PressureLimit;
 
 /// The pressures that each element may have.
 pub trait AdmissibleSet: Copy + Send + Sync {
@@ -19,7 +21,9 @@ pub trait AdmissibleSet: Copy + Send + Sync {
     const FIXED: bool = false;
 
     /// The greatest pressure of element i; `+infinity` where there is none.
-    fn limit(&self, i: usize) -> f64;
+    fn limit(&self, _i: usize) -> f64 {
+        f64::INFINITY
+    }
 
     /// The admissible pressure nearest to `p`.
     fn project(&self, i: usize, p: f64) -> f64 {
@@ -48,10 +52,6 @@ pub struct NonNegative;
 
 impl AdmissibleSet for NonNegative {
     const LIMITED: bool = false;
-
-    fn limit(&self, _: usize) -> f64 {
-        f64::INFINITY
-    }
 }
 
 /// Any pressure on a contact area that is given.
@@ -62,31 +62,16 @@ impl AdmissibleSet for Fixed {
     const LIMITED: bool = false;
     const FIXED: bool = true;
 
-    fn limit(&self, _: usize) -> f64 {
-        f64::INFINITY
-    }
-
     fn project(&self, _: usize, p: f64) -> f64 {
         p
     }
 }
 
-/// `0 <= p <= p_max`, one p_max for all elements or one each.
-#[derive(Clone, Copy, Debug)]
-pub enum Limited<'a> {
-    /// The same for all.
-    Uniform(f64),
-    /// One each, `[my][mx]`.
-    PerElement(&'a [f64]),
-}
-
-impl AdmissibleSet for Limited<'_> {
+/// `0 <= p <= p_max`.
+impl AdmissibleSet for PressureLimit<'_> {
     const LIMITED: bool = true;
 
     fn limit(&self, i: usize) -> f64 {
-        match self {
-            Limited::Uniform(limit) => *limit,
-            Limited::PerElement(limits) => limits[i],
-        }
+        self.at(i)
     }
 }

@@ -1,9 +1,8 @@
 //! The best iterate of a solve: what is returned when no method reaches the goal.
 
 use super::iterate::violation;
-use crate::contact::{truncate, AdmissibleSet, Freshness, Problem, State, Survey};
+use crate::contact::{truncate, AdmissibleSet, Freshness, Problem, Snapshot, State, Survey};
 use crate::error::Result;
-use crate::memory::reserve;
 use crate::progress::Monitor;
 use crate::scene::Load;
 
@@ -11,9 +10,7 @@ use crate::scene::Load;
 #[derive(Default)]
 pub struct Best {
     violation: f64,
-    p: Vec<f64>,
-    contact: Vec<bool>,
-    at_limit: Vec<bool>,
+    found: Snapshot,
 }
 
 impl Best {
@@ -29,20 +26,15 @@ impl Best {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.p.len() * (size_of::<f64>() + size_of::<bool>())
+        self.found.bytes()
     }
 
     /// Keeps an iterate whose u is A p, if it is better than those before.
     pub fn note(&mut self, state: &State, violation: f64) -> Result<()> {
         if violation < self.violation {
-            const MEMORY: &str = "the best iterate";
-            reserve(&mut self.p, state.p.len(), MEMORY)?;
-            reserve(&mut self.contact, state.p.len(), MEMORY)?;
-            reserve(&mut self.at_limit, state.at_limit.len(), MEMORY)?;
+            self.found.reserve(state, "the best iterate")?;
+            self.found.keep(state);
             self.violation = violation;
-            self.p.clone_from(&state.p);
-            self.contact.clone_from(&state.contact);
-            self.at_limit.clone_from(&state.at_limit);
         }
         Ok(())
     }
@@ -71,9 +63,7 @@ impl Best {
         let by_approach = matches!(state.load, Load::Approach(_));
         if self.violation < now || !(now <= f64::MAX) {
             if self.violation.is_finite() {
-                state.p.copy_from_slice(&self.p);
-                state.contact.copy_from_slice(&self.contact);
-                state.at_limit.copy_from_slice(&self.at_limit);
+                self.found.give_back(state);
             } else {
                 state.p.fill(0.0);
                 state.at_limit.fill(false);

@@ -25,7 +25,7 @@ pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use report::{Halving, Limit, Report};
 
-use crate::contact::{self, AdmissibleSet, Fixed, Freshness, Limited, NonNegative, State};
+use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State};
 use crate::effects::{self, Effect, Named};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
@@ -173,12 +173,12 @@ impl Solver {
         }
         let mut limits = std::mem::take(&mut self.limits);
         let set = match limit {
-            PressureLimit::Uniform(limit) => Limited::Uniform(limit),
+            PressureLimit::Uniform(_) => limit,
             PressureLimit::PerElement(given) => {
                 limits.clear();
                 reserve(&mut limits, n, "pressure limits")?;
                 limits.extend_from_slice(given);
-                Limited::PerElement(&limits)
+                PressureLimit::PerElement(&limits)
             }
         };
         let outcome = self.run(scene, set, options, guess, monitor);
