@@ -1,9 +1,8 @@
 //! The best iterate of a solve: what is returned when no method reaches the goal.
 
-use super::iterate::violation;
-use crate::contact::{truncate, AdmissibleSet, Freshness, Problem, Snapshot, State, Survey};
+use super::iterate::{violation, Task};
+use crate::contact::{truncate, AdmissibleSet, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
-use crate::progress::Monitor;
 use crate::scene::Load;
 
 /// The iterate of the least violation so far.
@@ -41,13 +40,8 @@ impl Best {
 
     /// The state becomes the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
     /// approach p = 0 is an iterate, too, and none worse than that is returned.
-    pub fn restore<S: AdmissibleSet>(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        monitor: &mut Monitor<'_>,
-    ) {
+    pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) {
+        let (state, set) = (&mut *task.state, task.set);
         for (i, p) in state.p.iter_mut().enumerate() {
             // NaN is not less than anything.
             *p = if p.abs() < f64::INFINITY { *p } else { 0.0 };
@@ -57,7 +51,7 @@ impl Best {
         }
         let left = truncate(state, set);
         if left > 0 || state.u_is != Freshness::Exact {
-            problem.refresh(state, set);
+            task.problem.refresh(state, set);
         }
         let now = violation(&Survey::of(state), set);
         let by_approach = matches!(state.load, Load::Approach(_));
@@ -68,7 +62,7 @@ impl Best {
                 state.p.fill(0.0);
                 state.at_limit.fill(false);
             }
-            problem.refresh(state, set);
+            task.problem.refresh(state, set);
         }
         let found = violation(&Survey::of(state), set);
         if by_approach && !(found <= 1.0) {
@@ -76,9 +70,9 @@ impl Best {
             state.u.fill(0.0);
             if !S::FIXED {
                 state.unload();
-                state.start(problem.self_influence());
+                state.start(task.problem.self_influence());
             }
         }
-        monitor.count_products(problem.take_products(), problem.work);
+        task.count_products();
     }
 }

@@ -3,7 +3,6 @@
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
-mod accuracy;
 mod batch;
 mod best;
 mod estimates;
@@ -12,6 +11,7 @@ mod methods;
 mod nested;
 mod options;
 mod range;
+mod refinement;
 mod report;
 mod take_over;
 
@@ -20,9 +20,9 @@ use std::time::Instant;
 
 pub use crate::operator::Precision;
 pub use crate::progress::{Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop};
-pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
+pub use refinement::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use report::{Halving, Limit, Report};
 
 use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State};
@@ -34,6 +34,7 @@ use crate::memory::{reserve, zeros};
 use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
+use iterate::Task;
 use methods::Methods;
 
 /// Pressures and contact area to start from.
@@ -196,7 +197,6 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Stop, f64)> {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
-        let mut goal = options.goal();
         let multigrid = set_up.without_multigrid.is_none();
         let stages = methods::stages(options.method, problem.symmetric, S::FIXED, multigrid)?;
         // What was solved before is gone from here on, unless this solve comes to an end.
@@ -208,15 +208,16 @@ impl Solver {
             methods.projected_cg.forget_solutions();
         }
         let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
-        let stop = if take_over::is_without_contact(state, S::FIXED) {
+        let mut task = Task { problem, state, set, goal: options.goal(), monitor };
+        let stop = if take_over::is_without_contact(task.state, S::FIXED) {
             Stop::Converged
         } else {
-            methods.solve(problem, state, set, from, stages, (&mut goal, options.error_ratio), monitor)?
+            methods.solve(&mut task, from, stages, options.error_ratio)?
         };
-        let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
+        let stop = if task.monitor.is_cancelled() { Stop::Cancelled } else { stop };
         *has_result = true;
-        monitor.close_grid(state);
-        Ok((stop, goal.tolerance))
+        task.monitor.close_grid(task.state);
+        Ok((stop, task.goal.tolerance))
     }
 
     /// The errors of the report and the ledger, from what coarser grids find. With limits the samples would be other problems.
