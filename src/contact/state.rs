@@ -6,7 +6,7 @@ use crate::memory::reserve;
 use crate::operator::zeros;
 use crate::scene::Load;
 
-use super::exchange::starting_contact;
+use super::exchange::estimate_approach;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
@@ -71,9 +71,9 @@ impl State {
     /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.
     pub fn start(&mut self, self_influence: f64) {
         if let Load::Force(force) = self.load {
-            self.approach = super::exchange::estimate_approach(&self.grid, &self.h, force, self_influence);
+            self.approach = estimate_approach(&self.grid, &self.h, force, self_influence);
         }
-        starting_contact(&self.h, self.approach, &mut self.contact);
+        self.contact.iter_mut().zip(&self.h).for_each(|(inside, h)| *inside = *h <= self.approach);
     }
 
     /// Bytes held.

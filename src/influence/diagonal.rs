@@ -90,14 +90,10 @@ impl Layer {
     /// The layer of a coarser grid: c is the mean over the finer elements.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Layer> {
         let Some(more) = self.more() else { return Ok(self.clone()) };
-        let span = |i: usize, fine: usize, coarse: usize| {
-            let factor = if coarse < fine { 2 } else { 1 };
-            factor * i..(factor * (i + 1)).min(fine)
-        };
         let mean = |i: usize| {
-            let (columns, rows) = (span(i % coarse.mx, fine.mx, coarse.mx), span(i / coarse.mx, fine.my, coarse.my));
-            let count = (columns.len() * rows.len()) as f64;
-            rows.flat_map(|y| columns.clone().map(move |x| y * fine.mx + x)).map(|i| more[i]).sum::<f64>() / count
+            let (sum, count) =
+                coarse.children(fine, i).fold((0.0, 0.0), |(sum, count), i| (sum + more[i], count + 1.0));
+            sum / count
         };
         Ok(Layer { more: Some(Arc::new(collected((0..coarse.len()).map(mean), LAYER)?)), ..*self })
     }

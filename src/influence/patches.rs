@@ -60,9 +60,8 @@ impl Patches {
 
     /// The patches of a coarser grid: an element belongs where the first of its finer ones does.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Patches> {
-        let factor = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
-        let (by_x, by_y) = (factor(fine.mx, coarse.mx), factor(fine.my, coarse.my));
-        let first = |i: usize| self.patch[fine.index(by_x * (i % coarse.mx), by_y * (i / coarse.mx))];
+        // Each has one.
+        let first = |i: usize| coarse.children(fine, i).next().map_or(0, |first| self.patch[first]);
         Ok(Patches { patch: Arc::new(collected((0..coarse.len()).map(first), PATCHES)?), ..self.clone() })
     }
 }

@@ -68,21 +68,20 @@ fn richardson(value: f64, near: (f64, f64), far: Option<(f64, f64)>, highest: f6
 /// Relative discretisation error that samples suggest for the force (or the approach) on the finest grid before that is solved.
 pub fn predict(near: &Sample, far: &Sample) -> f64 {
     let error_near = (far.found - near.found) / ((far.size / near.size).powi(2) - 1.0);
-    let relative = (error_near / near.found).abs() / (near.size * near.size);
-    if relative.is_finite() {
-        relative
-    } else {
-        0.0
-    }
+    known((error_near / near.found).abs() / (near.size * near.size))
 }
 
 /// The same from the last two rows of a ledger: their step is 3/4 of the coarser one's error, which falls by 4 with every grid.
 pub fn predict_from_ledger(rows: &[LedgerRow], load: Load) -> f64 {
     let [.., before, last] = rows else { return 0.0 };
     let (before, last) = (before.measures.found(load), last.measures.found(load));
-    let relative = ((before - last) / last).abs() / 12.0;
-    if relative.is_finite() {
-        relative
+    known(((before - last) / last).abs() / 12.0)
+}
+
+/// 0 for what is not known.
+fn known(error: f64) -> f64 {
+    if error.is_finite() {
+        error
     } else {
         0.0
     }

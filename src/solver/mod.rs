@@ -76,7 +76,8 @@ struct SetUp {
     /// What later scenes may not change.
     named: Named,
     has_own_influence: bool,
-    has_row_tables: bool,
+    /// Whether the coefficients are the caller's.
+    given: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
@@ -102,7 +103,7 @@ impl Solver {
         let set_up = SetUp {
             named: Named::new(scene),
             has_own_influence: scene.influence.is_some(),
-            has_row_tables: scene.row_tables.is_some(),
+            given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
             options: *options,
@@ -114,7 +115,7 @@ impl Solver {
 
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
-        problem.given = set_up.has_own_influence || set_up.has_row_tables;
+        problem.given = set_up.given;
         let h = zeros(grid.len(), "undeformed distances")?;
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,

@@ -9,32 +9,28 @@ use crate::scene::{Load, Scene};
 /// area that is given.
 pub fn check(scene: &Scene<'_>, problem: &Problem, largest: f64, fixed: Option<Guess<'_>>) -> Result<()> {
     let influence = problem.self_influence();
-    let (pressure, displacement) = match (scene.load, fixed) {
-        (Load::Approach(approach), Some(fixed)) => {
-            let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
-            let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
-            let depth = on_contact.fold(0.0, |depth: f64, (h, _)| depth.max((h - approach).abs()));
-            (depth / influence, depth)
-        }
-        (Load::Approach(approach), None) => {
-            let lowest = scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min);
-            let depth = if lowest.is_finite() { (approach - lowest).max(0.0) } else { 0.0 };
-            (depth / influence, depth)
-        }
-        (Load::Force(force), _) => {
-            let pressure = force / scene.grid.element_area();
-            (pressure, pressure * influence)
-        }
+    let h = scene.undeformed_distance;
+    let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    // The largest on the given contact area.
+    let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
+        let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());
+        on_contact.fold(0.0, |largest: f64, (h, _)| largest.max(of(*h).abs()))
     };
     // With a prescribed force the approach is a mean of distances, whatever they are measured from.
-    let farthest = match (scene.load, fixed) {
-        (Load::Approach(_), _) => 0.0,
-        (Load::Force(_), Some(fixed)) => {
-            let on_contact = scene.undeformed_distance.iter().zip(fixed.contact);
-            let on_contact = on_contact.filter(|(h, inside)| **inside && h.is_finite());
-            on_contact.fold(0.0, |farthest: f64, (h, _)| farthest.max(h.abs()))
+    let (pressure, displacement, farthest) = match scene.load {
+        Load::Approach(approach) => {
+            let depth = match fixed {
+                Some(fixed) => largest_on(fixed, &|h| h - approach),
+                None if lowest.is_finite() => (approach - lowest).max(0.0),
+                None => 0.0,
+            };
+            (depth / influence, depth, 0.0)
         }
-        (Load::Force(_), None) => scene.undeformed_distance.iter().copied().fold(f64::INFINITY, f64::min).abs(),
+        Load::Force(force) => {
+            let pressure = force / scene.grid.element_area();
+            let farthest = fixed.map_or(lowest.abs(), |fixed| largest_on(fixed, &|h| h));
+            (pressure, pressure * influence, farthest)
+        }
     };
     if pressure != 0.0 && farthest >= 1e140 {
         return invalid(format!(

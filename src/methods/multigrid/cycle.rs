@@ -151,7 +151,7 @@ impl Multigrid {
         let (fine, coarse) = (self.hierarchy.levels[l].grid, self.hierarchy.levels[l + 1].grid);
         let (finer, coarser) = self.unknowns.split_at_mut(l + 1);
         transfer::restrict_contact(&fine, &coarse, &finer[l].contact, &mut coarser[0].contact);
-        transfer::restrict_defect(&fine, &coarse, &finer[l].residual, &mut coarser[0].defect);
+        transfer::restrict_mean(&fine, &coarse, |i| finer[l].residual[i], &mut coarser[0].defect);
         for (d, &inside) in coarser[0].defect.iter_mut().zip(&coarser[0].contact) {
             if !inside {
                 *d = 0.0;

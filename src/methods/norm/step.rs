@@ -44,11 +44,6 @@ enum Next {
 }
 
 impl Norm {
-    /// The memory of inner solves.
-    pub fn inner(&mut self) -> &mut super::Workspace {
-        &mut self.inner
-    }
-
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         2 * self.u_before.len() * size_of::<f64>() + self.inner.bytes()
