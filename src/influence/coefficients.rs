@@ -48,7 +48,7 @@ impl Coefficients {
 
     /// What the layer adds to the coefficient at offset (0, 0), everywhere.
     fn least(&self) -> f64 {
-        self.diagonal.as_ref().map_or(0.0, Layer::least)
+        self.diagonal.as_ref().map_or(0.0, |layer| layer.least)
     }
 
     /// The coefficient at offset `(kx, ky)`, without factors between patches; of row tables the mean over rows.
@@ -81,7 +81,7 @@ impl Coefficients {
     }
 
     /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
-    /// [typical](Layer::typical) layer. What has no inverse gets one, but where a uniform layer gives it that: the typical layer of some
+    /// typical layer. What has no inverse gets one, but where a uniform layer gives it that: the typical layer of some
     /// elements may be next to none.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
@@ -93,7 +93,7 @@ impl Coefficients {
             out.iter_mut().for_each(|value| *value += constant);
         }
         if let (Some(layer), 0) = (&self.diagonal, ky) {
-            out[0] += layer.typical();
+            out[0] += layer.typical;
         }
     }
 

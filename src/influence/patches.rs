@@ -19,9 +19,9 @@ const PATCHES: &str = "the patches";
 /// Patches and factors.
 #[derive(Clone, Debug)]
 pub struct Patches {
-    count: usize,
+    pub(crate) count: usize,
     /// Of each element.
-    patch: Arc<Vec<u16>>,
+    pub(crate) patch: Arc<Vec<u16>>,
     /// `[count][count]`.
     factors: Arc<[f64]>,
 }
@@ -31,16 +31,6 @@ impl Patches {
     pub fn new(count: usize, patch: impl ExactSizeIterator<Item = u16>, factors: &[f64]) -> Result<Patches> {
         assert_eq!(factors.len(), count * count);
         Ok(Patches { count, patch: Arc::new(collected(patch, PATCHES)?), factors: factors.into() })
-    }
-
-    /// Number of patches.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The patch of each element.
-    pub fn patch(&self) -> &[u16] {
-        &self.patch
     }
 
     /// The factor between two patches.

@@ -80,7 +80,7 @@ impl Periodic {
     fn add_images(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let far = &self.far;
         let half_space = self.half_space.for_element(near.element.0, near.element.1);
-        let strength = half_space.compliance() * (near.element.0 * near.element.1);
+        let strength = half_space.compliance * (near.element.0 * near.element.1);
         let [means_x, means_y] = far.means(near);
         let in_x = collected(means_x, PERIODIC)?;
         let (last_x, last_y) = (far.images.0 * grid.mx, (far.images.1 * grid.my) as i64);
@@ -107,7 +107,7 @@ impl Periodic {
     /// a second period changes.
     fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let (length_x, length_y) = lengths(grid);
-        let (row, c) = (self.row, self.half_space.compliance());
+        let (row, c) = (self.row, self.half_space.compliance);
         let along_x = self.far.lines == Lines::X;
         let (count, d, cut, near, length, width) = match self.far.lines {
             Lines::X => (table.len() / row, grid.dy, near.element.1, near.offsets.1, length_x, length_y),
@@ -155,9 +155,9 @@ impl Kernel for Periodic {
         if !(self.x && self.y) {
             return 0.0;
         }
-        let (dx, dy) = self.half_space.element();
+        let HalfSpace { dx, dy, .. } = self.half_space;
         let longest = f64::max(self.mx as f64 * dx, self.my as f64 * dy);
-        self.half_space.compliance() * longest / (self.mx as f64 * self.my as f64)
+        self.half_space.compliance * longest / (self.mx as f64 * self.my as f64)
     }
 
     // An odd count makes it longer by an element: good enough to start from.

@@ -8,7 +8,8 @@ use crate::scene::Load;
 /// The iterate of the least violation so far.
 #[derive(Default)]
 pub struct Best {
-    violation: f64,
+    /// Infinite before there is one.
+    pub violation: f64,
     found: Snapshot,
 }
 
@@ -16,11 +17,6 @@ impl Best {
     /// There is none yet.
     pub fn forget(&mut self) {
         self.violation = f64::INFINITY;
-    }
-
-    /// The violation of the best iterate; infinite before there is one.
-    pub fn violation(&self) -> f64 {
-        self.violation
     }
 
     /// Bytes held.

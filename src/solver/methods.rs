@@ -133,7 +133,7 @@ impl Methods {
             return false;
         }
         self.best.restore(task);
-        stage == Stage::FullMultigrid && !(self.best.violation() <= WORTHLESS)
+        stage == Stage::FullMultigrid && !(self.best.violation <= WORTHLESS)
     }
 
     /// A start from nothing.

@@ -94,27 +94,26 @@ fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>
         *inside |= std::mem::take(at_limit);
     }
     match (options.initial_guess, guess) {
-        (InitialGuess::Previous, Some(guess)) if fixed => {
-            if !solved {
-                state.p.fill(0.0);
-                state.u_is = Freshness::Stale;
-            }
-            state.contact.copy_from_slice(guess.contact);
-            Start::Previous
-        }
-        (InitialGuess::Previous, _) if solved => Start::Previous,
         (InitialGuess::Given, Some(guess)) => {
             state.p.copy_from_slice(guess.pressure);
             state.contact.copy_from_slice(guess.contact);
             state.u_is = Freshness::Stale;
             Start::Given
         }
-        (InitialGuess::None, Some(guess)) if fixed => {
-            state.p.fill(0.0);
+        (from, Some(guess)) if fixed => {
+            let goes_on = from == InitialGuess::Previous;
+            if !(goes_on && solved) {
+                state.p.fill(0.0);
+                state.u_is = Freshness::Stale;
+            }
             state.contact.copy_from_slice(guess.contact);
-            state.u_is = Freshness::Stale;
-            Start::Given
+            if goes_on {
+                Start::Previous
+            } else {
+                Start::Given
+            }
         }
+        (InitialGuess::Previous, _) if solved => Start::Previous,
         _ => Start::Nothing,
     }
 }

@@ -85,7 +85,7 @@ impl Smoother {
             // A is dense, so the red elements depend on each other, too: each colour is swept in lexicographic order, and the residual
             // is brought up to date between.
             Smoother::RedBlack(gauss_seidel, changes, before) => {
-                let mx = gauss_seidel.row_length();
+                let mx = gauss_seidel.mx;
                 let red = |i: usize| (i / mx + i % mx) % 2 == 0;
                 before.copy_from_slice(residual);
                 changes.fill(0.0);
