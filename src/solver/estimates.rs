@@ -106,23 +106,12 @@ pub fn estimate(
     };
     let force = of(found, |sample| sample.found);
     let max_pressure = of(measures.max_pressure, |sample| sample.max_pressure);
-    // Distances are those of whole fields: their own order is taken as it is, the square root of the pressures at the rim allows for 1.
+    // The distance is an rms over the field; its order is at most 1, from the square root at the rim.
     let pressure = near.and_then(|near| {
         let q = trusted_order((near.size, near.distance), far.map(|far| (far.size, far.distance)), 1.0)?;
         Some((near.distance / (near.size.powf(q) - 1.0), q)).filter(|(error, _)| error.is_finite())
     });
-    let mut untrusted = 0;
-    for (estimate, bit, what) in [
-        (force, DiscretisationError::FORCE, "force or approach"),
-        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure"),
-        (pressure, DiscretisationError::PRESSURE, "pressures"),
-    ] {
-        if near.is_some() && estimate.is_none() {
-            untrusted |= bit;
-            log::info!("the error of the {what} cannot be estimated: coarser grids do not converge to it");
-        }
-    }
-
+    let untrusted = if near.is_some() { untrusted(force, max_pressure, pressure) } else { 0 };
     let (area, residual) = (measures.corrected_area, measures.certificate.residual);
     for row in ledger.iter_mut() {
         let row_size = (finest.grid.len() as f64 / (row.mx * row.my) as f64).sqrt();
@@ -151,6 +140,22 @@ pub fn estimate(
     let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
     let limit = if error.abs() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
+}
+
+/// The bits of the errors that cannot be estimated; says so in the log.
+fn untrusted(force: Option<(f64, f64)>, max_pressure: Option<(f64, f64)>, pressure: Option<(f64, f64)>) -> u32 {
+    let mut untrusted = 0;
+    for (estimate, bit, what) in [
+        (force, DiscretisationError::FORCE, "force or approach"),
+        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure"),
+        (pressure, DiscretisationError::PRESSURE, "pressures"),
+    ] {
+        if estimate.is_none() {
+            untrusted |= bit;
+            log::info!("the error of the {what} cannot be estimated: coarser grids do not converge to it");
+        }
+    }
+    untrusted
 }
 
 /// What the largest pressure may miss of a peak between the elements: half of the most, `(d^2 p)/8` of the second differences there.

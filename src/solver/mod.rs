@@ -5,12 +5,12 @@
 
 mod batch;
 mod best;
+mod check;
 mod estimates;
 mod iterate;
 mod methods;
 mod nested;
 mod options;
-mod range;
 mod refinement;
 mod report;
 mod take_over;
@@ -27,7 +27,7 @@ pub use report::{Halving, Limit, Report};
 
 use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State};
 use crate::effects::{self, Effect, Named};
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
 use crate::memory::{reserve, zeros};
@@ -138,9 +138,10 @@ impl Solver {
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
-        self.check(scene, options)?;
-        take_over::check_guess(scene, options, guess)?;
-        range::check(scene, &self.problem, self.set_up.largest_influence, guess.filter(|_| is_fixed(options)))?;
+        self.set_up.check(scene, options, &self.problem)?;
+        check::guess(scene, options, guess)?;
+        let given_contact = guess.filter(|_| is_fixed(options));
+        check::range(scene, &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = match scene.pressure_limit {
             _ if is_fixed(options) => self.run(scene, Fixed, options, guess, &mut monitor),
@@ -301,52 +302,6 @@ impl Solver {
         Ok(())
     }
 
-    fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
-        scene.check_distance_and_load()?;
-        self.check_options(options)?;
-        if scene.grid != self.problem.grid {
-            return invalid(format!(
-                "the grid is {:?}; this solver was set up for {:?}",
-                scene.grid, self.problem.grid
-            ));
-        }
-        effects::check_effects(scene)?;
-        // Own coefficients know no bodies.
-        if !self.problem.given {
-            scene.bodies.check()?;
-        }
-        if let Some(difference) = self.set_up.named.differs(scene) {
-            return invalid(difference);
-        }
-        if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
-            let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
-            return Err(Error::Unsupported(message.into()));
-        }
-        match (options.method, self.set_up.without_multigrid) {
-            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
-            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
-            _ => Ok(()),
-        }
-    }
-
-    fn check_options(&self, options: &Options) -> Result<()> {
-        options.check()?;
-        let (now, then) = (options.cycle_shape(), self.set_up.options.cycle_shape());
-        let names = [
-            ("smoother", now.smoother != then.smoother),
-            ("pre_sweeps", now.pre_sweeps != then.pre_sweeps),
-            ("post_sweeps", now.post_sweeps != then.post_sweeps),
-            ("relaxation", now.relaxation != then.relaxation),
-            ("coarsest", now.coarsest != then.coarsest),
-            ("threads", options.threads != self.set_up.options.threads),
-            ("precision", options.precision != self.set_up.options.precision),
-        ];
-        if let Some((name, _)) = names.into_iter().find(|(_, differs)| *differs) {
-            return invalid(format!("{name} is not that of the set-up: set up another solver for it"));
-        }
-        Ok(())
-    }
-
     fn bytes(&self) -> usize {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
@@ -358,9 +313,4 @@ impl Solver {
 
 fn is_fixed(options: &Options) -> bool {
     options.active_set == ActiveSet::Fixed
-}
-
-fn unsupported(method: &str, effect: &str) -> Result<()> {
-    let rule = "AUTO chooses a method that does";
-    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
 }

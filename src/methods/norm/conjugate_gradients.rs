@@ -13,7 +13,7 @@ use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
 /// good to some units of round-off.
-pub(super) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// When the inner iteration stops.
 #[derive(Clone, Copy, Debug)]
@@ -42,19 +42,7 @@ pub fn conjugate_gradients(
     let mean_free = matches!(state.load, Load::Force(_));
     let count = state.contact_count() as f64;
     let contact = &state.contact;
-    let project = |values: &mut [f64]| {
-        let mut sum = 0.0;
-        for (value, &inside) in values.iter_mut().zip(contact) {
-            if inside {
-                sum += *value;
-            } else {
-                *value = 0.0;
-            }
-        }
-        if mean_free {
-            values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
-        }
-    };
+    let project = |values: &mut [f64]| project(values, contact, mean_free.then_some(count));
     let Workspace { residual: r, direction, product, .. } = workspace;
     r.clear();
     r.extend((0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }));
@@ -63,9 +51,7 @@ pub fn conjugate_gradients(
     product.resize(n, 0.0);
     let mut rr: f64 = dot(r, r);
     let mut update = 0.0;
-    // Residuals are differences of these; a smaller one is noise, and so is its curvature.
-    let terms = |i: usize| (state.approach - state.h[i]).abs() + state.u[i].abs();
-    let noise = ROUND_OFF * (0..n).filter(|&i| contact[i]).map(|i| terms(i) * terms(i)).sum::<f64>().sqrt();
+    let noise = noise(state, (0..n).filter(|&i| contact[i]), &state.u);
     let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state));
     for _ in 0..stop.iterations {
         if !(rr.sqrt() > aim) {
@@ -104,6 +90,27 @@ pub fn conjugate_gradients(
         }
     }
     Ok(update)
+}
+
+/// Zero outside C, and with a prescribed force of mean zero over the `count` elements of C.
+fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
+    let mut sum = 0.0;
+    for (value, &inside) in values.iter_mut().zip(contact) {
+        if inside {
+            sum += *value;
+        } else {
+            *value = 0.0;
+        }
+    }
+    if let Some(count) = count {
+        values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
+    }
+}
+
+/// The round-off of a residual on `elements`, whose displacement is `u`: a smaller residual is noise, and so is its curvature.
+pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
+    let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
+    ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

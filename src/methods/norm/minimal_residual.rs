@@ -1,7 +1,7 @@
 //! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area when A is not symmetric: a table of the caller's own
 //! need not be, and conjugate gradients would then converge to something else, or not at all.
 
-use super::conjugate_gradients::ROUND_OFF;
+use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
 use crate::contact::{norm_of_distance, State};
 use crate::error::Result;
@@ -137,7 +137,7 @@ pub fn minimal_residual(
         project(residual);
         let beta = norm(residual);
         // A true residual that is round-off stays that, restart after restart.
-        let stays = beta > 0.5 * before && beta <= noise(state, &krylov.elements, product);
+        let stays = beta > 0.5 * before && beta <= noise(state, krylov.elements.iter().copied(), product);
         if beta <= aim || iterations >= stop.iterations || stays {
             return Ok(update);
         }
@@ -167,12 +167,6 @@ pub fn minimal_residual(
         }
         displace(&state.p, product);
     }
-}
-
-/// The round-off of a residual on `elements`.
-fn noise(state: &State, elements: &[usize], product: &[f64]) -> f64 {
-    let terms = |i: usize| (state.approach - state.h[i]).abs() + product[i].abs();
-    ROUND_OFF * elements.iter().map(|&i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }
 
 fn norm(values: &[f64]) -> f64 {
