@@ -27,8 +27,8 @@ impl FullMultigrid {
     pub fn new(problem: &Problem, shape: CycleShape) -> Result<FullMultigrid> {
         let multigrid = Multigrid::new(problem, shape)?;
         let mut coarser = Vec::new();
-        for (l, level) in multigrid.hierarchy.levels.iter().enumerate().skip(1) {
-            let (operator, work) = (level.operator.clone(), multigrid.hierarchy.work(l));
+        for level in &multigrid.levels[1..] {
+            let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
             let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
             let h = zeros(level.grid.len(), "undeformed distances")?;
