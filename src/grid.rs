@@ -70,4 +70,15 @@ impl Grid {
     pub fn index(&self, ix: usize, iy: usize) -> usize {
         iy * self.mx + ix
     }
+
+    /// The elements of a finer grid that element i of this one covers: up to 2 x 2, fewer at the end of an odd count or where one
+    /// direction is left alone.
+    pub fn children(&self, fine: &Grid, i: usize) -> impl Iterator<Item = usize> {
+        let span = |fine: usize, coarse: usize, i: usize| {
+            let factor = if coarse < fine { 2 } else { 1 };
+            factor * i..(factor * (i + 1)).min(fine)
+        };
+        let (columns, mx) = (span(fine.mx, self.mx, i % self.mx), fine.mx);
+        span(fine.my, self.my, i / self.mx).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
+    }
 }

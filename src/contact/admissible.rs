@@ -2,13 +2,15 @@
 //!
 //! ```text
 //! half-line   0 <= p              (NonNegative)
-//! box         0 <= p <= p_max     (Limited: effect pressure_limit)
+//! box         0 <= p <= p_max     (PressureLimit, the effect)
 //! ```
 //!
 //! The third is what a caller gives who keeps the contact area (active_set FIXED): any pressure, on the elements given ([`Fixed`]).
 //!
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). With a half-line the last does
 //! not exist: [`AdmissibleSet::LIMITED`] is a constant, and what asks for a limit is not compiled.
+
+use crate::scene::PressureLimit;
 
 /// The pressures that each element may have.
 pub trait AdmissibleSet: Copy + Send + Sync {
@@ -25,7 +27,9 @@ pub trait AdmissibleSet: Copy + Send + Sync {
     fn within(limits: &[f64]) -> Self::Within<'_>;
 
     /// The greatest pressure of element i; `+infinity` where there is none.
-    fn limit(&self, i: usize) -> f64;
+    fn limit(&self, _i: usize) -> f64 {
+        f64::INFINITY
+    }
 
     /// The admissible pressure nearest to `p`.
     fn project(&self, i: usize, p: f64) -> f64 {
@@ -60,10 +64,6 @@ impl AdmissibleSet for NonNegative {
     fn within(_: &[f64]) -> NonNegative {
         NonNegative
     }
-
-    fn limit(&self, _: usize) -> f64 {
-        f64::INFINITY
-    }
 }
 
 /// Any pressure on a contact area that is given.
@@ -80,37 +80,22 @@ impl AdmissibleSet for Fixed {
         Fixed
     }
 
-    fn limit(&self, _: usize) -> f64 {
-        f64::INFINITY
-    }
-
     fn project(&self, _: usize, p: f64) -> f64 {
         p
     }
 }
 
-/// `0 <= p <= p_max`, one p_max for all elements or one each.
-#[derive(Clone, Copy, Debug)]
-pub enum Limited<'a> {
-    /// The same for all.
-    Uniform(f64),
-    /// One each, `[my][mx]`.
-    PerElement(&'a [f64]),
-}
-
-impl AdmissibleSet for Limited<'_> {
+/// `0 <= p <= p_max`.
+impl AdmissibleSet for PressureLimit<'_> {
     const LIMITED: bool = true;
 
-    type Within<'a> = Limited<'a>;
+    type Within<'a> = PressureLimit<'a>;
 
-    fn within(limits: &[f64]) -> Limited<'_> {
-        Limited::PerElement(limits)
+    fn within(limits: &[f64]) -> PressureLimit<'_> {
+        PressureLimit::PerElement(limits)
     }
 
     fn limit(&self, i: usize) -> f64 {
-        match self {
-            Limited::Uniform(limit) => *limit,
-            Limited::PerElement(limits) => limits[i],
-        }
+        self.at(i)
     }
 }

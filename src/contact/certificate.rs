@@ -22,7 +22,7 @@ pub struct Certificate {
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 /// What one pass over a state whose u is A p tells.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Survey {
     /// 2-norm over C of `e = h - approach + u`.
     pub residual: f64,
@@ -47,17 +47,7 @@ pub struct Survey {
 impl Survey {
     /// Surveys a state.
     pub fn of(state: &State) -> Survey {
-        let mut survey = Survey {
-            residual: 0.0,
-            distance: 0.0,
-            scale: 0.0,
-            penetration: 0.0,
-            contact_count: 0,
-            pressures: 0.0,
-            squares: 0.0,
-            range: (f64::INFINITY, f64::NEG_INFINITY),
-            work: (0.0, 0.0),
-        };
+        let mut survey = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
         let mx = state.grid.mx;
         let at_limit = state.at_limit.contains(&true);
         for start in (0..state.grid.len()).step_by(mx) {

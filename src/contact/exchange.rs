@@ -5,12 +5,6 @@ use crate::grid::Grid;
 use super::admissible::AdmissibleSet;
 use super::State;
 
-/// Step 1: `C^0 = {h <= approach}`. Returns the number of elements.
-pub fn starting_contact(h: &[f64], approach: f64, contact: &mut [bool]) -> usize {
-    contact.iter_mut().zip(h).for_each(|(inside, h)| *inside = *h <= approach);
-    contact.iter().filter(|&&inside| inside).count()
-}
-
 /// Step (4.1): elements of C that would pull go to the exterior area, with `p = 0`, and those above their limit to that. Returns how
 /// many.
 pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {

@@ -9,10 +9,11 @@ mod outline;
 mod problem;
 mod state;
 
-pub use admissible::{AdmissibleSet, Fixed, Limited, NonNegative};
+pub use crate::scene::PressureLimit as Limited;
+pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};
-pub use exchange::{admit, starting_contact, truncate};
+pub use exchange::{admit, truncate};
 pub use guard::ExchangeGuard;
 pub use outline::Outline;
 pub use problem::Problem;
-pub use state::{Freshness, State};
+pub use state::{Freshness, Snapshot, State};

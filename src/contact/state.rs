@@ -2,10 +2,11 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::memory::reserve;
 use crate::operator::zeros;
 use crate::scene::Load;
 
-use super::exchange::starting_contact;
+use super::exchange::estimate_approach;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
@@ -70,9 +71,9 @@ impl State {
     /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.
     pub fn start(&mut self, self_influence: f64) {
         if let Load::Force(force) = self.load {
-            self.approach = super::exchange::estimate_approach(&self.grid, &self.h, force, self_influence);
+            self.approach = estimate_approach(&self.grid, &self.h, force, self_influence);
         }
-        starting_contact(&self.h, self.approach, &mut self.contact);
+        self.contact.iter_mut().zip(&self.h).for_each(|(inside, h)| *inside = *h <= self.approach);
     }
 
     /// Bytes held.
@@ -192,5 +193,44 @@ impl State {
             self.p.iter_mut().for_each(|p| *p *= factor);
             self.u.iter_mut().for_each(|u| *u *= factor);
         }
+    }
+}
+
+/// What a state had found, but for u: to go back to it.
+#[derive(Default)]
+pub struct Snapshot {
+    p: Vec<f64>,
+    contact: Vec<bool>,
+    at_limit: Vec<bool>,
+    approach: f64,
+}
+
+impl Snapshot {
+    /// Room for a state; `what` the memory is for.
+    pub fn reserve(&mut self, state: &State, what: &str) -> Result<()> {
+        reserve(&mut self.p, state.p.len(), what)?;
+        reserve(&mut self.contact, state.p.len(), what)?;
+        reserve(&mut self.at_limit, state.at_limit.len(), what)
+    }
+
+    /// Keeps what a state has found.
+    pub fn keep(&mut self, state: &State) {
+        self.p.clone_from(&state.p);
+        self.contact.clone_from(&state.contact);
+        self.at_limit.clone_from(&state.at_limit);
+        self.approach = state.approach;
+    }
+
+    /// The state has found what was kept; its u is another.
+    pub fn give_back(&self, state: &mut State) {
+        state.p.copy_from_slice(&self.p);
+        state.contact.copy_from_slice(&self.contact);
+        state.at_limit.copy_from_slice(&self.at_limit);
+        state.approach = self.approach;
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.p.len() * (size_of::<f64>() + size_of::<bool>())
     }
 }

@@ -16,7 +16,7 @@ impl Effect for Table {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let (mx, my) = self.elements();
+        let (mx, my) = (self.cx, self.cy);
         if mx < grid.mx || my < grid.my {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("influence is a table of {mx} x {my} elements; the grid has {columns} x {rows}"));
@@ -37,7 +37,7 @@ impl Effect for Table {
     }
 
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
-        tell("influence->coefficients", Value::Shared(self.values()));
+        tell("influence->coefficients", Value::Shared(&self.values));
     }
 }
 
@@ -47,7 +47,7 @@ impl Effect for RowTables {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let (mx, my) = (self.columns(), self.rows());
+        let (mx, my) = (self.mx, self.my);
         if (mx, my) != (grid.mx, grid.my) {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("row_tables are those of {mx} x {my} elements; the grid has {columns} x {rows}"));
@@ -72,6 +72,6 @@ impl Effect for RowTables {
     }
 
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
-        tell("row_tables->coefficients", Value::Shared(self.values()));
+        tell("row_tables->coefficients", Value::Shared(&self.values));
     }
 }

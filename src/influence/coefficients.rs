@@ -48,7 +48,7 @@ impl Coefficients {
 
     /// What the layer adds to the coefficient at offset (0, 0), everywhere.
     fn least(&self) -> f64 {
-        self.diagonal.as_ref().map_or(0.0, Layer::least)
+        self.diagonal.as_ref().map_or(0.0, |layer| layer.least)
     }
 
     /// The coefficient at offset `(kx, ky)`, without factors between patches; of row tables the mean over rows.
@@ -81,19 +81,19 @@ impl Coefficients {
     }
 
     /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
-    /// [typical](Layer::typical) layer. Where a uniform pressure displaces nothing it gets a response: that of the layer, which is its
-    /// mean, or without one the kernel's own.
+    /// typical layer. Where a uniform pressure displaces nothing it gets a response: that of the layer, which is its mean, or without one
+    /// the kernel's own.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
         let constant = match &self.diagonal {
-            Some(layer) => self.kernel.constant_for(layer.mean() - layer.typical()),
+            Some(layer) => self.kernel.constant_for(layer.mean - layer.typical),
             None => self.kernel.constant_for_inverse(),
         };
         if constant != 0.0 {
             out.iter_mut().for_each(|value| *value += constant);
         }
         if let (Some(layer), 0) = (&self.diagonal, ky) {
-            out[0] += layer.typical();
+            out[0] += layer.typical;
         }
     }
 

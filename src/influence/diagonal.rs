@@ -2,7 +2,7 @@
 //! section 4.3: an elastic foundation, here in series with the half-space).
 //!
 //! min(c) joins the coefficient at offset (0, 0); the operator adds `c - min(c)` as a diagonal. A preconditioner knows one c: see
-//! [`Layer::typical`] and [`Layer::levels`].
+//! `typical` and [`Layer::levels`].
 
 use std::sync::Arc;
 
@@ -23,13 +23,14 @@ const MOST_LEVELS: f64 = 4.0;
 /// A compliant layer.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// The least c.
-    least: f64,
+    /// The least c: added to the coefficient at offset (0, 0), everywhere.
+    pub(super) least: f64,
     /// What is more, per element; none when c is uniform.
     more: Option<Arc<Vec<f64>>>,
-    typical: f64,
+    /// The one c of preconditioners.
+    pub(super) typical: f64,
     /// The mean c: what a uniform pressure meets.
-    mean: f64,
+    pub(super) mean: f64,
 }
 
 impl Layer {
@@ -49,21 +50,6 @@ impl Layer {
         Ok(Layer { least, more, typical: (geometric - short).max(0.0), mean: c.iter().sum::<f64>() / n })
     }
 
-    /// What is added to the coefficient at offset (0, 0), everywhere.
-    pub fn least(&self) -> f64 {
-        self.least
-    }
-
-    /// The one c of preconditioners.
-    pub fn typical(&self) -> f64 {
-        self.typical
-    }
-
-    /// The mean c.
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
     /// What is added to the displacements of single elements: for the operator.
     pub fn more(&self) -> Option<&[f64]> {
         self.more.as_ref().map(|more| &more[..])
@@ -74,7 +60,7 @@ impl Layer {
         self.least + self.more().map_or(0.0, |more| more.iter().copied().fold(0.0, f64::max))
     }
 
-    /// Levels of c, as layers of which each is the [`typical`](Self::typical) one, and the weights of the elements:
+    /// Levels of c, as layers of which each is the `typical` one, and the weights of the elements:
     /// `w = sqrt((c_l + s)/(c + s)) sqrt(share)`, with s what waves meet of A and the shares of neighbouring levels linear in
     /// log(c + s). Where c is large A hardly matters, and the first factor makes `w^2/c_l` the 1/c that is asked for. A uniform layer
     /// is one level, without weights.
@@ -98,14 +84,10 @@ impl Layer {
     /// The layer of a coarser grid: c is the mean over the finer elements.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Layer> {
         let Some(more) = self.more() else { return Ok(self.clone()) };
-        let span = |i: usize, fine: usize, coarse: usize| {
-            let factor = if coarse < fine { 2 } else { 1 };
-            factor * i..(factor * (i + 1)).min(fine)
-        };
         let mean = |i: usize| {
-            let (columns, rows) = (span(i % coarse.mx, fine.mx, coarse.mx), span(i / coarse.mx, fine.my, coarse.my));
-            let count = (columns.len() * rows.len()) as f64;
-            rows.flat_map(|y| columns.clone().map(move |x| y * fine.mx + x)).map(|i| more[i]).sum::<f64>() / count
+            let (sum, count) =
+                coarse.children(fine, i).fold((0.0, 0.0), |(sum, count), i| (sum + more[i], count + 1.0));
+            sum / count
         };
         Ok(Layer { more: Some(Arc::new(collected((0..coarse.len()).map(mean), LAYER)?)), ..*self })
     }

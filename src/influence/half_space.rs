@@ -45,10 +45,10 @@ const MOST_KEPT: usize = 1024;
 /// Coefficients of the half-space for one element size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HalfSpace {
-    dx: f64,
-    dy: f64,
-    /// `1/(pi E*)`.
-    compliance: f64,
+    pub(super) dx: f64,
+    pub(super) dy: f64,
+    /// `c = 1/(pi E*)`.
+    pub(super) compliance: f64,
     shape: Arc<Shape>,
 }
 
@@ -90,16 +90,6 @@ impl HalfSpace {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
-    }
-
-    /// `c = 1/(pi E*)`.
-    pub fn compliance(&self) -> f64 {
-        self.compliance
-    }
-
-    /// The element's dx and dy.
-    pub fn element(&self) -> (f64, f64) {
-        (self.dx, self.dy)
     }
 
     fn fill_series<const K: usize>(&self, kx: f64, y: f64, out: &mut [f64]) {

@@ -1,24 +1,22 @@
 //! The images of a scene that repeats itself: what all but the near ones contribute, as a polynomial.
 //!
 //! The sum over the images is smooth on one period: a polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes, whose means over
-//! elements are its integrals. At the nodes it is Ewald's sum (1921), or with one period the sum of `1/|x + n L| - 1/|n L|`, whose tail
-//! is a multipole series.
+//! elements are its integrals. Images are summed in lines along the period, or along the shorter of two: at the nodes a line is the
+//! sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
 //!
 //! *Bounded work.* A line of images of period L has waves along it that fade with the distance y as `exp(-2 pi |y|/L)`. Beyond
-//! [`FADED`] L only the mean is left, which has a closed form. So images are summed for nearer rows alone; and with two periods, one of
-//! which is much the longer, for the lines along the shorter one only.
+//! [`FADED`] L only the mean is left, which has a closed form. So images are summed for nearer rows alone, and with two periods in the
+//! nearer of the other lines.
 
 use std::f64::consts::PI;
 
 use super::half_space::GAUSS;
-use super::special::{complementary_error_function, hurwitz_zeta, EULER_GAMMA};
+use super::special::{hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 
 /// Chebyshev nodes in each direction. The nearest singularity of what they represent lies on the ellipse of sum of semi-axes 4.5 or
 /// beyond (see `reach`): `4.5^-24 = 2e-16` is left.
 pub(super) const NODES: usize = 12;
-/// A Gaussian at this many widths is below 1e-17.
-const GAUSSIAN: f64 = 6.3;
 /// What a grid of 8 elements covers of its period: half, and half an element.
 const COARSE: f64 = 0.5626;
 /// Periods beyond which the waves of a line of images are gone: `exp(-2 pi 6) = 4e-17`.
@@ -69,8 +67,12 @@ pub(super) struct Far {
     directions: (bool, bool),
     lengths: (f64, f64),
     half: (f64, f64),
-    /// None: both directions are summed alike.
-    pub lines: Option<Lines>,
+    /// The direction in which images are summed.
+    pub lines: Lines,
+    /// Whether offsets reach so far across the lines that their waves are gone there, and those of other lines here.
+    fades: bool,
+    /// Other lines on either side whose waves are not gone yet; the mean of those beyond is not in the polynomial.
+    pub other_lines: usize,
     /// Near images on either side, in x and in y.
     pub images: (usize, usize),
     /// `[j][i]`: of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
@@ -83,58 +85,64 @@ fn reach(length: f64, here: f64, across: f64) -> usize {
     (f64::max(2.4 * here, here + 2.2 * across) / length).ceil() as usize - 1
 }
 
-/// Along which direction images are summed in lines.
-fn lines(directions: (bool, bool), (length_x, length_y): (f64, f64)) -> Option<Lines> {
-    match directions {
-        (true, false) => Some(Lines::X),
-        (false, true) => Some(Lines::Y),
-        _ if length_y >= MUCH_LONGER * length_x => Some(Lines::X),
-        _ if length_x >= MUCH_LONGER * length_y => Some(Lines::Y),
-        _ => None,
-    }
-}
-
 /// Offsets `0..count` of elements of size d that are nearer than `faded`, and the part of an element that is.
 fn cut(count: usize, d: f64, faded: f64) -> (usize, f64) {
     let near = (faded / d + 0.5).ceil().min(count as f64) as usize;
     (near.max(1), d.min(2.0 * faded))
 }
 
+impl Lines {
+    /// A pair in x and y as one along the lines and across them, and back.
+    fn turn<A>(self, (x, y): (A, A)) -> (A, A) {
+        match self {
+            Lines::X => (x, y),
+            Lines::Y => (y, x),
+        }
+    }
+}
+
 impl Far {
     /// Of a grid and, where there is a period, of coarser ones: half an element beyond half the period.
     pub fn new(directions: (bool, bool), grid: &Grid) -> Far {
         let lengths = lengths(grid);
-        let lines = lines(directions, lengths);
-        let mut far =
-            Far { directions, lengths, half: (0.0, 0.0), lines, images: (0, 0), coefficients: [[0.0; NODES]; NODES] };
-        let (own, count) = (far.near(grid).half(), offsets(directions, grid));
-        // Across lines coarser elements reach a little farther, at most to the end.
-        let across = |own: f64, count: usize, d: f64, period: f64| {
-            own.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * period))
-        };
-        far.half = match lines {
-            Some(Lines::X) => (own.0.max(COARSE * lengths.0), across(own.1, count.1, grid.dy, lengths.0)),
-            Some(Lines::Y) => (across(own.0, count.0, grid.dx, lengths.1), own.1.max(COARSE * lengths.1)),
-            None => (own.0.max(COARSE * lengths.0), own.1.max(COARSE * lengths.1)),
-        };
-        if lines != Some(Lines::Y) {
-            far.images.0 = reach(lengths.0, far.half.0, far.half.1);
+        let lines = if directions.0 && (!directions.1 || lengths.0 <= lengths.1) { Lines::X } else { Lines::Y };
+        let (length, width) = lines.turn(lengths);
+        let fades = !(directions.0 && directions.1) || width >= MUCH_LONGER * length;
+        let (half, images, coefficients) = ((0.0, 0.0), (0, 0), [[0.0; NODES]; NODES]);
+        let mut far = Far { directions, lengths, half, lines, fades, other_lines: 0, images, coefficients };
+        let (own_along, own_across) = lines.turn(far.near(grid).half());
+        let along = own_along.max(COARSE * length);
+        let (mut across, mut near_lines) = (own_across.max(COARSE * width), 0);
+        if fades {
+            // Across lines coarser elements reach a little farther, at most to the end.
+            let ((_, count), (_, d)) = (lines.turn(offsets(directions, grid)), lines.turn((grid.dx, grid.dy)));
+            across = own_across.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * length));
+        } else {
+            near_lines = reach(width, across, along);
+            far.other_lines = near_lines.max(((FADED * length + across) / width).ceil() as usize - 1);
         }
-        if lines != Some(Lines::X) {
-            far.images.1 = reach(lengths.1, far.half.1, far.half.0);
-        }
+        let near = (reach(length, along, across), near_lines);
+        (far.half, far.images) = (lines.turn((along, across)), lines.turn(near));
         far.interpolate();
         far
     }
 
-    /// The sum over all but the near images at a place.
+    /// The sum over all but the near images of the lines whose waves are not gone, at a place.
     fn value(&self, x: f64, y: f64) -> f64 {
-        let (lengths, images) = (self.lengths, self.images);
-        match self.lines {
-            None => ewald(x, y, lengths, images),
-            Some(Lines::X) => line_of_images(x, y, lengths.0, images.0, lengths.1),
-            Some(Lines::Y) => line_of_images(y, x, lengths.1, images.1, lengths.0),
+        let (along, across) = self.lines.turn((x, y));
+        let (near, near_lines) = self.lines.turn(self.images);
+        let (length, width) = self.lines.turn(self.lengths);
+        let mut sum = 0.0;
+        for line in (1..=self.other_lines).rev() {
+            for across in [line as f64 * width - across, line as f64 * width + across] {
+                sum += line_of_images(along, across, length, near, width);
+                if line > near_lines {
+                    let images = -(near as i64)..=near as i64;
+                    sum += images.map(|n| 1.0 / (along + n as f64 * length).hypot(across)).sum::<f64>();
+                }
+            }
         }
+        sum + line_of_images(along, across, length, near, width)
     }
 
     fn interpolate(&mut self) {
@@ -157,9 +165,9 @@ impl Far {
         let (row, rows) = offsets(self.directions, grid);
         let mut near = Near { offsets: (row, rows), element: (grid.dx, grid.dy) };
         match self.lines {
-            Some(Lines::X) => (near.offsets.1, near.element.1) = cut(rows, grid.dy, FADED * self.lengths.0),
-            Some(Lines::Y) => (near.offsets.0, near.element.0) = cut(row, grid.dx, FADED * self.lengths.1),
-            None => {}
+            _ if !self.fades => {}
+            Lines::X => (near.offsets.1, near.element.1) = cut(rows, grid.dy, FADED * self.lengths.0),
+            Lines::Y => (near.offsets.0, near.element.0) = cut(row, grid.dx, FADED * self.lengths.1),
         }
         near
     }
@@ -201,46 +209,7 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     means
 }
 
-/// The sum of 1/rho over all images but the near ones, two periods, up to a constant. With a width `1/eta` of Gaussians,
-///
-/// ```text
-/// sum of 1/rho = sum of erfc(eta rho)/rho + 2 pi/(Lx Ly) sum over q of erfc(q/(2 eta))/q cos(q r)
-/// ```
-fn ewald(x: f64, y: f64, (lx, ly): (f64, f64), (near_x, near_y): (usize, usize)) -> f64 {
-    let eta = (PI / (lx * ly)).sqrt();
-    let last = |length: f64, near: usize| (((GAUSSIAN / eta) / length).ceil() as i64 + 1).max(near as i64);
-    let (last_x, last_y) = (last(lx, near_x), last(ly, near_y));
-    let mut sum = 0.0;
-    for m in -last_y..=last_y {
-        for n in -last_x..=last_x {
-            let rho = (x + n as f64 * lx).hypot(y + m as f64 * ly);
-            let is_near = n.unsigned_abs() as usize <= near_x && m.unsigned_abs() as usize <= near_y;
-            if is_near && eta * rho < 1e-8 {
-                sum -= 2.0 * eta / PI.sqrt();
-            } else if is_near {
-                let beyond = if eta * rho < GAUSSIAN { complementary_error_function(eta * rho) } else { 0.0 };
-                sum -= (1.0 - beyond) / rho;
-            } else if eta * rho < GAUSSIAN {
-                sum += complementary_error_function(eta * rho) / rho;
-            }
-        }
-    }
-    let waves = |length: f64| (GAUSSIAN * eta * length / PI).ceil() as usize;
-    for j in 0..=waves(ly) {
-        for i in usize::from(j == 0)..=waves(lx) {
-            let (qx, qy) = (2.0 * PI * i as f64 / lx, 2.0 * PI * j as f64 / ly);
-            let q = qx.hypot(qy);
-            if q < 2.0 * GAUSSIAN * eta {
-                let signs = if i == 0 || j == 0 { 2.0 } else { 4.0 };
-                let term = complementary_error_function(0.5 * q / eta) / q * (qx * x).cos() * (qy * y).cos();
-                sum += signs * 2.0 * PI / (lx * ly) * term;
-            }
-        }
-    }
-    sum
-}
-
-/// The same for one period: `along` it, of the given length, and `across`; the mean along it of the whole sum is `2/L log(W/across)`.
+/// The sum of 1/rho over the images of one line but the near ones, `along` its period of the given length and `across` it; the mean along it of the whole sum is `2/L log(W/across)`.
 ///
 /// ```text
 /// sum over n of 1/rho_n - [n != 0]/|n L|    has the mean 2/L (log(2 L/across) - gamma)

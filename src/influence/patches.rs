@@ -19,9 +19,9 @@ const PATCHES: &str = "the patches";
 /// Patches and factors.
 #[derive(Clone, Debug)]
 pub struct Patches {
-    count: usize,
+    pub(crate) count: usize,
     /// Of each element.
-    patch: Arc<Vec<u16>>,
+    pub(crate) patch: Arc<Vec<u16>>,
     /// `[count][count]`.
     factors: Arc<[f64]>,
 }
@@ -31,16 +31,6 @@ impl Patches {
     pub fn new(count: usize, patch: impl ExactSizeIterator<Item = u16>, factors: &[f64]) -> Result<Patches> {
         assert_eq!(factors.len(), count * count);
         Ok(Patches { count, patch: Arc::new(collected(patch, PATCHES)?), factors: factors.into() })
-    }
-
-    /// Number of patches.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The patch of each element.
-    pub fn patch(&self) -> &[u16] {
-        &self.patch
     }
 
     /// The factor between two patches.
@@ -60,9 +50,8 @@ impl Patches {
 
     /// The patches of a coarser grid: an element belongs where the first of its finer ones does.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Patches> {
-        let factor = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
-        let (by_x, by_y) = (factor(fine.mx, coarse.mx), factor(fine.my, coarse.my));
-        let first = |i: usize| self.patch[fine.index(by_x * (i % coarse.mx), by_y * (i / coarse.mx))];
+        // Each has one.
+        let first = |i: usize| coarse.children(fine, i).next().map_or(0, |first| self.patch[first]);
         Ok(Patches { patch: Arc::new(collected((0..coarse.len()).map(first), PATCHES)?), ..self.clone() })
     }
 }

@@ -80,7 +80,7 @@ impl Periodic {
     fn add_images(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let far = &self.far;
         let half_space = self.half_space.for_element(near.element.0, near.element.1);
-        let strength = half_space.compliance() * (near.element.0 * near.element.1);
+        let strength = half_space.compliance * (near.element.0 * near.element.1);
         let [means_x, means_y] = far.means(near);
         let in_x = collected(means_x, PERIODIC)?;
         let (last_x, last_y) = (far.images.0 * grid.mx, (far.images.1 * grid.my) as i64);
@@ -107,21 +107,16 @@ impl Periodic {
     /// a second period changes.
     fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let (length_x, length_y) = lengths(grid);
-        let (row, c) = (self.row, self.half_space.compliance());
-        let (line, strength) = match self.far.lines {
-            None => return Ok(()),
-            Some(Lines::X) => (
-                Line { d: grid.dy, cut: near.element.1, near: near.offsets.1, width: length_y },
-                2.0 * c * grid.dx / length_x,
-            ),
-            Some(Lines::Y) => (
-                Line { d: grid.dx, cut: near.element.0, near: near.offsets.0, width: length_x },
-                2.0 * c * grid.dy / length_y,
-            ),
+        let (row, c) = (self.row, self.half_space.compliance);
+        let along_x = self.far.lines == Lines::X;
+        let (count, d, cut, near, length, width) = match self.far.lines {
+            Lines::X => (table.len() / row, grid.dy, near.element.1, near.offsets.1, length_x, length_y),
+            Lines::Y => (row, grid.dx, near.element.0, near.offsets.0, length_y, length_x),
         };
-        let (two, along_x) = (self.x && self.y, self.far.lines == Some(Lines::X));
-        let count = if along_x { table.len() / row } else { row };
-        let means = collected((0..count).map(|k| strength * line.beyond(k, two)), PERIODIC)?;
+        let other_lines = (self.x && self.y).then_some(self.far.other_lines);
+        let line = Line { d, cut, near, width, other_lines };
+        let strength = 2.0 * c * (grid.dx * grid.dy / d) / length;
+        let means = collected((0..count).map(|k| strength * line.beyond(k)), PERIODIC)?;
         for (i, value) in table.iter_mut().enumerate() {
             *value += means[if along_x { i / row } else { i % row }];
         }
@@ -164,9 +159,9 @@ impl Kernel for Periodic {
 
     // The mode of zero gets about the response `2 pi c/|q|` of the longest wave.
     fn constant_for_inverse(&self) -> f64 {
-        let (dx, dy) = self.half_space.element();
+        let HalfSpace { dx, dy, .. } = self.half_space;
         let longest = f64::max(self.mx as f64 * dx, self.my as f64 * dy);
-        self.constant_for(self.half_space.compliance() * longest)
+        self.constant_for(self.half_space.compliance * longest)
     }
 
     // An odd count makes it longer by an element: good enough to start from.
@@ -189,11 +184,13 @@ struct Line {
     near: usize,
     /// W, and the period across the line if there is one.
     width: f64,
+    /// With two periods: other lines on either side that are summed already.
+    other_lines: Option<usize>,
 }
 
 impl Line {
     /// What is to be added at offset k.
-    fn beyond(&self, k: usize, two_periods: bool) -> f64 {
+    fn beyond(&self, k: usize) -> f64 {
         let (d, y) = (self.d, k as f64 * self.d);
         let line = match k {
             0 => 2.0 * (self.log_integral(0.5 * d) - self.log_integral(0.5 * self.cut)),
@@ -202,7 +199,7 @@ impl Line {
             // Without cancellation; the singularity is four half-elements away.
             _ => gauss(y, d, |y| (self.width / y).ln()),
         };
-        line - if two_periods { self.of_other_lines(y) } else { 0.0 }
+        line - self.other_lines.map_or(0.0, |summed| self.of_other_lines(y, summed))
     }
 
     /// `integral from 0 to y of log(W/y)`.
@@ -210,13 +207,16 @@ impl Line {
         y * ((self.width / y).ln() + 1.0)
     }
 
-    /// The integral of `log(2 sin(pi y/Ly)/(y/W))` over an element, W = Ly.
-    fn of_other_lines(&self, centre: f64) -> f64 {
+    /// The integral of `log(2 sin(pi y/Ly)/(y/W))` over an element, W = Ly, without the other lines that are summed already: each pair
+    /// of them is a factor `1 - (y/(m Ly))^2` of the sine.
+    fn of_other_lines(&self, centre: f64, summed: usize) -> f64 {
         let panels = (PANELS as f64 * self.d / self.width).ceil();
         let step = self.d / panels;
-        let smooth = |y: f64| match PI * y / self.width {
-            0.0 => (2.0 * PI).ln(),
-            t => (2.0 * PI * (t.sin() / t)).ln(),
+        let smooth = |y: f64| {
+            let t = PI * y / self.width;
+            let sine = if t == 0.0 { 1.0 } else { t.sin() / t };
+            let factor = |m: usize| 1.0 - (y / (m as f64 * self.width)).powi(2);
+            (2.0 * PI * sine / (1..=summed).map(factor).product::<f64>()).ln()
         };
         (0..panels as usize).map(|k| gauss(centre + ((k as f64 + 0.5) * step - 0.5 * self.d), step, smooth)).sum()
     }

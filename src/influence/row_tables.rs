@@ -32,11 +32,11 @@ const TABLES: &str = "the tables of coefficients";
 /// The tables: of offsets >= 0 in x only, where all are even.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowTables {
-    mx: usize,
-    my: usize,
+    pub(crate) mx: usize,
+    pub(crate) my: usize,
     even: bool,
     /// `[jy][iy][width]`, shared by all that hold the tables.
-    values: Arc<Vec<f64>>,
+    pub(crate) values: Arc<Vec<f64>>,
 }
 
 /// Whether all tables are even in x, after a check of their coefficients.
@@ -100,21 +100,6 @@ impl RowTables {
             kept.extend(row.iter().map(|value| scale * value));
         }
         Ok(RowTables { mx, my, even, values: Arc::new(kept) })
-    }
-
-    /// The values, shared.
-    pub(crate) fn values(&self) -> &Arc<Vec<f64>> {
-        &self.values
-    }
-
-    /// Elements of the grid in x.
-    pub fn columns(&self) -> usize {
-        self.mx
-    }
-
-    /// Rows of the grid.
-    pub fn rows(&self) -> usize {
-        self.my
     }
 
     /// Whether all tables are even in x.

@@ -28,10 +28,11 @@ pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
 /// A table of coefficients, `values[ky + cy][kx + cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    cx: usize,
-    cy: usize,
+    /// Elements of the grid that it was made for.
+    pub(crate) cx: usize,
+    pub(crate) cy: usize,
     /// Shared by all that hold the table.
-    values: Arc<Vec<f64>>,
+    pub(crate) values: Arc<Vec<f64>>,
 }
 
 impl Table {
@@ -76,16 +77,6 @@ impl Table {
             )));
         }
         Ok(table)
-    }
-
-    /// Elements of the grid that it was made for.
-    pub fn elements(&self) -> (usize, usize) {
-        (self.cx, self.cy)
-    }
-
-    /// The values, shared.
-    pub(crate) fn values(&self) -> &Arc<Vec<f64>> {
-        &self.values
     }
 
     fn offsets(&self, grid: &Grid) -> impl Iterator<Item = (i64, i64)> {

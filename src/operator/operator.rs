@@ -280,12 +280,12 @@ fn apply_coupled<T: Real>(
     [scaled, product]: &mut [Vec<T>; 2],
     mut multiply: impl FnMut(&[T], &mut [T]),
 ) {
-    for a in 0..patches.count() {
-        for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(patches.patch()) {
+    for a in 0..patches.count {
+        for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(&*patches.patch) {
             *scaled = *p * T::of(patches.factor(a, b.into()));
         }
         multiply(scaled, product);
-        for ((u, product), &b) in u.iter_mut().zip(&*product).zip(patches.patch()) {
+        for ((u, product), &b) in u.iter_mut().zip(&*product).zip(&*patches.patch) {
             if usize::from(b) == a {
                 *u = *product;
             }

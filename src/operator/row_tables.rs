@@ -38,7 +38,7 @@ impl<T: Real> PerRow<T> {
         rows: &RowTransform<f64>,
         threads: &Threads,
     ) -> Result<PerRow<T>> {
-        let (my, nb, px) = (tables.rows(), rows.bins(), rows.length());
+        let (my, nb, px) = (tables.my, rows.bins(), rows.length());
         let planes = if tables.is_even_in_x() { 1 } else { 2 };
         let size = (my * my).checked_mul(planes * nb);
         let size =

@@ -119,15 +119,3 @@ pub struct Ledger {
     /// Of the contact area of the last row, if errors are to be estimated.
     pub outline: Outline,
 }
-
-impl Ledger {
-    /// What is known on the grid of `state`, whose u is A p.
-    pub(super) fn measure(&mut self, state: &State) -> Measures {
-        let mut measures = Measures::of(state);
-        if self.estimates {
-            self.outline = Outline::of(state);
-            measures.corrected_area = self.outline.corrected_area(state, measures.contact_count);
-        }
-        measures
-    }
-}

@@ -8,7 +8,7 @@ use std::time::Instant;
 pub use criterion::{Criterion, Goal, Stop, UPDATE_RESIDUAL};
 pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
 
-use crate::contact::State;
+use crate::contact::{Outline, State};
 use crate::grid::Grid;
 
 /// What a progress callback is told after each cycle.
@@ -134,9 +134,13 @@ impl<'a> Monitor<'a> {
         }
     }
 
-    /// Writes the ledger row of the current grid.
+    /// Writes the ledger row of the current grid: what is known of `state`, whose u is A p.
     pub fn close_grid(&mut self, state: &State) {
-        let measures = self.ledger.measure(state);
+        let mut measures = Measures::of(state);
+        if self.ledger.estimates {
+            self.ledger.outline = Outline::of(state);
+            measures.corrected_area = self.ledger.outline.corrected_area(state, measures.contact_count);
+        }
         self.ledger.rows.push(LedgerRow {
             mx: state.grid.mx,
             my: state.grid.my,

@@ -47,7 +47,7 @@ impl Solver {
 
     /// Refuses options that no problem of a batch can be solved with.
     pub(crate) fn check_batch(&self, options: &Options) -> Result<()> {
-        self.check_options(options)?;
+        self.set_up.check_options(options)?;
         if options.initial_guess == InitialGuess::Previous {
             return invalid(
                 "initial_guess is PREVIOUS; in a batch it must be NONE or GIVEN, for the order of the solves is not known"

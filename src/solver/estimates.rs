@@ -68,21 +68,20 @@ fn richardson(value: f64, near: (f64, f64), far: Option<(f64, f64)>, highest: f6
 /// Relative discretisation error that samples suggest for the force (or the approach) on the finest grid before that is solved.
 pub fn predict(near: &Sample, far: &Sample) -> f64 {
     let error_near = (far.found - near.found) / ((far.size / near.size).powi(2) - 1.0);
-    let relative = (error_near / near.found).abs() / (near.size * near.size);
-    if relative.is_finite() {
-        relative
-    } else {
-        0.0
-    }
+    known((error_near / near.found).abs() / (near.size * near.size))
 }
 
 /// The same from the last two rows of a ledger: their step is 3/4 of the coarser one's error, which falls by 4 with every grid.
 pub fn predict_from_ledger(rows: &[LedgerRow], load: Load) -> f64 {
     let [.., before, last] = rows else { return 0.0 };
     let (before, last) = (before.measures.found(load), last.measures.found(load));
-    let relative = ((before - last) / last).abs() / 12.0;
-    if relative.is_finite() {
-        relative
+    known(((before - last) / last).abs() / 12.0)
+}
+
+/// 0 for what is not known.
+fn known(error: f64) -> f64 {
+    if error.is_finite() {
+        error
     } else {
         0.0
     }
@@ -107,23 +106,12 @@ pub fn estimate(
     };
     let force = of(found, |sample| sample.found);
     let max_pressure = of(measures.max_pressure, |sample| sample.max_pressure);
-    // Distances are those of whole fields: their own order is taken as it is, the square root of the pressures at the rim allows for 1.
+    // The distance is an rms over the field; its order is at most 1, from the square root at the rim.
     let pressure = near.and_then(|near| {
         let q = trusted_order((near.size, near.distance), far.map(|far| (far.size, far.distance)), 1.0)?;
         Some((near.distance / (near.size.powf(q) - 1.0), q)).filter(|(error, _)| error.is_finite())
     });
-    let mut untrusted = 0;
-    for (estimate, bit, what) in [
-        (force, DiscretisationError::FORCE, "force or approach"),
-        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure"),
-        (pressure, DiscretisationError::PRESSURE, "pressures"),
-    ] {
-        if near.is_some() && estimate.is_none() {
-            untrusted |= bit;
-            log::info!("the error of the {what} cannot be estimated: coarser grids do not converge to it");
-        }
-    }
-
+    let untrusted = if near.is_some() { untrusted(force, max_pressure, pressure) } else { 0 };
     let (area, residual) = (measures.corrected_area, measures.certificate.residual);
     for row in ledger.iter_mut() {
         let row_size = (finest.grid.len() as f64 / (row.mx * row.my) as f64).sqrt();
@@ -152,6 +140,22 @@ pub fn estimate(
     let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
     let limit = if error.abs() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
+}
+
+/// The bits of the errors that cannot be estimated; says so in the log.
+fn untrusted(force: Option<(f64, f64)>, max_pressure: Option<(f64, f64)>, pressure: Option<(f64, f64)>) -> u32 {
+    let mut untrusted = 0;
+    for (estimate, bit, what) in [
+        (force, DiscretisationError::FORCE, "force or approach"),
+        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure"),
+        (pressure, DiscretisationError::PRESSURE, "pressures"),
+    ] {
+        if estimate.is_none() {
+            untrusted |= bit;
+            log::info!("the error of the {what} cannot be estimated: coarser grids do not converge to it");
+        }
+    }
+    untrusted
 }
 
 /// What the largest pressure may miss of a peak between the elements: half of the most, `(d^2 p)/8` of the second differences there.

@@ -15,59 +15,78 @@
 use super::best::Best;
 use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
-use crate::methods::{Change, Habits, Step};
+use crate::methods::{Change, Step};
 use crate::progress::{Goal, Monitor, Stop};
 use crate::scene::Load;
 
-/// Runs one method on the grid of `problem` from what `state` holds. Unless it converges, `best` knows the best iterate.
+/// What is to be solved on one grid.
+pub struct Task<'a, 'm, S> {
+    pub problem: &'a mut Problem,
+    pub state: &'a mut State,
+    pub set: S,
+    pub goal: Goal,
+    pub monitor: &'a mut Monitor<'m>,
+}
+
+impl<S: AdmissibleSet> Task<'_, '_, S> {
+    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
+    pub fn refresh(&mut self) {
+        self.problem.refresh(self.state, self.set);
+    }
+
+    /// Counts the products on this grid since the last call.
+    pub fn count_products(&mut self) {
+        self.monitor.count_products(self.problem.take_products(), self.problem.work);
+    }
+}
+
+/// Runs one method from what the state holds. Unless it converges, `best` knows the best iterate.
 pub fn iterate<S: AdmissibleSet>(
     method: &mut dyn Step<S>,
-    problem: &mut Problem,
-    state: &mut State,
-    set: S,
-    goal: &Goal,
+    task: &mut Task<'_, '_, S>,
     best: &mut Best,
-    monitor: &mut Monitor<'_>,
 ) -> Result<Stop> {
     let habits = method.habits();
-    method.begin(state)?;
+    let (set, goal) = (task.set, task.goal);
+    method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
     // A step need not take a cycle, but there are no more of them than cycles may be.
     for _ in 0..=goal.max_cycles {
-        if monitor.count.cycles >= goal.max_cycles || monitor.is_cancelled() {
+        if task.monitor.count.cycles >= goal.max_cycles || task.monitor.is_cancelled() {
             break;
         }
         // 2. p = 0 in E. 3. A step of the method on C.
-        let change = step(method, problem, state, set, goal, monitor)?;
-        if change.gives_up && state.u_is != Freshness::Exact {
+        let change = step(method, task)?;
+        if change.gives_up && task.state.u_is != Freshness::Exact {
             return Ok(Stop::Stagnated);
         }
 
         // (4.1), the certificate, (4.2)
-        let left = if habits.exchanged_by_loop { truncate(state, set) } else { 0 };
-        let mut survey = certify(problem, state, set, goal, &change, left, monitor);
+        let left = if habits.exchanged_by_loop { truncate(task.state, set) } else { 0 };
+        let mut survey = certify(task, &change, left);
         let violation = violation(&survey, set);
         let mut entered = 0;
         if habits.exchanged_by_loop && !S::FIXED && survey.penetration > 0.0 {
-            entered = admit(state, set);
+            entered = admit(task.state, set);
             let penetration = survey.penetration;
-            survey = Survey { penetration, ..Survey::of(state) };
+            survey = Survey { penetration, ..Survey::of(task.state) };
         }
         let changes = change.changes + (left + entered) as u64;
         if habits.step_is_cycle {
-            monitor.count.active_set_steps += 1;
-            monitor.cycle_done(&state.grid, changes, change.update, survey.residual / survey.distance);
+            task.monitor.count.active_set_steps += 1;
+            task.monitor.cycle_done(&task.state.grid, changes, change.update, survey.residual / survey.distance);
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if state.u_is == Freshness::Exact && carries(state) && goal.holds(&survey, change.update, set) {
+        if task.state.u_is == Freshness::Exact && carries(task.state) && goal.holds(&survey, change.update, set) {
             chatter += u32::from(changes > 0);
-            if changes == 0 || survives_chatter(&habits, chatter) {
+            // After a while the certificate decides, although elements still change sides.
+            if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
                 return Ok(Stop::Converged);
             }
         }
-        if state.u_is == Freshness::Exact {
-            best.note(state, violation)?;
+        if task.state.u_is == Freshness::Exact {
+            best.note(task.state, violation)?;
         }
         since += 1;
         if violation < habits.progress * least {
@@ -77,7 +96,7 @@ pub fn iterate<S: AdmissibleSet>(
             return Ok(Stop::Stagnated);
         }
     }
-    Ok(monitor.interrupted())
+    Ok(task.monitor.interrupted())
 }
 
 /// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
@@ -91,55 +110,35 @@ fn carries(state: &State) -> bool {
     (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
 }
 
-/// Whether the certificate decides although elements still change sides.
-fn survives_chatter(habits: &Habits, chatter: u32) -> bool {
-    habits.exchanged_by_loop && chatter > habits.chatter
-}
-
 /// A step and its products. Coefficients of an elastic body are positive definite: where round-off says otherwise the method is at its
 /// end, and only a caller's table is refused for it.
-fn step<S: AdmissibleSet>(
-    method: &mut dyn Step<S>,
-    problem: &mut Problem,
-    state: &mut State,
-    set: S,
-    goal: &Goal,
-    monitor: &mut Monitor<'_>,
-) -> Result<Change> {
-    let change = match method.step(problem, state, set, goal, monitor) {
-        Err(Error::NotPositiveDefinite(message)) if !problem.given => {
+fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
+    let change = match method.step(task.problem, task.state, task.set, &task.goal, task.monitor) {
+        Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {
             log::info!("{}: {message}", method.name());
-            state.u_is = Freshness::Stale;
+            task.state.u_is = Freshness::Stale;
             Ok(Change { gives_up: true, ..Change::default() })
         }
         change => change,
     };
-    monitor.count_products(problem.take_products(), problem.work);
+    task.count_products();
     change
 }
 
 /// Surveys the state, by a fresh product where u is none of p, or where the criterion seems met: only a fresh product certifies.
-fn certify<S: AdmissibleSet>(
-    problem: &mut Problem,
-    state: &mut State,
-    set: S,
-    goal: &Goal,
-    change: &Change,
-    left: usize,
-    monitor: &mut Monitor<'_>,
-) -> Survey {
-    if left > 0 || state.u_is == Freshness::Stale {
-        problem.refresh(state, set);
+fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Survey {
+    if left > 0 || task.state.u_is == Freshness::Stale {
+        task.refresh();
     } else {
-        state.fit_approach();
+        task.state.fit_approach();
     }
-    let mut survey = Survey::of(state);
-    let ends = monitor.is_cancelled() || monitor.count.cycles >= goal.max_cycles;
-    if state.u_is == Freshness::Near && (ends || goal.holds(&survey, change.update, set)) {
-        problem.refresh(state, set);
-        survey = Survey::of(state);
+    let mut survey = Survey::of(task.state);
+    let ends = task.monitor.is_cancelled() || task.monitor.count.cycles >= task.goal.max_cycles;
+    if task.state.u_is == Freshness::Near && (ends || task.goal.holds(&survey, change.update, task.set)) {
+        task.refresh();
+        survey = Survey::of(task.state);
     }
-    monitor.count_products(problem.take_products(), problem.work);
+    task.count_products();
     survey
 }
 

@@ -2,7 +2,7 @@
 
 use super::best::Best;
 use super::estimates;
-use super::iterate::{iterate, violation};
+use super::iterate::{iterate, violation, Task};
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
@@ -13,7 +13,7 @@ use crate::methods::multigrid::CycleShape;
 use crate::methods::norm::Norm;
 use crate::methods::projected_cg::ProjectedCg;
 use crate::methods::{Start, Step};
-use crate::progress::{Goal, Monitor, Stop};
+use crate::progress::Stop;
 
 /// A guess, or a stalled iterate, whose violation is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
@@ -54,43 +54,41 @@ impl Methods {
         })
     }
 
-    /// Solves from what `state` holds, as `from` says. An `error_ratio` of the options may raise the tolerance of `goal`.
+    /// Solves from what the state holds, as `from` says. An `error_ratio` of the options may raise the tolerance of the goal.
     pub fn solve<S: AdmissibleSet>(
         &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
+        task: &mut Task<'_, '_, S>,
         from: Start,
         stages: &[Stage],
-        (goal, error_ratio): (&mut Goal, f64),
-        monitor: &mut Monitor<'_>,
+        error_ratio: f64,
     ) -> Result<Stop> {
         self.best.forget();
         let has_direct = self.direct.is_some();
         let (mut stop, mut first) = (Stop::Stagnated, true);
         for &stage in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct) {
             let from_nothing = match std::mem::take(&mut first) {
-                true => match self.take_over(stage, state, set, from, goal)? {
+                true => match self.take_over(stage, task, from)? {
                     Some(from_nothing) => from_nothing,
                     None => return Ok(Stop::Converged),
                 },
-                false => self.hand_over(stage, problem, state, set, monitor),
+                false => self.hand_over(stage, task),
             };
             if from_nothing {
-                self.start(stage, problem, state, set, goal, monitor)?;
+                self.start(stage, task)?;
                 if error_ratio > 0.0 {
-                    let predicted = self.predicted_error(stage, problem, state, monitor)?;
-                    goal.tolerance = goal.tolerance.max(error_ratio * predicted);
+                    let predicted = self.predicted_error(stage, task)?;
+                    task.goal.tolerance = task.goal.tolerance.max(error_ratio * predicted);
                 }
             }
-            stop = self.run(stage, problem, state, set, goal, monitor)?;
+            stop = self.run(stage, task)?;
             if stop != Stop::Stagnated {
                 break;
             }
         }
         if stop != Stop::Converged {
-            let indefinite = stop == Stop::Stagnated && problem.given && has_negative_energy(problem, state);
-            self.best.restore(problem, state, set, monitor);
+            let indefinite =
+                stop == Stop::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state);
+            self.best.restore(task);
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
                     "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
@@ -104,16 +102,15 @@ impl Methods {
     fn take_over<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
-        state: &mut State,
-        set: S,
+        task: &mut Task<'_, '_, S>,
         from: Start,
-        goal: &Goal,
     ) -> Result<Option<bool>> {
         if from == Start::Nothing {
             return Ok(Some(true));
         }
+        let (state, set) = (&mut *task.state, task.set);
         let survey = Survey::of(state);
-        if !goal.by_update() && goal.holds(&survey, 0.0, set) {
+        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) {
             return Ok(None);
         }
         let violation = violation(&survey, set);
@@ -130,44 +127,29 @@ impl Methods {
     }
 
     /// The next method goes on from the best iterate; true if that is worth less than a start of its own.
-    fn hand_over<S: AdmissibleSet>(
-        &mut self,
-        stage: Stage,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        monitor: &mut Monitor<'_>,
-    ) -> bool {
+    fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> bool {
         // What the direct solve leaves, having done nothing, is the start of the next.
         if stage == Stage::ProjectedCg {
             return false;
         }
         log::info!("no further progress on this scene: {stage:?} takes over");
-        self.best.restore(problem, state, set, monitor);
-        stage == Stage::FullMultigrid && !(self.best.violation() <= WORTHLESS)
+        self.best.restore(task);
+        stage == Stage::FullMultigrid && !(self.best.violation <= WORTHLESS)
     }
 
     /// A start from nothing.
-    fn start<S: AdmissibleSet>(
-        &mut self,
-        stage: Stage,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<()> {
-        state.unload();
+    fn start<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
+        task.state.unload();
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
-                self.projected_cg.start(problem, state, set, goal, monitor)
+                self.projected_cg.start(task.problem, task.state, task.set, &task.goal, task.monitor)
             }
             Stage::FullMultigrid if !S::FIXED => {
-                let multigrid = set_up_multigrid(&mut self.multigrid, problem, self.shape)?;
-                multigrid.start(problem, state, set, goal, &mut self.norm, monitor)
+                let multigrid = set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?;
+                multigrid.start(task, &mut self.norm)
             }
             _ => {
-                state.start(problem.self_influence());
+                task.state.start(task.problem.self_influence());
                 Ok(())
             }
         }
@@ -175,35 +157,19 @@ impl Methods {
 
     /// Relative discretisation error of the force (or the approach) that the coarser grids suggest before the finest is solved; 0 where
     /// it is not known.
-    fn predicted_error(
-        &mut self,
-        stage: Stage,
-        problem: &Problem,
-        state: &State,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<f64> {
+    fn predicted_error<S>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<f64> {
         match stage {
             Stage::Direct | Stage::ProjectedCg => {
-                let ([near, far], count) = self.projected_cg.early_samples(problem, state, monitor)?;
+                let samples = self.projected_cg.early_samples(task.problem, task.state, task.monitor)?;
+                let ([near, far], count) = samples;
                 Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
             }
-            Stage::FullMultigrid => Ok(estimates::predict_from_ledger(&monitor.ledger.rows, state.load)),
+            Stage::FullMultigrid => Ok(estimates::predict_from_ledger(&task.monitor.ledger.rows, task.state.load)),
             _ => Ok(0.0),
         }
     }
 
-    fn run<S: AdmissibleSet>(
-        &mut self,
-        stage: Stage,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Stop> {
-        if matches!(stage, Stage::VCycles | Stage::FullMultigrid) {
-            set_up_multigrid(&mut self.multigrid, problem, self.shape)?;
-        }
+    fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Stop> {
         let mut cycles = None;
         let method: &mut dyn Step<S> = match stage {
             Stage::Direct => match &mut self.direct {
@@ -211,14 +177,13 @@ impl Methods {
                 None => return Ok(Stop::Stagnated),
             },
             Stage::ProjectedCg => &mut self.projected_cg,
-            Stage::VCycles | Stage::FullMultigrid => match &mut self.multigrid {
-                Some(multigrid) => cycles.insert(multigrid.cycles(0)),
-                None => return Ok(Stop::Stagnated),
-            },
+            Stage::VCycles | Stage::FullMultigrid => {
+                cycles.insert(set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?.cycles(0))
+            }
             Stage::Descent => &mut self.descent,
             Stage::Norm => &mut self.norm,
         };
-        iterate(method, problem, state, set, goal, &mut self.best, monitor)
+        iterate(method, task, &mut self.best)
     }
 
     /// Lets go of the operator, which gets other coefficients: nothing is solved before [`new`](Self::new).

@@ -3,15 +3,15 @@
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
-mod accuracy;
 mod batch;
 mod best;
+mod check;
 mod estimates;
 mod iterate;
 mod methods;
 mod nested;
 mod options;
-mod range;
+mod refinement;
 mod report;
 mod take_over;
 
@@ -20,20 +20,21 @@ use std::time::Instant;
 
 pub use crate::operator::Precision;
 pub use crate::progress::{Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop};
-pub use accuracy::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
+pub use refinement::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
 pub use report::{Halving, Limit, Report};
 
-use crate::contact::{self, AdmissibleSet, Fixed, Freshness, Limited, NonNegative, State};
+use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State};
 use crate::effects::{self, Effect, Named};
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
 use crate::memory::{reserve, zeros};
 use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
+use iterate::Task;
 use methods::Methods;
 
 /// Pressures and contact area to start from.
@@ -75,7 +76,8 @@ struct SetUp {
     /// What later scenes may not change.
     named: Named,
     has_own_influence: bool,
-    has_row_tables: bool,
+    /// Whether the coefficients are the caller's.
+    given: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
@@ -101,7 +103,7 @@ impl Solver {
         let set_up = SetUp {
             named: Named::new(scene),
             has_own_influence: scene.influence.is_some(),
-            has_row_tables: scene.row_tables.is_some(),
+            given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
             options: *options,
@@ -113,7 +115,7 @@ impl Solver {
 
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
-        problem.given = set_up.has_own_influence || set_up.has_row_tables;
+        problem.given = set_up.given;
         let h = zeros(grid.len(), "undeformed distances")?;
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
@@ -136,9 +138,10 @@ impl Solver {
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Stop, Report)> {
-        self.check(scene, options)?;
-        take_over::check_guess(scene, options, guess)?;
-        range::check(scene, &self.problem, self.set_up.largest_influence, guess.filter(|_| is_fixed(options)))?;
+        self.set_up.check(scene, options, &self.problem)?;
+        check::guess(scene, options, guess)?;
+        let given_contact = guess.filter(|_| is_fixed(options));
+        check::range(scene, &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = match scene.pressure_limit {
             _ if is_fixed(options) => self.run(scene, Fixed, options, guess, &mut monitor),
@@ -173,12 +176,12 @@ impl Solver {
         }
         let mut limits = std::mem::take(&mut self.limits);
         let set = match limit {
-            PressureLimit::Uniform(limit) => Limited::Uniform(limit),
+            PressureLimit::Uniform(_) => limit,
             PressureLimit::PerElement(given) => {
                 limits.clear();
                 reserve(&mut limits, n, "pressure limits")?;
                 limits.extend_from_slice(given);
-                Limited::PerElement(&limits)
+                PressureLimit::PerElement(&limits)
             }
         };
         let outcome = self.run(scene, set, options, guess, monitor);
@@ -196,7 +199,6 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Stop, f64)> {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
-        let mut goal = options.goal();
         let multigrid = set_up.without_multigrid.is_none();
         let stages = methods::stages(options.method, problem.symmetric, S::FIXED, multigrid)?;
         // What was solved before is gone from here on, unless this solve comes to an end.
@@ -208,15 +210,16 @@ impl Solver {
             methods.projected_cg.forget_solutions();
         }
         let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
-        let stop = if take_over::is_without_contact(state, S::FIXED) {
+        let mut task = Task { problem, state, set, goal: options.goal(), monitor };
+        let stop = if take_over::is_without_contact(task.state, S::FIXED) {
             Stop::Converged
         } else {
-            methods.solve(problem, state, set, from, stages, (&mut goal, options.error_ratio), monitor)?
+            methods.solve(&mut task, from, stages, options.error_ratio)?
         };
-        let stop = if monitor.is_cancelled() { Stop::Cancelled } else { stop };
+        let stop = if task.monitor.is_cancelled() { Stop::Cancelled } else { stop };
         *has_result = true;
-        monitor.close_grid(state);
-        Ok((stop, goal.tolerance))
+        task.monitor.close_grid(task.state);
+        Ok((stop, task.goal.tolerance))
     }
 
     /// The errors of the report and the ledger, from what coarser grids find. With limits the samples would be other problems.
@@ -299,52 +302,6 @@ impl Solver {
         Ok(())
     }
 
-    fn check(&self, scene: &Scene<'_>, options: &Options) -> Result<()> {
-        scene.check_distance_and_load()?;
-        self.check_options(options)?;
-        if scene.grid != self.problem.grid {
-            return invalid(format!(
-                "the grid is {:?}; this solver was set up for {:?}",
-                scene.grid, self.problem.grid
-            ));
-        }
-        effects::check_effects(scene)?;
-        // Own coefficients know no bodies.
-        if !self.problem.given {
-            scene.bodies.check()?;
-        }
-        if let Some(difference) = self.set_up.named.differs(scene) {
-            return invalid(difference);
-        }
-        if scene.pressure_limit.is_some() && options.active_set == ActiveSet::Fixed {
-            let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
-            return Err(Error::Unsupported(message.into()));
-        }
-        match (options.method, self.set_up.without_multigrid) {
-            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
-            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
-            _ => Ok(()),
-        }
-    }
-
-    fn check_options(&self, options: &Options) -> Result<()> {
-        options.check()?;
-        let (now, then) = (options.cycle_shape(), self.set_up.options.cycle_shape());
-        let names = [
-            ("smoother", now.smoother != then.smoother),
-            ("pre_sweeps", now.pre_sweeps != then.pre_sweeps),
-            ("post_sweeps", now.post_sweeps != then.post_sweeps),
-            ("relaxation", now.relaxation != then.relaxation),
-            ("coarsest", now.coarsest != then.coarsest),
-            ("threads", options.threads != self.set_up.options.threads),
-            ("precision", options.precision != self.set_up.options.precision),
-        ];
-        if let Some((name, _)) = names.into_iter().find(|(_, differs)| *differs) {
-            return invalid(format!("{name} is not that of the set-up: set up another solver for it"));
-        }
-        Ok(())
-    }
-
     fn bytes(&self) -> usize {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
@@ -356,9 +313,4 @@ impl Solver {
 
 fn is_fixed(options: &Options) -> bool {
     options.active_set == ActiveSet::Fixed
-}
-
-fn unsupported(method: &str, effect: &str) -> Result<()> {
-    let rule = "AUTO chooses a method that does";
-    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
 }

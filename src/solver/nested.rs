@@ -1,13 +1,13 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first, each by the loop.
 
 use super::best::Best;
-use super::iterate::iterate;
+use super::iterate::{iterate, Task};
 use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
-use crate::progress::{Goal, Monitor};
+use crate::progress::{Goal, Monitor, Stop};
 
 /// Cycles at most on the coarser grids: they only prepare the next finer one. On the coarsest NORM takes the place of cycles.
 const COARSE_CYCLES: u64 = 30;
@@ -27,8 +27,8 @@ impl FullMultigrid {
     pub fn new(problem: &Problem, shape: CycleShape) -> Result<FullMultigrid> {
         let multigrid = Multigrid::new(problem, shape)?;
         let mut coarser = Vec::new();
-        for (l, level) in multigrid.hierarchy.levels.iter().enumerate().skip(1) {
-            let (operator, work) = (level.operator.clone(), multigrid.hierarchy.work(l));
+        for level in &multigrid.levels[1..] {
+            let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
             let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
             let h = zeros(level.grid.len(), "undeformed distances")?;
@@ -48,28 +48,20 @@ impl FullMultigrid {
         self.multigrid.bytes() + coarser
     }
 
-    /// A start from nothing for `fine`: each grid is solved from the pressures of the next coarser one.
-    pub fn start<S: AdmissibleSet>(
-        &mut self,
-        problem: &mut Problem,
-        fine: &mut State,
-        set: S,
-        goal: &Goal,
-        norm: &mut Norm,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<()> {
+    /// A start from nothing: each grid is solved from the pressures of the next coarser one.
+    pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, norm: &mut Norm) -> Result<()> {
         let count = self.coarser.len();
         if count == 0 {
-            fine.start(problem.self_influence());
+            task.state.start(task.problem.self_influence());
             return Ok(());
         }
-        let highest = fine.out_of_reach(problem.self_influence());
-        self.restrict(fine, highest);
+        let highest = task.state.out_of_reach(task.problem.self_influence());
+        self.restrict(task.state, highest);
         for l in (0..count).rev() {
-            if !monitor.is_cancelled() {
-                monitor.enter_grid();
-                self.solve(l, goal, norm, monitor)?;
-                monitor.close_grid(&self.coarser[l].1);
+            if !task.monitor.is_cancelled() {
+                task.monitor.enter_grid();
+                self.solve(l, &task.goal, norm, task.monitor)?;
+                task.monitor.close_grid(&self.coarser[l].1);
             }
             let (finer, coarser) = self.coarser.split_at_mut(l);
             let from = &coarser[0].1;
@@ -79,14 +71,14 @@ impl FullMultigrid {
                     problem.refresh(state, NonNegative);
                 }
                 None => {
-                    interpolate(from, fine, highest);
-                    fine.project(set);
-                    problem.refresh(fine, set);
+                    interpolate(from, task.state, highest);
+                    task.state.project(task.set);
+                    task.refresh();
                 }
             }
         }
-        monitor.enter_grid();
-        monitor.count_products(problem.take_products(), problem.work);
+        task.monitor.enter_grid();
+        task.count_products();
         Ok(())
     }
 
@@ -109,17 +101,18 @@ impl FullMultigrid {
         let coarsest = l + 1 == coarser.len();
         let (problem, state) = &mut coarser[l];
         best.forget();
+        let cycles =
+            if coarsest { goal.max_cycles.max(COARSEST_ITERATIONS) } else { goal.max_cycles.min(COARSE_CYCLES) };
+        let goal = Goal { max_cycles: cycles, ..*goal };
+        let mut task = Task { problem, state, set: NonNegative, goal, monitor };
         let stop = if coarsest {
-            let goal = Goal { max_cycles: goal.max_cycles.max(COARSEST_ITERATIONS), ..*goal };
-            state.start(problem.self_influence());
-            iterate(norm, problem, state, NonNegative, &goal, best, monitor)?
+            task.state.start(task.problem.self_influence());
+            iterate(norm, &mut task, best)?
         } else {
-            let goal = Goal { max_cycles: goal.max_cycles.min(COARSE_CYCLES), ..*goal };
-            let mut cycles = Cycles { multigrid, level: l + 1, workspace };
-            iterate(&mut cycles, problem, state, NonNegative, &goal, best, monitor)?
+            iterate(&mut Cycles { multigrid, level: l + 1, workspace }, &mut task, best)?
         };
-        if stop != crate::progress::Stop::Converged {
-            best.restore(problem, state, NonNegative, monitor);
+        if stop != Stop::Converged {
+            best.restore(&mut task);
         }
         Ok(())
     }

@@ -2,45 +2,13 @@
 
 use super::{ActiveSet, Guess, InitialGuess, Options};
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
-use crate::error::{invalid, Error, Result};
+use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 
 /// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
-
-/// Refuses a guess that is none, or that is missing.
-pub fn check_guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
-    let grid = &scene.grid;
-    let fixed = options.active_set == ActiveSet::Fixed;
-    let Some(guess) = guess else {
-        return match options.initial_guess {
-            _ if fixed => invalid("active_set is FIXED, but no contact area is given".into()),
-            InitialGuess::Given => invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
-            _ => Ok(()),
-        };
-    };
-    if !fixed && options.initial_guess != InitialGuess::Given {
-        return Ok(());
-    }
-    if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
-        return invalid(format!(
-            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
-            guess.pressure.len(),
-            guess.contact.len(),
-            grid.len()
-        ));
-    }
-    let surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
-    if fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(surface) {
-        return invalid("active_set is FIXED, but the given contact area is empty, or has no surface".into());
-    }
-    match guess.pressure.iter().find(|p| !p.is_finite()) {
-        Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
-        None => Ok(()),
-    }
-}
 
 /// Takes over the undeformed distance, the load and the start: then u is A p, or there is nothing. `solved`: whether `state` holds the
 /// solution before.
@@ -98,27 +66,26 @@ fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>
         *inside |= std::mem::take(at_limit);
     }
     match (options.initial_guess, guess) {
-        (InitialGuess::Previous, Some(guess)) if fixed => {
-            if !solved {
-                state.p.fill(0.0);
-                state.u_is = Freshness::Stale;
-            }
-            state.contact.copy_from_slice(guess.contact);
-            Start::Previous
-        }
-        (InitialGuess::Previous, _) if solved => Start::Previous,
         (InitialGuess::Given, Some(guess)) => {
             state.p.copy_from_slice(guess.pressure);
             state.contact.copy_from_slice(guess.contact);
             state.u_is = Freshness::Stale;
             Start::Given
         }
-        (InitialGuess::None, Some(guess)) if fixed => {
-            state.p.fill(0.0);
+        (from, Some(guess)) if fixed => {
+            let goes_on = from == InitialGuess::Previous;
+            if !(goes_on && solved) {
+                state.p.fill(0.0);
+                state.u_is = Freshness::Stale;
+            }
             state.contact.copy_from_slice(guess.contact);
-            state.u_is = Freshness::Stale;
-            Start::Given
+            if goes_on {
+                Start::Previous
+            } else {
+                Start::Given
+            }
         }
+        (InitialGuess::Previous, _) if solved => Start::Previous,
         _ => Start::Nothing,
     }
 }

@@ -193,7 +193,7 @@ fn with_two_periods_slender_ones_have_the_spectrum_of_plane_strain_across() {
 
 #[test]
 fn between_the_ways_of_summation_nothing_jumps() {
-    // Two periods, one much the longer: lines on one side of 24, Ewald's sum on the other; the coefficients are smooth in dy.
+    // Two periods, one much the longer: one line on one side of 24, three on the other; the coefficients are smooth in dy.
     let at = |dy: f64, kx: i64, ky: i64| {
         let grid = Grid::new(8, 8, 1.0, dy).unwrap();
         let periodic = Periodic::new(HalfSpace::new(1.0, dy, 1.0), (true, true), &grid).unwrap();

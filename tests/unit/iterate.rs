@@ -24,7 +24,8 @@ fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Stop {
     let (mut best, mut monitor) = (Best::default(), Monitor::silent());
     best.forget();
     let mut descent = Descent::default();
-    iterate(&mut descent, problem, state, NonNegative, &goal, &mut best, &mut monitor).expect("a solve")
+    let mut task = Task { problem, state, set: NonNegative, goal, monitor: &mut monitor };
+    iterate(&mut descent, &mut task, &mut best).expect("a solve")
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Unit tests of `solver/accuracy/plan.rs`.
+//! Unit tests of `solver/refinement/next_grid.rs`.
 
 use super::*;
 

@@ -91,8 +91,8 @@ fn cycle(levels: &[Antiperiodic], shape: &CycleShape) -> Mat<f64> {
     let mut interpolation = Mat::zeros(n, coarse.grid.len());
     for j in 0..n {
         let mut column = vec![0.0; coarse.grid.len()];
-        let unit: Vec<f64> = (0..n).map(|i| if i == j { 1.0 } else { 0.0 }).collect();
-        transfer::restrict_defect(&level.grid, &coarse.grid, &unit, &mut column);
+        let unit = |i: usize| if i == j { 1.0 } else { 0.0 };
+        transfer::restrict_mean(&level.grid, &coarse.grid, unit, &mut column);
         column.iter().enumerate().for_each(|(i, value)| restriction[(i, j)] = *value);
     }
     for j in 0..coarse.grid.len() {

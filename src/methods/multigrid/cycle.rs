@@ -5,12 +5,13 @@
 //! lengths by d.
 
 use super::coarsest::Coarsest;
+use super::hierarchy::{clear_exterior, levels, Level};
 use super::smoother::{Smoother, SmootherKind};
-use super::{transfer, Hierarchy};
+use super::transfer;
 use crate::contact::Problem;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::operator::zeros;
+use crate::operator::Workspace;
 
 /// The shape of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,191 +35,117 @@ impl Default for CycleShape {
     }
 }
 
-/// The unknowns of one level during a cycle.
-struct Unknowns {
-    smoother: Smoother,
-    correction: Vec<f64>,
-    defect: Vec<f64>,
-    residual: Vec<f64>,
-    contact: Vec<bool>,
-}
-
 /// The multigrid solver: a hierarchy of grids and what a cycle needs on each of them.
 pub struct Multigrid {
-    /// The grids and operators.
-    pub hierarchy: Hierarchy,
+    /// The levels; `levels[0]` is the finest.
+    pub levels: Vec<Level>,
     shape: CycleShape,
-    unknowns: Vec<Unknowns>,
     coarsest: Coarsest,
-    /// Matrix products done by cycles, per level, since the last [`take_products`](Self::take_products).
-    products: Vec<u64>,
+    /// Memory for the product on any of the levels.
+    workspace: Workspace<f64>,
 }
 
 impl Multigrid {
     /// Sets up cycles of one shape on the grid of `problem`.
     pub fn new(problem: &Problem, shape: CycleShape) -> Result<Multigrid> {
-        let hierarchy = Hierarchy::new(problem, shape.coarsest)?;
-        let mut unknowns = Vec::new();
-        for level in &hierarchy.levels {
-            let n = level.grid.len();
-            let array = || zeros(n, "the multigrid levels");
-            unknowns.push(Unknowns {
-                smoother: Smoother::new(shape.smoother, &level.influence, &level.grid, &problem.threads)?,
-                correction: array()?,
-                defect: array()?,
-                residual: array()?,
-                contact: zeros(n, "the multigrid levels")?,
-            });
+        let levels = levels(problem, shape.smoother, shape.coarsest)?;
+        let mut workspace = levels[0].operator.workspace()?;
+        for level in &levels[1..] {
+            workspace.cover(level.operator.workspace()?);
         }
-        let products = vec![0; hierarchy.levels.len()];
-        Ok(Multigrid { hierarchy, shape, unknowns, coarsest: Coarsest::new(), products })
+        Ok(Multigrid { levels, shape, coarsest: Coarsest::new(), workspace })
     }
 
     /// Number of levels; level 0 is the finest.
     pub fn depth(&self) -> usize {
-        self.unknowns.len()
+        self.levels.len()
     }
 
     /// Products done on level `l` since the last call.
     pub fn take_products(&mut self, l: usize) -> u64 {
-        std::mem::take(&mut self.products[l])
+        std::mem::take(&mut self.levels[l].products)
     }
 
     /// `u = A p` on level `l`.
     pub fn displace(&mut self, l: usize, p: &[f64], u: &mut [f64]) {
-        self.hierarchy.levels[l].operator.apply(p, u, &mut self.hierarchy.workspace);
-        self.products[l] += 1;
+        self.levels[l].operator.apply(p, u, &mut self.workspace);
+        self.levels[l].products += 1;
     }
 
     /// The work of eliminations on the coarsest grid since the last call, in products on the finest.
     pub fn take_eliminations(&mut self) -> f64 {
-        let finest = &self.hierarchy.levels[0].grid;
-        self.coarsest.take_multiplications() / multiplications_of_product(finest)
+        self.coarsest.take_multiplications() / multiplications_of_product(&self.levels[0].grid)
     }
 
     /// One cycle that starts on level `l`: the correction `v` with `A v` near `defect` on the contact area, zero
     /// outside.
     pub fn cycle(&mut self, l: usize, defect: &[f64], contact: &[bool]) -> &[f64] {
-        let unknowns = &mut self.unknowns[l];
-        unknowns.contact.copy_from_slice(contact);
-        for ((d, &value), &inside) in unknowns.defect.iter_mut().zip(defect).zip(contact) {
-            *d = if inside { value } else { 0.0 };
-        }
+        let level = &mut self.levels[l];
+        level.contact.copy_from_slice(contact);
+        level.defect.copy_from_slice(defect);
+        clear_exterior(&mut level.defect, contact);
         self.cycle_level(l);
-        &self.unknowns[l].correction
+        &self.levels[l].correction
     }
 
     /// The correction of the last cycle that started on level `l`.
     pub fn correction(&self, l: usize) -> &[f64] {
-        &self.unknowns[l].correction
+        &self.levels[l].correction
     }
 
     /// `A v` on the whole grid, v being the correction of the last cycle that started on level `l`, if it is a
     /// by-product of it.
     pub fn correction_product(&self, l: usize) -> Option<&[f64]> {
-        match &self.unknowns[l].smoother {
+        match &self.levels[l].smoother {
             Smoother::Fft(fft) if l + 1 < self.depth() => Some(fft.product()),
             _ => None,
         }
     }
 
     fn cycle_level(&mut self, l: usize) {
-        let level = &self.hierarchy.levels[l];
-        if l + 1 == self.depth() {
-            let Unknowns { correction, defect, contact, .. } = &mut self.unknowns[l];
-            self.coarsest.solve(&level.influence, &level.grid, contact, defect, correction);
+        let Multigrid { levels, shape, coarsest, workspace } = self;
+        let (finer, coarser) = levels.split_at_mut(l + 1);
+        let level = &mut finer[l];
+        let Some(coarse) = coarser.first_mut() else {
+            let Level { grid, influence, correction, defect, contact, .. } = level;
+            coarsest.solve(influence, grid, contact, defect, correction);
             return;
-        }
+        };
 
         // Pre-smoothing, from v = 0, whose residual is the defect.
-        let unknowns = &mut self.unknowns[l];
-        unknowns.correction.fill(0.0);
-        unknowns.residual.copy_from_slice(&unknowns.defect);
-        if let Smoother::Fft(fft) = &mut unknowns.smoother {
+        level.correction.fill(0.0);
+        level.residual.copy_from_slice(&level.defect);
+        if let Smoother::Fft(fft) = &mut level.smoother {
             fft.start();
         }
-        for sweep in 0..self.shape.pre_sweeps {
-            if sweep > 0 {
-                self.update_residual(l);
-            }
-            self.smooth(l);
-        }
-        if self.shape.pre_sweeps > 0 {
-            self.update_residual(l);
+        for _ in 0..shape.pre_sweeps {
+            level.smooth(shape.relaxation, workspace);
+            level.update_residual(workspace);
         }
 
         // Defects and contact area to the coarse grid, the correction there, and back.
-        let (fine, coarse) = (self.hierarchy.levels[l].grid, self.hierarchy.levels[l + 1].grid);
-        let (finer, coarser) = self.unknowns.split_at_mut(l + 1);
-        transfer::restrict_contact(&fine, &coarse, &finer[l].contact, &mut coarser[0].contact);
-        transfer::restrict_defect(&fine, &coarse, &finer[l].residual, &mut coarser[0].defect);
-        for (d, &inside) in coarser[0].defect.iter_mut().zip(&coarser[0].contact) {
-            if !inside {
-                *d = 0.0;
-            }
-        }
+        transfer::restrict_contact(&level.grid, &coarse.grid, &level.contact, &mut coarse.contact);
+        transfer::restrict_mean(&level.grid, &coarse.grid, |i| level.residual[i], &mut coarse.defect);
+        clear_exterior(&mut coarse.defect, &coarse.contact);
         self.cycle_level(l + 1);
-        self.correct(l);
+        let Multigrid { levels, shape, workspace, .. } = self;
+        let (finer, coarser) = levels.split_at_mut(l + 1);
+        let level = &mut finer[l];
+        level.correct(&coarser[0], workspace);
 
         // Post-smoothing.
-        for _ in 0..self.shape.post_sweeps {
-            self.update_residual(l);
-            self.smooth(l);
+        for _ in 0..shape.post_sweeps {
+            level.update_residual(workspace);
+            level.smooth(shape.relaxation, workspace);
         }
     }
 
-    /// Adds the correction of the next coarser level, piecewise constant, zero outside the contact area.
-    fn correct(&mut self, l: usize) {
-        let (level, coarse) = (&self.hierarchy.levels[l], &self.hierarchy.levels[l + 1].grid);
-        let (finer, coarser) = self.unknowns.split_at_mut(l + 1);
-        let Unknowns { smoother, correction, residual, contact, .. } = &mut finer[l];
-        let from = &coarser[0].correction;
-        if let Smoother::Fft(fft) = smoother {
-            let (workspace, products) = (&mut self.hierarchy.workspace, &mut self.products[l]);
-            let fill =
-                |to: &mut [f64]| transfer::interpolate(&level.grid, coarse, |i| from[i], to, |to, value| *to = value);
-            fft.correct(correction, residual, contact, fill, |changes, product| {
-                level.operator.apply(changes, product, workspace);
-                *products += 1;
-            });
-            return;
-        }
-        transfer::interpolate(&level.grid, coarse, |i| from[i], correction, |v, coarse| *v += coarse);
-        for (v, &inside) in correction.iter_mut().zip(&*contact) {
-            if !inside {
-                *v = 0.0;
-            }
-        }
-    }
-
-    /// `r = d - A v` on the contact area, zero outside, unless the smoother keeps it so.
-    fn update_residual(&mut self, l: usize) {
-        let Unknowns { smoother, correction, defect, residual, contact } = &mut self.unknowns[l];
-        if smoother.keeps_residual() {
-            return;
-        }
-        self.hierarchy.levels[l].operator.apply(correction, residual, &mut self.hierarchy.workspace);
-        self.products[l] += 1;
-        for ((r, d), &inside) in residual.iter_mut().zip(&*defect).zip(&*contact) {
-            *r = if inside { d - *r } else { 0.0 };
-        }
-    }
-
-    /// One sweep; the residual is used up, or kept up to date.
-    fn smooth(&mut self, l: usize) {
-        let Unknowns { smoother, correction, residual, contact, .. } = &mut self.unknowns[l];
-        let (level, workspace, products) =
-            (&self.hierarchy.levels[l], &mut self.hierarchy.workspace, &mut self.products[l]);
-        smoother.sweep(correction, residual, contact, self.shape.relaxation, |changes, product| {
-            level.operator.apply(changes, product, workspace);
-            *products += 1;
-        });
-    }
-
-    /// Bytes held by operators and unknowns.
+    /// Bytes held by the unknowns, and by the operators and coefficients of coarser grids; the finest grid's are the problem's.
     pub fn bytes(&self) -> usize {
-        let elements: usize = self.hierarchy.levels.iter().map(|level| level.grid.len()).sum();
-        self.hierarchy.bytes() + elements * (3 * std::mem::size_of::<f64>() + 1)
+        let elements: usize = self.levels.iter().map(|level| level.grid.len()).sum();
+        let coarser: usize =
+            self.levels[1..].iter().map(|level| level.influence.bytes() + level.operator.bytes()).sum();
+        coarser + elements * (3 * size_of::<f64>() + 1)
     }
 }
 

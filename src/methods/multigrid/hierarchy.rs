@@ -7,13 +7,15 @@
 
 use std::sync::Arc;
 
+use super::smoother::{Smoother, SmootherKind};
+use super::transfer::interpolate;
 use crate::contact::Problem;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::{Operator, Workspace};
+use crate::operator::{zeros, Operator, Workspace};
 
-/// One grid and its operator.
+/// One grid: its operator, its smoother, and its unknowns during a cycle.
 pub struct Level {
     /// The grid.
     pub grid: Grid,
@@ -21,47 +23,91 @@ pub struct Level {
     pub influence: Coefficients,
     /// `u = A p` on it.
     pub operator: Arc<Operator<f64>>,
+    /// The work of one product, that on the finest grid being 1 (a work unit).
+    pub work: f64,
+    pub(super) smoother: Smoother,
+    pub(super) correction: Vec<f64>,
+    pub(super) defect: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) contact: Vec<bool>,
+    /// Products since they were last asked for.
+    pub(super) products: u64,
 }
 
-/// The grids, finest first.
-pub struct Hierarchy {
-    /// The levels; `levels[0]` is the finest.
-    pub levels: Vec<Level>,
-    /// Memory for the product on any of the levels.
-    pub workspace: Workspace<f64>,
+impl Level {
+    fn new(problem: &Problem, grid: Grid, influence: Coefficients, kind: SmootherKind) -> Result<Level> {
+        let (n, finest) = (grid.len(), problem.grid.len());
+        let operator = match grid == problem.grid {
+            true => problem.operator.clone(),
+            false => Arc::new(Operator::new(&influence, &grid, &problem.threads.suited_to(n))?),
+        };
+        let array = || zeros(n, "the multigrid levels");
+        Ok(Level {
+            smoother: Smoother::new(kind, &influence, &grid, &problem.threads)?,
+            grid,
+            influence,
+            operator,
+            work: n as f64 / finest as f64,
+            correction: array()?,
+            defect: array()?,
+            residual: array()?,
+            contact: zeros(n, "the multigrid levels")?,
+            products: 0,
+        })
+    }
+
+    /// `r = d - A v` on the contact area, zero outside, unless the smoother keeps it so.
+    pub(super) fn update_residual(&mut self, workspace: &mut Workspace<f64>) {
+        if self.smoother.keeps_residual() {
+            return;
+        }
+        self.operator.apply(&self.correction, &mut self.residual, workspace);
+        self.products += 1;
+        for ((r, d), &inside) in self.residual.iter_mut().zip(&self.defect).zip(&self.contact) {
+            *r = if inside { d - *r } else { 0.0 };
+        }
+    }
+
+    /// One sweep; the residual is used up, or kept up to date.
+    pub(super) fn smooth(&mut self, relaxation: f64, workspace: &mut Workspace<f64>) {
+        let Level { operator, smoother, correction, residual, contact, products, .. } = self;
+        smoother.sweep(correction, residual, contact, relaxation, |changes, product| {
+            operator.apply(changes, product, workspace);
+            *products += 1;
+        });
+    }
+
+    /// Adds the correction of the next coarser level, piecewise constant, zero outside the contact area.
+    pub(super) fn correct(&mut self, coarser: &Level, workspace: &mut Workspace<f64>) {
+        let Level { grid, operator, smoother, correction, residual, contact, products, .. } = self;
+        let from = |i: usize| coarser.correction[i];
+        if let Smoother::Fft(fft) = smoother {
+            let fill = |to: &mut [f64]| interpolate(grid, &coarser.grid, from, to, |to, value| *to = value);
+            fft.correct(correction, residual, contact, fill, |changes, product| {
+                operator.apply(changes, product, workspace);
+                *products += 1;
+            });
+            return;
+        }
+        interpolate(grid, &coarser.grid, from, correction, |v, coarse| *v += coarse);
+        clear_exterior(correction, contact);
+    }
 }
 
-impl Hierarchy {
-    /// Coarsens the grid of `problem` until no direction has more than `coarsest` elements.
-    pub fn new(problem: &Problem, coarsest: usize) -> Result<Hierarchy> {
-        let mut levels = Vec::new();
-        let (mut grid, mut influence) = (problem.grid, problem.coefficients.clone());
-        loop {
-            let operator = match levels.is_empty() {
-                true => problem.operator.clone(),
-                false => Arc::new(Operator::new(&influence, &grid, &problem.threads.suited_to(grid.len()))?),
-            };
-            levels.push(Level { grid, influence: influence.clone(), operator });
-            let Some(coarse) = coarsen(&grid, coarsest) else { break };
-            influence = influence.coarsen(&grid, &coarse)?;
-            grid = coarse;
-        }
-        let mut workspace = levels[0].operator.workspace()?;
-        for level in &levels[1..] {
-            workspace.cover(level.operator.workspace()?);
-        }
-        Ok(Hierarchy { levels, workspace })
-    }
+/// Zero outside the contact area.
+pub(super) fn clear_exterior(values: &mut [f64], contact: &[bool]) {
+    values.iter_mut().zip(contact).filter(|(_, &inside)| !inside).for_each(|(value, _)| *value = 0.0);
+}
 
-    /// The work of one product on level `l`, the finest being 1 (a work unit).
-    pub fn work(&self, l: usize) -> f64 {
-        self.levels[l].grid.len() as f64 / self.levels[0].grid.len() as f64
+/// The levels, finest first: coarsens the grid of `problem` until no direction has more than `coarsest` elements.
+pub(super) fn levels(problem: &Problem, kind: SmootherKind, coarsest: usize) -> Result<Vec<Level>> {
+    let mut levels = vec![Level::new(problem, problem.grid, problem.coefficients.clone(), kind)?];
+    while let Some(coarse) = levels.last().and_then(|finer| coarsen(&finer.grid, coarsest)) {
+        let finer = &levels[levels.len() - 1];
+        let influence = finer.influence.coarsen(&finer.grid, &coarse)?;
+        levels.push(Level::new(problem, coarse, influence, kind)?);
     }
-
-    /// Bytes held by the coarser grids' operators and coefficients; the finest grid's are the problem's.
-    pub fn bytes(&self) -> usize {
-        self.levels[1..].iter().map(|level| level.influence.bytes() + level.operator.bytes()).sum()
-    }
+    Ok(levels)
 }
 
 /// The next coarser grid; none when both directions have at most `coarsest` elements.

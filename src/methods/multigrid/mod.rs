@@ -8,6 +8,6 @@ mod step;
 pub mod transfer;
 
 pub use cycle::{CycleShape, Multigrid};
-pub use hierarchy::{coarsen, Hierarchy, Level};
+pub use hierarchy::{coarsen, Level};
 pub use smoother::SmootherKind;
 pub use step::{Cycles, Workspace};

@@ -81,7 +81,7 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
         let recursive = unit.displace(multigrid.correction_product(l), &mut state.u);
         state.u_is = if recursive { Freshness::Near } else { Freshness::Stale };
         for level in 0..multigrid.depth() {
-            let (products, work) = (multigrid.take_products(level), multigrid.hierarchy.work(level));
+            let (products, work) = (multigrid.take_products(level), multigrid.levels[level].work);
             if level == l {
                 monitor.count_products(products, work);
             } else {

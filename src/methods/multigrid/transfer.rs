@@ -5,60 +5,36 @@
 
 use crate::grid::Grid;
 
-/// The indices of the children of coarse element `(ix, iy)`.
-fn children(fine: &Grid, coarse: &Grid, ix: usize, iy: usize) -> impl Iterator<Item = usize> {
-    let span = |fine: usize, coarse: usize, i: usize| {
-        let factor = if coarse < fine { 2 } else { 1 };
-        factor * i..(factor * (i + 1)).min(fine)
-    };
-    let (columns, mx) = (span(fine.mx, coarse.mx, ix), fine.mx);
-    span(fine.my, coarse.my, iy).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
-}
-
-/// Restriction of defects: the mean over the children. Defects in the exterior area are zero, and count.
-pub fn restrict_defect(fine: &Grid, coarse: &Grid, defect: &[f64], to: &mut [f64]) {
-    restrict_mean(fine, coarse, |i| defect[i], to);
-}
-
-/// Restriction by the mean over all children.
+/// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64, to: &mut [f64]) {
-    for iy in 0..coarse.my {
-        for ix in 0..coarse.mx {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for i in children(fine, coarse, ix, iy) {
-                sum += from(i);
-                count += 1.0;
-            }
-            to[coarse.index(ix, iy)] = sum / count;
-        }
+    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
+        *to = mean(coarse.children(fine, i).map(&from));
     }
 }
 
 /// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has.
 pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: impl Fn(usize) -> f64, to: &mut [f64]) {
-    for iy in 0..coarse.my {
-        for ix in 0..coarse.mx {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for h in children(fine, coarse, ix, iy).map(&h).filter(|h| h.is_finite()) {
-                sum += h;
-                count += 1.0;
-            }
-            to[coarse.index(ix, iy)] = if count > 0.0 { sum / count } else { f64::INFINITY };
-        }
+    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
+        let mean = mean(coarse.children(fine, i).map(&h).filter(|h| h.is_finite()));
+        *to = if mean.is_nan() { f64::INFINITY } else { mean };
     }
+}
+
+/// The mean of values, NaN of none.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
 }
 
 /// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
 pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
-    for iy in 0..coarse.my {
-        for ix in 0..coarse.mx {
-            let (mut inside, mut count) = (0, 0);
-            for i in children(fine, coarse, ix, iy) {
-                inside += usize::from(contact[i]);
-                count += 1;
-            }
-            to[coarse.index(ix, iy)] = 2 * inside >= count;
+    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
+        let (mut inside, mut count) = (0, 0);
+        for child in coarse.children(fine, i) {
+            inside += usize::from(contact[child]);
+            count += 1;
         }
+        *to = 2 * inside >= count;
     }
 }
 
@@ -70,13 +46,9 @@ pub fn interpolate<A: Copy>(
     to: &mut [f64],
     combine: impl Fn(&mut f64, A),
 ) {
-    for iy in 0..coarse.my {
-        for ix in 0..coarse.mx {
-            let value = from(coarse.index(ix, iy));
-            for i in children(fine, coarse, ix, iy) {
-                combine(&mut to[i], value);
-            }
-        }
+    for i in 0..coarse.len() {
+        let value = from(i);
+        coarse.children(fine, i).for_each(|child| combine(&mut to[child], value));
     }
 }
 

@@ -13,7 +13,7 @@ use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
 /// good to some units of round-off.
-pub(super) const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// When the inner iteration stops.
 #[derive(Clone, Copy, Debug)]
@@ -28,44 +28,21 @@ pub struct InnerStop {
     pub iterations: usize,
 }
 
-/// What the inner iteration did.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Inner {
-    /// Iterations; each is one matrix product.
-    pub iterations: usize,
-    /// rms over C of the last change of p.
-    pub update: f64,
-    /// Whether the criterion was met.
-    pub met: bool,
-}
-
 /// Conjugate gradients from the state's p, whose u = A p is known. Updates p; u is not kept up to date.
-/// `displace` computes products; `go_on(update, residual)` is asked after
-/// each iteration.
+/// `displace` computes products; `go_on(update, residual)` is asked after each iteration. Returns the update: rms over C of the last
+/// change of p.
 pub fn conjugate_gradients(
     state: &mut State,
     stop: InnerStop,
     workspace: &mut Workspace,
     mut displace: impl FnMut(&[f64], &mut [f64]),
     mut go_on: impl FnMut(f64, f64) -> bool,
-) -> Result<Inner> {
+) -> Result<f64> {
     let n = state.p.len();
     let mean_free = matches!(state.load, Load::Force(_));
     let count = state.contact_count() as f64;
     let contact = &state.contact;
-    let project = |values: &mut [f64]| {
-        let mut sum = 0.0;
-        for (value, &inside) in values.iter_mut().zip(contact) {
-            if inside {
-                sum += *value;
-            } else {
-                *value = 0.0;
-            }
-        }
-        if mean_free {
-            values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
-        }
-    };
+    let project = |values: &mut [f64]| project(values, contact, mean_free.then_some(count));
     let Workspace { residual: r, direction, product, .. } = workspace;
     r.clear();
     r.extend((0..n).map(|i| if contact[i] { state.approach - state.h[i] - state.u[i] } else { 0.0 }));
@@ -73,19 +50,19 @@ pub fn conjugate_gradients(
     direction.clone_from(r);
     product.resize(n, 0.0);
     let mut rr: f64 = dot(r, r);
-    let mut inner = Inner::default();
-    // Residuals are differences of these; a smaller one is noise, and so is its curvature.
-    let terms = |i: usize| (state.approach - state.h[i]).abs() + state.u[i].abs();
-    let noise = ROUND_OFF * (0..n).filter(|&i| contact[i]).map(|i| terms(i) * terms(i)).sum::<f64>().sqrt();
-    let stop = InnerStop { residual: stop.residual.max(f64::EPSILON * norm_of_distance(state)), ..stop };
-    while inner.iterations < stop.iterations && rr.sqrt() > stop.residual {
+    let mut update = 0.0;
+    let noise = noise(state, (0..n).filter(|&i| contact[i]), &state.u);
+    let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state));
+    for _ in 0..stop.iterations {
+        if !(rr.sqrt() > aim) {
+            break;
+        }
         if stop.update > 0.0 && rr.sqrt() <= noise {
             // On few elements the solution is exact after few iterations, the last of which was no small update.
-            return Ok(Inner { update: 0.0, met: true, ..inner });
+            return Ok(0.0);
         }
         displace(direction, product);
         project(product);
-        inner.iterations += 1;
         let curvature = dot(direction, product);
         if !(curvature > 0.0) {
             return Err(Error::NotPositiveDefinite(format!(
@@ -102,19 +79,38 @@ pub fn conjugate_gradients(
         // A mean that round-off left once would add up in the directions, until they are nothing else.
         project(r);
         let before = std::mem::replace(&mut rr, dot(r, r));
-        inner.update = step.abs() * (dot(direction, direction) / count).sqrt();
-        let small = inner.update <= stop.update * (dot(&state.p, &state.p) / count).sqrt();
+        update = step.abs() * (dot(direction, direction) / count).sqrt();
+        let small = update <= stop.update * (dot(&state.p, &state.p) / count).sqrt();
         let met = stop.update > 0.0 && small && rr.sqrt() <= stop.believed;
-        if !go_on(inner.update, rr.sqrt()) || met {
-            inner.met = met;
-            return Ok(inner);
+        if !go_on(update, rr.sqrt()) || met {
+            break;
         }
         for (d, r) in direction.iter_mut().zip(&*r) {
             *d = r + rr / before * *d;
         }
     }
-    inner.met = rr.sqrt() <= stop.residual;
-    Ok(inner)
+    Ok(update)
+}
+
+/// Zero outside C, and with a prescribed force of mean zero over the `count` elements of C.
+fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
+    let mut sum = 0.0;
+    for (value, &inside) in values.iter_mut().zip(contact) {
+        if inside {
+            sum += *value;
+        } else {
+            *value = 0.0;
+        }
+    }
+    if let Some(count) = count {
+        values.iter_mut().zip(contact).filter(|(_, &inside)| inside).for_each(|(value, _)| *value -= sum / count);
+    }
+}
+
+/// The round-off of a residual on `elements`, whose displacement is `u`: a smaller residual is noise, and so is its curvature.
+pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
+    let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
+    ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

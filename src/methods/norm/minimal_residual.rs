@@ -1,8 +1,8 @@
 //! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area when A is not symmetric: a table of the caller's own
 //! need not be, and conjugate gradients would then converge to something else, or not at all.
 
-use super::conjugate_gradients::ROUND_OFF;
-use super::{Inner, InnerStop, Workspace};
+use super::conjugate_gradients::noise;
+use super::{InnerStop, Workspace};
 use crate::contact::{norm_of_distance, State};
 use crate::error::Result;
 use crate::memory::reserve;
@@ -26,94 +26,72 @@ pub(super) struct Krylov {
     y: Vec<f64>,
 }
 
-/// GMRES from the state's p, whose u = A p is known. With a prescribed force, corrections keep mean zero over C.
-pub fn minimal_residual(
-    state: &mut State,
-    stop: InnerStop,
-    workspace: &mut Workspace,
-    mut displace: impl FnMut(&[f64], &mut [f64]),
-    mut go_on: impl FnMut(f64, f64) -> bool,
-) -> Result<Inner> {
-    let Workspace { residual, direction: full, product, krylov } = workspace;
-    let Krylov { elements, basis, change, columns, rotations, right, y } = krylov;
-    let mean_free = matches!(state.load, Load::Force(_));
-    elements.clear();
-    reserve(elements, state.p.len(), "GMRES")?;
-    elements.extend((0..state.p.len()).filter(|&i| state.contact[i]));
-    let (m, count) = (elements.len(), elements.len() as f64);
-    let project = |values: &mut [f64]| {
-        if mean_free {
-            let mean = values.iter().sum::<f64>() / count;
-            values.iter_mut().for_each(|value| *value -= mean);
+impl Krylov {
+    /// Room for the directions of a state's contact area.
+    fn begin(&mut self, state: &State) -> Result<()> {
+        reserve(&mut self.elements, state.p.len(), "GMRES")?;
+        self.elements.clear();
+        self.elements.extend((0..state.p.len()).filter(|&i| state.contact[i]));
+        reserve(&mut self.basis, (RESTART + 1) * self.elements.len(), "GMRES's directions")?;
+        reserve(&mut self.change, self.elements.len(), "GMRES")
+    }
+
+    /// The first direction is the residual, whose norm is `beta`.
+    fn restart(&mut self, residual: &[f64], beta: f64) {
+        self.basis.clear();
+        self.basis.extend(residual.iter().map(|r| r / beta));
+        self.columns.clear();
+        self.rotations.clear();
+        self.right.clear();
+        self.right.push(beta);
+    }
+
+    /// The last direction, as pressures on the grid; zero outside C.
+    fn write_last(&self, full: &mut [f64]) {
+        let m = self.elements.len();
+        for (&i, v) in self.elements.iter().zip(&self.basis[self.rotations.len() * m..]) {
+            full[i] = *v;
         }
-    };
-    reserve(basis, (RESTART + 1) * m, "GMRES's directions")?;
-    reserve(change, m, "GMRES")?;
-    let mut inner = Inner::default();
-    let stop = InnerStop { residual: stop.residual.max(f64::EPSILON * norm_of_distance(state)), ..stop };
-    full.clear();
-    full.resize(state.p.len(), 0.0);
-    product.resize(state.p.len(), 0.0);
-    residual.clear();
-    residual.extend(elements.iter().map(|&i| state.approach - state.h[i] - state.u[i]));
-    project(residual);
-    loop {
-        let beta = norm(residual);
-        if beta <= stop.residual {
-            inner.met = true;
-            return Ok(inner);
+    }
+
+    /// A new direction, from the product of the last. Returns the residual that is left, and whether there is nothing new in the
+    /// direction; none of a singular system: the best that this space holds is taken.
+    fn add(&mut self, product: &[f64], project: impl Fn(&mut [f64])) -> Option<(f64, bool)> {
+        let (k, m) = (self.rotations.len(), self.elements.len());
+        self.basis.extend(self.elements.iter().map(|&i| product[i]));
+        let (basis, w) = self.basis.split_at_mut((k + 1) * m);
+        self.columns.resize((k + 1) * RESTART, 0.0);
+        let column = &mut self.columns[k * RESTART..];
+        // Twice, and the mean each time: what round-off leaves of it no residual would show.
+        for _ in 0..2 {
+            project(w);
+            for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {
+                let part: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
+                *h += part;
+                w.iter_mut().zip(v).for_each(|(w, v)| *w -= part * v);
+            }
         }
-        if inner.iterations >= stop.iterations {
-            return Ok(inner);
+        let below = norm(w);
+        w.iter_mut().for_each(|w| *w /= below);
+        for (j, &(c, s)) in self.rotations.iter().enumerate() {
+            (column[j], column[j + 1]) = (c * column[j] + s * column[j + 1], c * column[j + 1] - s * column[j]);
         }
-        basis.clear();
-        basis.extend(residual.iter().map(|r| r / beta));
-        columns.clear();
-        rotations.clear();
-        right.clear();
-        right.push(beta);
-        let mut k = 0; // columns so far
-        let mut cancelled = false;
-        while k < RESTART && inner.iterations < stop.iterations && !cancelled {
-            for (&i, v) in elements.iter().zip(&basis[k * m..]) {
-                full[i] = *v;
-            }
-            displace(full, product);
-            inner.iterations += 1;
-            basis.extend(elements.iter().map(|&i| product[i]));
-            let (basis, w) = basis.split_at_mut((k + 1) * m);
-            columns.resize((k + 1) * RESTART, 0.0);
-            let column = &mut columns[k * RESTART..];
-            // Twice, and the mean each time: what round-off leaves of it no residual would show.
-            for _ in 0..2 {
-                project(w);
-                for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {
-                    let part: f64 = v.iter().zip(&*w).map(|(a, b)| a * b).sum();
-                    *h += part;
-                    w.iter_mut().zip(v).for_each(|(w, v)| *w -= part * v);
-                }
-            }
-            let below = norm(w);
-            for (j, &(c, s)) in rotations.iter().enumerate() {
-                (column[j], column[j + 1]) = (c * column[j] + s * column[j + 1], c * column[j + 1] - s * column[j]);
-            }
-            let diagonal = column[k].hypot(below);
-            if !(diagonal > 0.0) {
-                break; // a singular system: the best that this space holds is taken
-            }
-            let (c, s) = (column[k] / diagonal, below / diagonal);
-            column[k] = diagonal;
-            rotations.push((c, s));
-            right.push(-s * right[k]);
-            right[k] *= c;
-            k += 1;
-            cancelled = !go_on(inner.update, right[k].abs());
-            if right[k].abs() <= stop.residual || below <= f64::EPSILON * diagonal {
-                break;
-            }
-            w.iter_mut().for_each(|w| *w /= below);
+        let diagonal = column[k].hypot(below);
+        if !(diagonal > 0.0) {
+            return None;
         }
-        // Back substitution, then p += basis * y.
+        let (c, s) = (column[k] / diagonal, below / diagonal);
+        column[k] = diagonal;
+        self.rotations.push((c, s));
+        self.right.push(-s * self.right[k]);
+        self.right[k] *= c;
+        Some((self.right[k + 1].abs(), below <= f64::EPSILON * diagonal))
+    }
+
+    /// The change of p on C: the combination of the directions that leaves the least residual, by back substitution.
+    fn combine(&mut self) -> &[f64] {
+        let Krylov { elements, basis, change, columns, rotations, right, y } = self;
+        let k = rotations.len();
         y.clear();
         y.resize(k, 0.0);
         for row in (0..k).rev() {
@@ -121,33 +99,73 @@ pub fn minimal_residual(
             y[row] = (right[row] - sum) / columns[row * RESTART + row];
         }
         change.clear();
-        change.resize(m, 0.0);
-        for (v, y) in basis.chunks_exact(m).zip(&*y) {
+        change.resize(elements.len(), 0.0);
+        for (v, y) in basis.chunks_exact(elements.len()).zip(&*y) {
             change.iter_mut().zip(v).for_each(|(c, v)| *c += y * v);
         }
-        for (&i, c) in elements.iter().zip(&*change) {
+        change
+    }
+}
+
+/// GMRES from the state's p, whose u = A p is known. With a prescribed force, corrections keep mean zero over C. Returns the update:
+/// rms over C of the last change of p.
+pub fn minimal_residual(
+    state: &mut State,
+    stop: InnerStop,
+    workspace: &mut Workspace,
+    mut displace: impl FnMut(&[f64], &mut [f64]),
+    mut go_on: impl FnMut(f64, f64) -> bool,
+) -> Result<f64> {
+    let Workspace { residual, direction: full, product, krylov } = workspace;
+    krylov.begin(state)?;
+    let count = krylov.elements.len() as f64;
+    let mean_free = matches!(state.load, Load::Force(_));
+    let project = |values: &mut [f64]| {
+        if mean_free {
+            let mean = values.iter().sum::<f64>() / count;
+            values.iter_mut().for_each(|value| *value -= mean);
+        }
+    };
+    let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state));
+    full.clear();
+    full.resize(state.p.len(), 0.0);
+    product.clone_from(&state.u);
+    let (mut update, mut iterations, mut before) = (0.0, 0, f64::INFINITY);
+    loop {
+        residual.clear();
+        residual.extend(krylov.elements.iter().map(|&i| state.approach - state.h[i] - product[i]));
+        project(residual);
+        let beta = norm(residual);
+        // A true residual that is round-off stays that, restart after restart.
+        let stays = beta > 0.5 * before && beta <= noise(state, krylov.elements.iter().copied(), product);
+        if beta <= aim || iterations >= stop.iterations || stays {
+            return Ok(update);
+        }
+        before = beta;
+        krylov.restart(residual, beta);
+        let mut cancelled = false;
+        while krylov.rotations.len() < RESTART && iterations < stop.iterations && !cancelled {
+            krylov.write_last(full);
+            displace(full, product);
+            iterations += 1;
+            let Some((left, is_last)) = krylov.add(product, project) else { break };
+            cancelled = !go_on(update, left);
+            if left <= aim || is_last {
+                break;
+            }
+        }
+        let change = krylov.combine();
+        update = norm(change) / count.sqrt();
+        for (&i, c) in krylov.elements.iter().zip(&krylov.change) {
             state.p[i] += c;
         }
-        inner.update = norm(change) / count.sqrt();
-        let size = (elements.iter().map(|&i| state.p[i] * state.p[i]).sum::<f64>() / count).sqrt();
-        if cancelled || y.is_empty() {
-            return Ok(inner);
-        }
-        let last = right[k].abs();
-        if stop.update > 0.0 && inner.update <= stop.update * size && last <= stop.believed {
-            inner.met = true;
-            return Ok(inner);
+        let squares = krylov.elements.iter().map(|&i| state.p[i] * state.p[i]).sum::<f64>();
+        let small = stop.update > 0.0 && update <= stop.update * (squares / count).sqrt();
+        let left = krylov.right.last().map_or(0.0, |right| right.abs());
+        if cancelled || krylov.rotations.is_empty() || small && left <= stop.believed {
+            return Ok(update);
         }
         displace(&state.p, product);
-        residual.clear();
-        residual.extend(elements.iter().map(|&i| state.approach - state.h[i] - product[i]));
-        project(residual);
-        // A true residual that is round-off stays that, restart after restart.
-        let terms = |i: usize| (state.approach - state.h[i]).abs() + product[i].abs();
-        let noise = ROUND_OFF * elements.iter().map(|&i| terms(i) * terms(i)).sum::<f64>().sqrt();
-        if norm(residual) <= noise && norm(residual) > 0.5 * beta {
-            return Ok(inner);
-        }
     }
 }
 

@@ -9,7 +9,7 @@ mod conjugate_gradients;
 mod minimal_residual;
 mod step;
 
-pub use conjugate_gradients::{conjugate_gradients, Inner, InnerStop};
+pub use conjugate_gradients::{conjugate_gradients, InnerStop};
 pub use minimal_residual::minimal_residual;
 pub use step::Norm;
 

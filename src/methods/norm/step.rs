@@ -1,8 +1,8 @@
 //! NORM as a step: an inner solve on C, from p = 0 as in the paper, or from the pressures that the solve starts with.
 
-use super::{conjugate_gradients, minimal_residual, Inner, InnerStop};
+use super::{conjugate_gradients, minimal_residual, InnerStop};
 use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
-use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Problem, State, Survey};
+use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Problem, Snapshot, State, Survey};
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::{Change, Habits, Step};
@@ -27,7 +27,8 @@ pub struct Norm {
     /// What to do with the result of the last inner solve.
     next: Next,
     /// The state before a trial.
-    before: Kept,
+    before: Snapshot,
+    u_before: Vec<f64>,
 }
 
 /// What the next step begins with.
@@ -42,27 +43,13 @@ enum Next {
     ExchangeOne,
 }
 
-#[derive(Default)]
-struct Kept {
-    p: Vec<f64>,
-    u: Vec<f64>,
-    contact: Vec<bool>,
-    at_limit: Vec<bool>,
-    approach: f64,
-}
-
 impl Norm {
-    /// The memory of inner solves.
-    pub fn inner(&mut self) -> &mut super::Workspace {
-        &mut self.inner
-    }
-
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        (self.before.p.len() + self.before.u.len()) * size_of::<f64>() + self.inner.bytes()
+        2 * self.u_before.len() * size_of::<f64>() + self.inner.bytes()
     }
 
-    /// 2. The equations on the contact area. From p = 0, or from what there is if `warm`.
+    /// 2. The equations on the contact area, from the pressures there are. Returns the update.
     fn solve<S: AdmissibleSet>(
         &mut self,
         problem: &mut Problem,
@@ -70,9 +57,9 @@ impl Norm {
         set: S,
         goal: &Goal,
         monitor: &mut Monitor<'_>,
-    ) -> Result<Inner> {
+    ) -> Result<f64> {
         if state.contact_count() == 0 {
-            return Ok(Inner { met: true, ..Inner::default() });
+            return Ok(0.0);
         }
         let h = norm_of_distance(state);
         let stop = InnerStop {
@@ -85,24 +72,24 @@ impl Norm {
         let symmetric = problem.symmetric;
         let product = |p: &[f64], u: &mut [f64]| problem.displace(p, u);
         let go_on = |update: f64, residual: f64| monitor.cycle_done(&grid, 0, update, residual / h);
-        let inner = if symmetric {
+        let update = if symmetric {
             conjugate_gradients(state, stop, &mut self.inner, product, go_on)?
         } else {
             minimal_residual(state, stop, &mut self.inner, product, go_on)?
         };
-        monitor.count.update = inner.update;
+        monitor.count.update = update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
         refresh(problem, state, set);
-        Ok(inner)
+        Ok(update)
     }
 
     /// What is to follow an inner solve that leaves `violators`. The recursive residual certifies nothing: if the true one is not met, it
     /// goes on from there. False if nothing is left to do.
-    fn judge<S: AdmissibleSet>(&mut self, state: &State, set: S, goal: &Goal, inner: &Inner, violators: u64) -> bool {
+    fn judge<S: AdmissibleSet>(&mut self, state: &State, set: S, goal: &Goal, update: f64, violators: u64) -> bool {
         let residual = residual_norm(state);
         let residual_holds = residual <= goal.residual() * norm_of_distance(state);
         let holds = match violators {
-            0 => goal.holds(&Survey::of(state), inner.update, set),
+            0 => goal.holds(&Survey::of(state), update, set),
             _ => residual_holds,
         };
         let gains = residual < 0.5 * self.last_residual || residual_holds || goal.by_update();
@@ -125,6 +112,7 @@ impl Norm {
             return true;
         }
         self.before.keep(state);
+        self.u_before.clone_from(&state.u);
         truncate(state, set);
         problem.refresh(state, set);
         self.next = Next::ExchangeOne;
@@ -134,6 +122,7 @@ impl Norm {
     /// One element changes sides: the last of those that should.
     fn exchange_one<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         self.before.give_back(state);
+        state.u.copy_from_slice(&self.u_before);
         if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, set, i)) {
             let at_limit = S::LIMITED && state.at_limit[i];
             if S::LIMITED {
@@ -201,7 +190,8 @@ impl<S: AdmissibleSet> Step<S> for Norm {
         (self.guard, self.next) = (ExchangeGuard::default(), Next::GoOn);
         (self.restarts, self.last_residual, self.aim) = (0, f64::INFINITY, 1.0);
         self.inner.reserve(state.p.len())?;
-        self.before.reserve(state)
+        reserve(&mut self.u_before, state.u.len(), "NORM's workspace")?;
+        self.before.reserve(state, "NORM's workspace")
     }
 
     fn step(
@@ -233,38 +223,11 @@ impl<S: AdmissibleSet> Step<S> for Norm {
                 start_from_zero(problem, state, set);
             }
         }
-        let inner = self.solve(problem, state, set, goal, monitor)?;
+        let update = self.solve(problem, state, set, goal, monitor)?;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
         monitor.count.active_set_changes += changes;
-        let gives_up = !self.judge(state, set, goal, &inner, changes);
-        Ok(Change { update: inner.update, changes, gives_up })
-    }
-}
-
-impl Kept {
-    fn reserve(&mut self, state: &State) -> Result<()> {
-        const NORM: &str = "NORM's workspace";
-        let n = state.p.len();
-        reserve(&mut self.p, n, NORM)?;
-        reserve(&mut self.u, n, NORM)?;
-        reserve(&mut self.contact, n, NORM)?;
-        reserve(&mut self.at_limit, state.at_limit.len(), NORM)
-    }
-
-    fn keep(&mut self, state: &State) {
-        self.p.clone_from(&state.p);
-        self.u.clone_from(&state.u);
-        self.contact.clone_from(&state.contact);
-        self.at_limit.clone_from(&state.at_limit);
-        self.approach = state.approach;
-    }
-
-    fn give_back(&self, state: &mut State) {
-        state.p.copy_from_slice(&self.p);
-        state.u.copy_from_slice(&self.u);
-        state.contact.copy_from_slice(&self.contact);
-        state.at_limit.copy_from_slice(&self.at_limit);
-        state.approach = self.approach;
+        let gives_up = !self.judge(state, set, goal, update, changes);
+        Ok(Change { update, changes, gives_up })
     }
 }

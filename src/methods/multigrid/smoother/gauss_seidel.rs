@@ -25,7 +25,7 @@ const COLUMNS: usize = 8;
 
 /// Gauss-Seidel on one grid.
 pub struct GaussSeidel {
-    mx: usize,
+    pub(super) mx: usize,
     my: usize,
     rows: RowTransform<f64>,
     /// Coefficients `c(k, 0)` inside a row, `k >= 0`.
@@ -104,11 +104,6 @@ impl GaussSeidel {
             scratch,
             rows,
         })
-    }
-
-    /// Elements in a row of the grid.
-    pub fn row_length(&self) -> usize {
-        self.mx
     }
 
     /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is used up.

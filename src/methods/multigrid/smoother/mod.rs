@@ -2,8 +2,6 @@
 
 mod fft;
 mod gauss_seidel;
-mod jacobi;
-mod red_black;
 
 pub use fft::Fft;
 pub use gauss_seidel::GaussSeidel;
@@ -11,6 +9,7 @@ pub use gauss_seidel::GaussSeidel;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::operator::zeros;
 use crate::threads::Threads;
 
 /// Which smoother.
@@ -43,8 +42,8 @@ impl SmootherKind {
 pub enum Smoother {
     /// See [`SmootherKind::GaussSeidel`].
     GaussSeidel(GaussSeidel),
-    /// See [`SmootherKind::RedBlack`].
-    RedBlack(GaussSeidel, red_black::Workspace),
+    /// See [`SmootherKind::RedBlack`]; what the red elements change, and the residual before the sweep.
+    RedBlack(GaussSeidel, Vec<f64>, Vec<f64>),
     /// See [`SmootherKind::Jacobi`]; the diagonal coefficient.
     Jacobi(f64),
     /// See [`SmootherKind::Fft`].
@@ -57,7 +56,8 @@ impl Smoother {
         Ok(match kind {
             SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(influence, grid)?),
             SmootherKind::RedBlack => {
-                Smoother::RedBlack(GaussSeidel::new(influence, grid)?, red_black::Workspace::new(grid)?)
+                let array = || zeros(grid.len(), "the smoother");
+                Smoother::RedBlack(GaussSeidel::new(influence, grid)?, array()?, array()?)
             }
             SmootherKind::Jacobi => Smoother::Jacobi(influence.at(0, 0)),
             SmootherKind::Fft => Smoother::Fft(Box::new(Fft::new(influence, grid, threads)?)),
@@ -78,15 +78,29 @@ impl Smoother {
         residual: &mut [f64],
         contact: &[bool],
         relaxation: f64,
-        displace: impl FnMut(&[f64], &mut [f64]),
+        mut displace: impl FnMut(&[f64], &mut [f64]),
     ) {
         match self {
             Smoother::GaussSeidel(gauss_seidel) => gauss_seidel.sweep(p, residual, relaxation, |i| contact[i]),
-            Smoother::RedBlack(gauss_seidel, workspace) => {
-                red_black::sweep(gauss_seidel, workspace, p, residual, contact, relaxation, displace);
+            // A is dense, so the red elements depend on each other, too: each colour is swept in lexicographic order, and the residual
+            // is brought up to date between.
+            Smoother::RedBlack(gauss_seidel, changes, before) => {
+                let mx = gauss_seidel.mx;
+                let red = |i: usize| (i / mx + i % mx) % 2 == 0;
+                before.copy_from_slice(residual);
+                changes.fill(0.0);
+                gauss_seidel.sweep(changes, residual, relaxation, |i| contact[i] && red(i));
+                p.iter_mut().zip(&*changes).for_each(|(p, change)| *p += change);
+                displace(changes, residual);
+                residual.iter_mut().zip(before).for_each(|(r, before)| *r = *before - *r);
+                gauss_seidel.sweep(p, residual, relaxation, |i| contact[i] && !red(i));
             }
             Smoother::Fft(fft) => fft.sweep(p, residual, contact, relaxation, displace),
-            Smoother::Jacobi(diagonal) => jacobi::sweep(*diagonal, p, residual, contact, relaxation),
+            Smoother::Jacobi(diagonal) => {
+                for ((p, r), _) in p.iter_mut().zip(residual).zip(contact).filter(|(_, &inside)| inside) {
+                    *p += relaxation * *r / *diagonal;
+                }
+            }
         }
     }
 }

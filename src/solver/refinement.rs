@@ -1,17 +1,17 @@
 //! Accuracy instead of a grid: finer and finer grids until the estimated error of the force or the approach is small enough.
 
-mod plan;
+mod next_grid;
 
 use std::time::Instant;
 
-pub use plan::Accuracy;
+pub use next_grid::Accuracy;
 
 use super::{ActiveSet, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
 use crate::scene::{refine, Load, Scene};
-use plan::{Next, Past};
+use next_grid::{Next, Past};
 
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;

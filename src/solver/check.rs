@@ -1,0 +1,140 @@
+//! What a solver refuses before it begins: what is not as at the set-up, a guess that is none, units out of range.
+
+use super::{is_fixed, Guess, InitialGuess, Method, Options, SetUp};
+use crate::contact::Problem;
+use crate::effects;
+use crate::error::{invalid, Error, Result};
+use crate::scene::{Load, Scene};
+
+impl SetUp {
+    /// Refuses a scene and options that are not those of the set-up, or not solved together.
+    pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
+        scene.check_distance_and_load()?;
+        self.check_options(options)?;
+        if scene.grid != problem.grid {
+            return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, problem.grid));
+        }
+        effects::check_effects(scene)?;
+        // Own coefficients know no bodies.
+        if !problem.given {
+            scene.bodies.check()?;
+        }
+        if let Some(difference) = self.named.differs(scene) {
+            return invalid(difference);
+        }
+        if scene.pressure_limit.is_some() && is_fixed(options) {
+            let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
+            return Err(Error::Unsupported(message.into()));
+        }
+        match (options.method, self.without_multigrid) {
+            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
+            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses options that are not those of the set-up.
+    pub fn check_options(&self, options: &Options) -> Result<()> {
+        options.check()?;
+        let (now, then) = (options.cycle_shape(), self.options.cycle_shape());
+        let names = [
+            ("smoother", now.smoother != then.smoother),
+            ("pre_sweeps", now.pre_sweeps != then.pre_sweeps),
+            ("post_sweeps", now.post_sweeps != then.post_sweeps),
+            ("relaxation", now.relaxation != then.relaxation),
+            ("coarsest", now.coarsest != then.coarsest),
+            ("threads", options.threads != self.options.threads),
+            ("precision", options.precision != self.options.precision),
+        ];
+        if let Some((name, _)) = names.into_iter().find(|(_, differs)| *differs) {
+            return invalid(format!("{name} is not that of the set-up: set up another solver for it"));
+        }
+        Ok(())
+    }
+}
+
+fn unsupported(method: &str, effect: &str) -> Result<()> {
+    let rule = "AUTO chooses a method that does";
+    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
+}
+
+/// Refuses a guess that is none, or that is missing.
+pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
+    let grid = &scene.grid;
+    let fixed = is_fixed(options);
+    let Some(guess) = guess else {
+        return match options.initial_guess {
+            _ if fixed => invalid("active_set is FIXED, but no contact area is given".into()),
+            InitialGuess::Given => invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
+            _ => Ok(()),
+        };
+    };
+    if !fixed && options.initial_guess != InitialGuess::Given {
+        return Ok(());
+    }
+    if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
+        return invalid(format!(
+            "the initial guess has {} pressures and {} contact elements; the grid has {} elements",
+            guess.pressure.len(),
+            guess.contact.len(),
+            grid.len()
+        ));
+    }
+    let surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
+    if fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(surface) {
+        return invalid("active_set is FIXED, but the given contact area is empty, or has no surface".into());
+    }
+    match guess.pressure.iter().find(|p| !p.is_finite()) {
+        Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses units in which pressures, displacements or their squares leave the range of double precision. `fixed`: a contact
+/// area that is given.
+pub fn range(scene: &Scene<'_>, problem: &Problem, largest: f64, fixed: Option<Guess<'_>>) -> Result<()> {
+    let influence = problem.self_influence();
+    let h = scene.undeformed_distance;
+    let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    // The largest on the given contact area.
+    let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
+        let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());
+        on_contact.fold(0.0, |largest: f64, (h, _)| largest.max(of(*h).abs()))
+    };
+    // With a prescribed force the approach is a mean of distances, whatever they are measured from.
+    let (pressure, displacement, farthest) = match scene.load {
+        Load::Approach(approach) => {
+            let depth = match fixed {
+                Some(fixed) => largest_on(fixed, &|h| h - approach),
+                None if lowest.is_finite() => (approach - lowest).max(0.0),
+                None => 0.0,
+            };
+            (depth / influence, depth, 0.0)
+        }
+        Load::Force(force) => {
+            let pressure = force / scene.grid.element_area();
+            let farthest = fixed.map_or(lowest.abs(), |fixed| largest_on(fixed, &|h| h));
+            (pressure, pressure * influence, farthest)
+        }
+    };
+    if pressure != 0.0 && farthest >= 1e140 {
+        return invalid(format!(
+                "the undeformed distances of the contact area are of order {farthest:e}; with a prescribed force they must lie \
+                 below 1e140: choose other units"
+            ));
+    }
+    let in_range = |value: f64| (1e-140..1e140).contains(&value);
+    let loaded = pressure != 0.0 || displacement != 0.0;
+    // A single element of two periods displaces nothing.
+    if problem.grid.len() == 1 && problem.coefficients.is_mean_free() && in_range(pressure) {
+        return Ok(());
+    }
+    let coefficients = in_range(influence) && in_range(largest) && in_range(largest * pressure);
+    if loaded && !(in_range(pressure) && in_range(displacement) && coefficients) {
+        return invalid(format!(
+                "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
+                 coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"
+            ));
+    }
+    Ok(())
+}
