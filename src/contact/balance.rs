@@ -76,7 +76,7 @@ impl State {
         }
         for i in 0..self.p.len() {
             if self.contact[i] && self.p[i] > set.limit(i) {
-                (self.contact[i], self.at_limit[i]) = (false, true);
+                (self.contact[i], self.at_limit[i], self.reached_limit) = (false, true, true);
             }
             if self.at_limit[i] {
                 self.p[i] = set.limit(i);

@@ -15,7 +15,7 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
     for i in 0..state.p.len() {
         if state.contact[i] && set.leaves(i, state.p[i]) {
             if S::LIMITED && state.p[i] > 0.0 {
-                state.at_limit[i] = true;
+                (state.at_limit[i], state.reached_limit) = (true, true);
             }
             state.p[i] = set.project(i, state.p[i]);
             state.contact[i] = false;

@@ -38,6 +38,8 @@ pub struct State {
     pub contact: Vec<bool>,
     /// Elements at their limit, beside C; empty where the scene has no limits.
     pub at_limit: Vec<bool>,
+    /// Whether an element was at its limit since the solve began: if not, all is as without limits, to the last bit.
+    pub reached_limit: bool,
     /// The approach: given, or the current estimate when the force is prescribed.
     pub approach: f64,
     /// What is prescribed.
@@ -62,6 +64,7 @@ impl State {
             u_is: Freshness::Exact,
             contact: zeros(n, "contact")?,
             at_limit: Vec::new(),
+            reached_limit: false,
             approach,
             load,
             round_off: 0.0,

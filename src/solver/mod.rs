@@ -184,7 +184,18 @@ impl Solver {
                 PressureLimit::PerElement(&limits)
             }
         };
-        let outcome = self.run(scene, set, options, guess, monitor);
+        let mut outcome = self.run(scene, set, options, guess, monitor);
+        let on_the_way = self.state.reached_limit && !self.state.at_limit.contains(&true);
+        if on_the_way && outcome.is_ok() && options.initial_guess != InitialGuess::Previous {
+            // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
+            monitor.ledger.rows.clear();
+            monitor.enter_grid();
+            outcome = self.run(scene, NonNegative, options, guess, monitor);
+            if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
+                monitor.ledger.rows.clear();
+                outcome = self.run(scene, set, options, guess, monitor);
+            }
+        }
         self.limits = limits;
         outcome
     }

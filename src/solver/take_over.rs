@@ -24,6 +24,7 @@ pub fn take_over<S: AdmissibleSet>(
     state.h.copy_from_slice(scene.undeformed_distance);
     state.load = scene.load;
     state.round_off = problem.round_off();
+    state.reached_limit = false;
     if let Load::Approach(approach) = scene.load {
         state.approach = approach;
     }

@@ -102,6 +102,7 @@ impl CoarseGrids {
         for l in 0..count {
             let (from, to) = self.pair(l, fine);
             transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
+            to.state.reached_limit = false;
             to.state.at_limit.clear();
             if to.level.influence().is_mean_free() {
                 shift_to_mean(&from.h, &mut to.state.h);
@@ -125,6 +126,7 @@ impl CoarseGrids {
             }
             let finer_influence = if l > 0 { self.grids[l - 1].level.self_influence() } else { self_influence };
             let (to, from) = self.pair(l, fine);
+            to.reached_limit |= from.state.reached_limit;
             if residual_norm(&from.state) <= norm_of_distance(&from.state) {
                 prolong(&from.state, to, highest);
             } else {
@@ -213,6 +215,7 @@ impl CoarseGrids {
 fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
     for i in 0..state.p.len() {
         state.at_limit[i] = state.p[i] >= set.limit(i);
+        state.reached_limit |= state.at_limit[i];
         if state.at_limit[i] {
             (state.p[i], state.contact[i]) = (set.limit(i), false);
         }

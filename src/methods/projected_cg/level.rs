@@ -228,6 +228,7 @@ impl Level {
             reserve(&mut part.at_limit, grid.len(), "elements at the limit")?;
             part.at_limit.resize(grid.len(), false);
             window.extract(&state.grid, &state.at_limit, &mut part.at_limit);
+            part.reached_limit = false;
         } else {
             part.at_limit.clear();
         }
@@ -249,6 +250,7 @@ impl Level {
         window.insert(&state.grid, &part.contact, &mut state.contact, false);
         if S::LIMITED {
             window.insert(&state.grid, &part.at_limit, &mut state.at_limit, false);
+            state.reached_limit |= part.reached_limit;
         }
         state.approach = part.approach;
         self.limits = limits;

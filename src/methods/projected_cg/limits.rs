@@ -124,6 +124,7 @@ impl<T: Real> Iteration<T> {
             }
             let at_limit = state.p[i] >= set.limit(i);
             state.at_limit[i] = at_limit;
+            state.reached_limit |= at_limit;
             state.contact[i] = state.p[i] > 0.0 && !at_limit;
         }
         self.find_contact(state);

@@ -203,7 +203,7 @@ impl<T: Real> Iteration<T> {
                 let at_limit = S::LIMITED && (to > set.limit(i) || to >= 0.0 && t > T::zero());
                 let bound = if at_limit { set.limit(i) } else { 0.0 };
                 if at_limit {
-                    state.at_limit[i] = true;
+                    (state.at_limit[i], state.reached_limit) = (true, true);
                 }
                 self.debts.push((i, bound - to));
                 state.p[i] = bound;
