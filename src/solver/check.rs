@@ -26,11 +26,14 @@ impl SetUp {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
             return Err(Error::Unsupported(message.into()));
         }
-        match (options.method, self.without_multigrid) {
-            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
-            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
-            _ => Ok(()),
-        }
+        let (method, effect) = match (options.method, self.without_multigrid) {
+            (Method::Multigrid, Some(effect)) => ("MULTIGRID", effect),
+            (Method::FullMultigrid, Some(effect)) => ("FULL_MULTIGRID", effect),
+            _ => return Ok(()),
+        };
+        Err(Error::Unsupported(format!(
+            "method is {method}, which does not solve scenes with {effect}; AUTO chooses a method that does"
+        )))
     }
 
     /// Refuses options that are not those of the set-up.
@@ -51,11 +54,6 @@ impl SetUp {
         }
         Ok(())
     }
-}
-
-fn unsupported(method: &str, effect: &str) -> Result<()> {
-    let rule = "AUTO chooses a method that does";
-    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
 }
 
 /// Refuses a guess that is none, or that is missing.

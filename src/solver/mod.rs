@@ -157,7 +157,7 @@ impl Solver {
         self.ledger = monitor.ledger.rows;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        self.say(options, stop, &report);
+        report.log(options.method, &self.problem.grid, stop);
         Ok((stop, report))
     }
 
@@ -241,21 +241,6 @@ impl Solver {
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
         report.work_units = monitor.count.work_units;
         Ok(())
-    }
-
-    fn say(&self, options: &Options, stop: Stop, report: &Report) {
-        log::info!(
-            "{:?} on {} x {}: {stop:?} after {} cycles and {:.1} work units, residual {:e}",
-            options.method,
-            self.problem.grid.mx,
-            self.problem.grid.my,
-            report.cycles,
-            report.work_units,
-            report.measures.certificate.residual
-        );
-        if log::log_enabled!(log::Level::Info) {
-            report.advice().iter().for_each(|advice| log::info!("{advice}"));
-        }
     }
 
     /// The result: pressures, displacements, contact area and approach.
