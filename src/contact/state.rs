@@ -92,16 +92,11 @@ impl State {
     /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
         let Grid { mx, my, .. } = self.grid;
-        let in_row = |row: &[bool]| match row {
-            [first, .., last] => usize::from(*first) + usize::from(*last),
-            row => usize::from(row[0]),
-        };
-        let rows = self.contact.chunks_exact(mx).enumerate();
-        rows.map(|(iy, row)| match iy == 0 || iy == my - 1 {
+        let of_row = |(iy, row): (usize, &[bool])| match iy == 0 || iy + 1 == my {
             true => row.iter().filter(|&&inside| inside).count(),
-            false => in_row(row),
-        })
-        .sum()
+            false => usize::from(row[0]) + row[1..].last().map_or(0, |last| usize::from(*last)),
+        };
+        self.contact.chunks_exact(mx).enumerate().map(of_row).sum()
     }
 
     /// `sum of p dx dy`.

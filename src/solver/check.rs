@@ -1,6 +1,6 @@
 //! What a solver refuses before it begins: what is not as at the set-up, a guess that is none, units out of range.
 
-use super::{is_fixed, Guess, InitialGuess, Method, Options, SetUp};
+use super::{Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;
 use crate::effects;
 use crate::error::{invalid, Error, Result};
@@ -22,15 +22,18 @@ impl SetUp {
         if let Some(difference) = self.named.differs(scene) {
             return invalid(difference);
         }
-        if scene.pressure_limit.is_some() && is_fixed(options) {
+        if scene.pressure_limit.is_some() && options.is_fixed() {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
             return Err(Error::Unsupported(message.into()));
         }
-        match (options.method, self.without_multigrid) {
-            (Method::Multigrid, Some(effect)) => unsupported("MULTIGRID", effect),
-            (Method::FullMultigrid, Some(effect)) => unsupported("FULL_MULTIGRID", effect),
-            _ => Ok(()),
-        }
+        let (method, effect) = match (options.method, self.without_multigrid) {
+            (Method::Multigrid, Some(effect)) => ("MULTIGRID", effect),
+            (Method::FullMultigrid, Some(effect)) => ("FULL_MULTIGRID", effect),
+            _ => return Ok(()),
+        };
+        Err(Error::Unsupported(format!(
+            "method is {method}, which does not solve scenes with {effect}; AUTO chooses a method that does"
+        )))
     }
 
     /// Refuses options that are not those of the set-up.
@@ -53,15 +56,10 @@ impl SetUp {
     }
 }
 
-fn unsupported(method: &str, effect: &str) -> Result<()> {
-    let rule = "AUTO chooses a method that does";
-    Err(Error::Unsupported(format!("method is {method}, which does not solve scenes with {effect}; {rule}")))
-}
-
 /// Refuses a guess that is none, or that is missing.
 pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
     let grid = &scene.grid;
-    let fixed = is_fixed(options);
+    let fixed = options.is_fixed();
     let Some(guess) = guess else {
         return match options.initial_guess {
             _ if fixed => invalid("active_set is FIXED, but no contact area is given".into()),

@@ -140,11 +140,11 @@ impl Solver {
     ) -> Result<(Stop, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, guess)?;
-        let given_contact = guess.filter(|_| is_fixed(options));
+        let given_contact = guess.filter(|_| options.is_fixed());
         check::range(scene, &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = match scene.pressure_limit {
-            _ if is_fixed(options) => self.run(scene, Fixed, options, guess, &mut monitor),
+            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, &mut monitor),
             None => self.run(scene, NonNegative, options, guess, &mut monitor),
             Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
         };
@@ -157,7 +157,7 @@ impl Solver {
         self.ledger = monitor.ledger.rows;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        self.say(options, stop, &report);
+        report.log(options.method, &self.problem.grid, stop);
         Ok((stop, report))
     }
 
@@ -241,7 +241,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
         report: &mut Report,
     ) -> Result<()> {
-        if !self.problem.symmetric || is_fixed(options) || scene.pressure_limit.is_some() {
+        if !self.problem.symmetric || options.is_fixed() || scene.pressure_limit.is_some() {
             return Ok(());
         }
         let chord = monitor.ledger.outline.chord(self.state.contact_count());
@@ -252,21 +252,6 @@ impl Solver {
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
         report.work_units = monitor.count.work_units;
         Ok(())
-    }
-
-    fn say(&self, options: &Options, stop: Stop, report: &Report) {
-        log::info!(
-            "{:?} on {} x {}: {stop:?} after {} cycles and {:.1} work units, residual {:e}",
-            options.method,
-            self.problem.grid.mx,
-            self.problem.grid.my,
-            report.cycles,
-            report.work_units,
-            report.measures.certificate.residual
-        );
-        if log::log_enabled!(log::Level::Info) {
-            report.advice().iter().for_each(|advice| log::info!("{advice}"));
-        }
     }
 
     /// The result: pressures, displacements, contact area and approach.
@@ -320,8 +305,4 @@ impl Solver {
         let limits = self.limits.len() * size_of::<f64>();
         self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers
     }
-}
-
-fn is_fixed(options: &Options) -> bool {
-    options.active_set == ActiveSet::Fixed
 }

@@ -8,6 +8,7 @@ use crate::memory::zeros;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
 use crate::progress::{Goal, Monitor, Stop};
+use crate::scene::Load;
 
 /// Cycles at most on the coarser grids: they only prepare the next finer one. On the coarsest NORM takes the place of cycles.
 const COARSE_CYCLES: u64 = 30;
@@ -32,7 +33,7 @@ impl FullMultigrid {
             let threads = &problem.threads;
             let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
             let h = zeros(level.grid.len(), "undeformed distances")?;
-            coarser.push((own, State::new(level.grid, h, crate::scene::Load::Approach(0.0), 0.0)?));
+            coarser.push((own, State::new(level.grid, h, Load::Approach(0.0), 0.0)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
     }

@@ -138,6 +138,11 @@ impl Options {
         Ok(())
     }
 
+    /// Whether the contact area is the caller's.
+    pub(super) fn is_fixed(&self) -> bool {
+        self.active_set == ActiveSet::Fixed
+    }
+
     /// What a solve has to reach.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }

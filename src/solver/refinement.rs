@@ -6,7 +6,7 @@ use std::time::Instant;
 
 pub use next_grid::Accuracy;
 
-use super::{ActiveSet, InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
+use super::{InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
@@ -142,7 +142,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
             "{name} is given; own coefficients are those of one grid, and an accuracy needs several"
         )));
     }
-    if options.active_set == ActiveSet::Fixed {
+    if options.is_fixed() {
         return Err(Error::Unsupported("active_set is FIXED; the contact area of finer grids is not known".into()));
     }
     if options.initial_guess != InitialGuess::None {

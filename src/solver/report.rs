@@ -1,6 +1,8 @@
 //! What a solve found, what it cost, and what it knew when.
 
-use crate::progress::{DiscretisationError, Measures, Monitor};
+use super::Method;
+use crate::grid::Grid;
+use crate::progress::{DiscretisationError, Measures, Monitor, Stop};
 
 /// What limits the accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +79,18 @@ impl Report {
             measures: last.map(|row| row.measures).unwrap_or_default(),
             tolerance,
             ..Report::default()
+        }
+    }
+
+    /// Says in the log how a solve went.
+    pub(super) fn log(&self, method: Method, grid: &Grid, stop: Stop) {
+        let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
+        let Report { cycles, work_units, .. } = self;
+        log::info!(
+            "{method:?} on {mx} x {my}: {stop:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
+        );
+        if log::log_enabled!(log::Level::Info) {
+            self.advice().iter().for_each(|advice| log::info!("{advice}"));
         }
     }
 

@@ -1,6 +1,6 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
-use super::{ActiveSet, Guess, InitialGuess, Options};
+use super::{Guess, InitialGuess, Options};
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::methods::Start;
@@ -61,7 +61,7 @@ pub fn take_over<S: AdmissibleSet>(
 
 /// The pressures and the contact area to start from.
 fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>, solved: bool) -> Start {
-    let fixed = options.active_set == ActiveSet::Fixed;
+    let fixed = options.is_fixed();
     // What was at its limit was in contact.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
