@@ -219,10 +219,13 @@ fn set_up_multigrid<'a>(
 }
 
 /// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
-pub fn stages(method: Method, symmetric: bool, fixed: bool, multigrid: bool) -> Result<&'static [Stage]> {
+pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> Result<&'static [Stage]> {
     use Stage::{Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
     Ok(match method {
         Method::Norm => &[Norm],
+        // Around limits V-cycles may go round in circles.
+        Method::Multigrid if S::LIMITED && symmetric => &[VCycles, Descent],
+        Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, Descent],
         Method::Multigrid => &[VCycles],
         Method::FullMultigrid => &[FullMultigrid],
         Method::ProjectedCg if !symmetric => {
@@ -230,9 +233,9 @@ pub fn stages(method: Method, symmetric: bool, fixed: bool, multigrid: bool) -> 
                 "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
             ))
         }
-        Method::ProjectedCg if fixed => &[ProjectedCg],
+        Method::ProjectedCg if S::FIXED => &[ProjectedCg],
         Method::ProjectedCg => &[Direct, ProjectedCg],
-        Method::Auto => match (symmetric, fixed, multigrid) {
+        Method::Auto => match (symmetric, S::FIXED, multigrid) {
             (true, true, _) => &[ProjectedCg, Norm],
             (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, Descent, Norm],
             (true, false, false) => &[Direct, ProjectedCg, Descent, Norm],

@@ -117,7 +117,9 @@ fn a_refused_solve_leaves_the_result_before() {
                 let mut call = new_call(effect, 0);
                 spoil(&mut call);
                 let (got, message) = call.run(Through::SolverSolve, handle.0);
-                assert_eq!(got, status, "{name}: {message}");
+                // With limits a fixed area is refused whatever it is.
+                let unsupported = name == "pressure_limit" && got == CONTACT_NORMAL_UNSUPPORTED;
+                assert!(got == status || unsupported && message.contains("FIXED"), "{name}: {got}, {message}");
             };
             refuse();
             assert!(held(&handle).is_none(), "{name}: a result before there was one");

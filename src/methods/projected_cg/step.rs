@@ -26,6 +26,8 @@ const NOISE: f64 = 25.0;
 /// Iterations at most before a certificate: with the [patience](Step::habits) of three of them, what does not halve its violation in 180
 /// iterations is handed over. Whatever converges needs fewer for all of its digits, or halves it in some 40.
 const ROUND: u64 = 60;
+/// An iteration that stagnates above this residual does so on the contact area, which a fresh u does not change; below it, by rounding.
+const STALLED: f64 = 0.1;
 /// A last update is believed where the residual by a fresh product is at most this many times the recursive one.
 const BELIEVED: f64 = 2.0;
 
@@ -182,7 +184,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let end = self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
         state.u_is = Freshness::Stale;
-        let gives_up = end == End::Stagnated;
+        let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;
         if gives_up || goal.by_update() {
             problem.refresh(state, set);
         }
