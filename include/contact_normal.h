@@ -172,7 +172,8 @@
 #define CONTACT_NORMAL_CRITERION_RESIDUAL 0
 
 /*
- `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p.
+ `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. As a stalled iterate has a small last change, too, OK
+ also asks for residual, violation and complementarity within the larger of 1e-2 and the tolerance.
  */
 #define CONTACT_NORMAL_CRITERION_UPDATE 1
 

@@ -6,7 +6,18 @@ use crate::scene::Load;
 /// Rounds of raising what is below its limit; each but the last brings an element to its limit, most of them many.
 const ROUNDS: u32 = 50;
 
+/// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
+const ROUND_OFF: f64 = 1e-12;
+
 impl State {
+    /// Whether p carries a prescribed force.
+    pub fn carries(&self) -> bool {
+        let Load::Force(force) = self.load else { return true };
+        let (sum, all) = self.p.iter().fold((0.0, 0.0), |(sum, all), p| (sum + p, all + p.abs()));
+        let area = self.grid.element_area();
+        (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
+    }
+
     /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
     /// Call before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::State;
+use super::{AdmissibleSet, State};
 
 /// The measures of a solution. Status OK means that they hold to the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -139,6 +139,19 @@ impl Survey {
         self.pressures += pressures;
         self.squares += squares;
         self.work = (self.work.0 + gaps, self.work.1 + energy);
+    }
+
+    /// How far the conditions are from being met: the larger of the relative residual and the relative penetration, p = 0 having 1; infinite
+    /// where pressures are not admissible. `max` alone would drop what is not a number.
+    pub fn violation<S: AdmissibleSet>(&self, _: S) -> f64 {
+        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        let residual = relative(self.residual, self.distance);
+        let penetration = if S::FIXED { 0.0 } else { relative(self.penetration, self.scale) };
+        let admissible = S::FIXED || self.range.0 >= 0.0;
+        match residual.max(penetration) {
+            worst if admissible && worst >= residual && worst >= penetration => worst,
+            _ => f64::INFINITY,
+        }
     }
 
     /// The measures of the solution.

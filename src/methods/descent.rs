@@ -166,6 +166,7 @@ fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
         let at_limit = S::LIMITED && state.p[i] >= set.limit(i);
         if S::LIMITED {
             state.at_limit[i] = at_limit;
+            state.reached_limit |= at_limit;
         }
         let inside = state.p[i] > 0.0 && !at_limit;
         changes += u64::from(state.contact[i] != inside);

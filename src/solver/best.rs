@@ -1,6 +1,6 @@
 //! The best iterate of a solve: what is returned when no method reaches the goal.
 
-use super::iterate::{violation, Task};
+use super::task::Task;
 use crate::contact::{truncate, AdmissibleSet, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
 use crate::scene::Load;
@@ -49,7 +49,7 @@ impl Best {
         if left > 0 || state.u_is != Freshness::Exact {
             task.problem.refresh(state, set);
         }
-        let now = violation(&Survey::of(state), set);
+        let now = Survey::of(state).violation(set);
         let by_approach = matches!(state.load, Load::Approach(_));
         if self.violation < now || !(now <= f64::MAX) {
             if self.violation.is_finite() {
@@ -60,7 +60,12 @@ impl Best {
             }
             task.problem.refresh(state, set);
         }
-        let found = violation(&Survey::of(state), set);
+        let found = Survey::of(state).violation(set);
+        if !by_approach && !found.is_finite() {
+            // A uniform pressure on C.
+            state.p.fill(0.0);
+            task.problem.refresh(state, set);
+        }
         if by_approach && !(found <= 1.0) {
             state.p.fill(0.0);
             state.u.fill(0.0);

@@ -19,6 +19,13 @@ impl SetUp {
         if !problem.given {
             scene.bodies.check()?;
         }
+        if self.lacks_table {
+            return invalid("influence could not be set the last time: set it again".into());
+        }
+        if options.method == Method::ProjectedCg && !problem.symmetric {
+            let message = "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works";
+            return Err(Error::Unsupported(message.into()));
+        }
         if let Some(difference) = self.named.differs(scene) {
             return invalid(difference);
         }

@@ -13,32 +13,11 @@
 //! The order of (4.1) and (4.2) matters: with the product before the truncation the loop cycles for ever.
 
 use super::best::Best;
-use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Problem, State, Survey};
+use super::task::Task;
+use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Survey};
 use crate::error::{Error, Result};
 use crate::methods::{Change, Step};
-use crate::progress::{Goal, Monitor, Stop};
-use crate::scene::Load;
-
-/// What is to be solved on one grid.
-pub struct Task<'a, 'm, S> {
-    pub problem: &'a mut Problem,
-    pub state: &'a mut State,
-    pub set: S,
-    pub goal: Goal,
-    pub monitor: &'a mut Monitor<'m>,
-}
-
-impl<S: AdmissibleSet> Task<'_, '_, S> {
-    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
-    pub fn refresh(&mut self) {
-        self.problem.refresh(self.state, self.set);
-    }
-
-    /// Counts the products on this grid since the last call.
-    pub fn count_products(&mut self) {
-        self.monitor.count_products(self.problem.take_products(), self.problem.work);
-    }
-}
+use crate::progress::Stop;
 
 /// Runs one method from what the state holds. Unless it converges, `best` knows the best iterate.
 pub fn iterate<S: AdmissibleSet>(
@@ -64,7 +43,7 @@ pub fn iterate<S: AdmissibleSet>(
         // (4.1), the certificate, (4.2)
         let left = if habits.exchanged_by_loop { truncate(task.state, set) } else { 0 };
         let mut survey = certify(task, &change, left);
-        let violation = violation(&survey, set);
+        let violation = survey.violation(set);
         let mut entered = 0;
         if habits.exchanged_by_loop && !S::FIXED && survey.penetration > 0.0 {
             entered = admit(task.state, set);
@@ -78,7 +57,7 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if task.state.u_is == Freshness::Exact && carries(task.state) && goal.holds(&survey, change.update, set) {
+        if task.state.u_is == Freshness::Exact && task.state.carries() && goal.holds(&survey, change.update, set) {
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
@@ -97,17 +76,6 @@ pub fn iterate<S: AdmissibleSet>(
         }
     }
     Ok(task.monitor.interrupted())
-}
-
-/// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
-const ROUND_OFF: f64 = 1e-12;
-
-/// Whether p carries a prescribed force.
-fn carries(state: &State) -> bool {
-    let Load::Force(force) = state.load else { return true };
-    let (sum, all) = state.p.iter().fold((0.0, 0.0), |(sum, all), p| (sum + p, all + p.abs()));
-    let area = state.grid.element_area();
-    (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
 }
 
 /// A step and its products. Coefficients of an elastic body are positive definite: where round-off says otherwise the method is at its
@@ -140,19 +108,6 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     }
     task.count_products();
     survey
-}
-
-/// How far the conditions are from being met: the larger of the relative residual and the relative penetration, p = 0 having 1; infinite
-/// where pressures are not admissible. `max` alone would drop what is not a number.
-pub fn violation<S: AdmissibleSet>(survey: &Survey, _: S) -> f64 {
-    let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
-    let residual = relative(survey.residual, survey.distance);
-    let penetration = if S::FIXED { 0.0 } else { relative(survey.penetration, survey.scale) };
-    let admissible = S::FIXED || survey.range.0 >= 0.0;
-    match residual.max(penetration) {
-        worst if admissible && worst >= residual && worst >= penetration => worst,
-        _ => f64::INFINITY,
-    }
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use super::best::Best;
 use super::estimates;
-use super::iterate::{iterate, violation, Task};
+use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
+use super::task::Task;
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
 use crate::methods::descent::Descent;
@@ -74,7 +75,7 @@ impl Methods {
                 false => self.hand_over(stage, task),
             };
             if from_nothing {
-                self.start(stage, task)?;
+                self.start(stage, task, from)?;
                 if error_ratio > 0.0 {
                     let predicted = self.predicted_error(stage, task)?;
                     task.goal.tolerance = task.goal.tolerance.max(error_ratio * predicted);
@@ -110,10 +111,10 @@ impl Methods {
         }
         let (state, set) = (&mut *task.state, task.set);
         let survey = Survey::of(state);
-        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) {
+        if !task.goal.by_update() && state.carries() && task.goal.holds(&survey, 0.0, set) {
             return Ok(None);
         }
-        let violation = violation(&survey, set);
+        let violation = survey.violation(set);
         admit(state, set);
         let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
         if on_coarser_grids && !(violation <= WORTHLESS) {
@@ -138,17 +139,22 @@ impl Methods {
     }
 
     /// A start from nothing.
-    fn start<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
-        task.state.unload();
+    fn start<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>, from: Start) -> Result<()> {
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
+                // A guess that is worth nothing is gone.
+                if from != Start::Nothing {
+                    task.state.unload();
+                }
                 self.projected_cg.start(task.problem, task.state, task.set, &task.goal, task.monitor)
             }
             Stage::FullMultigrid if !S::FIXED => {
+                task.state.unload();
                 let multigrid = set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?;
                 multigrid.start(task, &mut self.norm)
             }
             _ => {
+                task.state.unload();
                 task.state.start(task.problem.self_influence());
                 Ok(())
             }
@@ -219,20 +225,15 @@ fn set_up_multigrid<'a>(
 }
 
 /// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
-pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> Result<&'static [Stage]> {
+pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> &'static [Stage] {
     use Stage::{Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
-    Ok(match method {
+    match method {
         Method::Norm => &[Norm],
         // Around limits V-cycles may go round in circles.
         Method::Multigrid if S::LIMITED && symmetric => &[VCycles, Descent],
         Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, Descent],
         Method::Multigrid => &[VCycles],
         Method::FullMultigrid => &[FullMultigrid],
-        Method::ProjectedCg if !symmetric => {
-            return Err(Error::Unsupported(
-                "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works".into(),
-            ))
-        }
         Method::ProjectedCg if S::FIXED => &[ProjectedCg],
         Method::ProjectedCg => &[Direct, ProjectedCg],
         Method::Auto => match (symmetric, S::FIXED, multigrid) {
@@ -242,5 +243,5 @@ pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool
             (false, _, true) => &[FullMultigrid, Norm],
             (false, _, false) => &[Norm],
         },
-    })
+    }
 }

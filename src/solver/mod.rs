@@ -14,6 +14,7 @@ mod options;
 mod refinement;
 mod report;
 mod take_over;
+mod task;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -34,8 +35,8 @@ use crate::memory::{reserve, zeros};
 use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
-use iterate::Task;
 use methods::Methods;
+use task::Task;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +77,8 @@ struct SetUp {
     /// What later scenes may not change.
     named: Named,
     has_own_influence: bool,
+    /// Whether the last table could not be set: then there is none.
+    lacks_table: bool,
     /// Whether the coefficients are the caller's.
     given: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
@@ -103,6 +106,7 @@ impl Solver {
         let set_up = SetUp {
             named: Named::new(scene),
             has_own_influence: scene.influence.is_some(),
+            lacks_table: false,
             given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
@@ -148,13 +152,17 @@ impl Solver {
             None => self.run(scene, NonNegative, options, guess, &mut monitor),
             Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
         };
-        let (stop, tolerance) = outcome?;
-        let mut report = Report::of(&monitor, tolerance);
-        if options.estimates && stop != Stop::Cancelled {
-            self.estimate(scene, options, &mut monitor, &mut report)?;
-        }
-        report.solve_seconds = monitor.seconds();
+        let outcome = outcome.and_then(|(stop, tolerance)| {
+            let mut report = Report::of(&monitor, tolerance);
+            if options.estimates && stop != Stop::Cancelled {
+                self.estimate(scene, options, &mut monitor, &mut report)?;
+            }
+            report.solve_seconds = monitor.seconds();
+            Ok((stop, report))
+        });
+        self.has_result &= outcome.is_ok();
         self.ledger = monitor.ledger.rows;
+        let (stop, mut report) = outcome?;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
@@ -189,13 +197,15 @@ impl Solver {
         let survey = Survey::of(&self.state);
         let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * survey.scale;
         let on_the_way = self.state.reached_limit && !(0..n).any(|i| self.state.at_limit[i] && held(i));
-        if on_the_way && outcome.is_ok() && options.initial_guess != InitialGuess::Previous {
+        let converged = matches!(outcome, Ok((Stop::Converged, _)));
+        if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
             monitor.ledger.rows.clear();
             monitor.enter_grid();
             outcome = self.run(scene, NonNegative, options, guess, monitor);
             if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
                 monitor.ledger.rows.clear();
+                monitor.enter_grid();
                 outcome = self.run(scene, set, options, guess, monitor);
             }
         }
@@ -214,7 +224,7 @@ impl Solver {
     ) -> Result<(Stop, f64)> {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
-        let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid)?;
+        let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
         // What was solved before is gone from here on, unless this solve comes to an end.
         let solved = std::mem::replace(has_result, false);
         if options.initial_guess != InitialGuess::Previous || !solved {
@@ -289,15 +299,17 @@ impl Solver {
             return invalid("influence is given, but this solver was set up without".into());
         }
         Effect::check(&table, &self.problem.grid)?;
-        self.set_up.named.replace(&table);
-        let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table));
+        let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
         self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
         // What was made of the table before is dropped first: then the operator is this solver's alone.
+        self.set_up.lacks_table = true;
         self.methods.forget_operator();
         self.workers.clear();
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
         self.methods = Methods::new(&self.problem, &self.set_up.options)?;
+        self.set_up.named.replace(&table);
+        self.set_up.lacks_table = false;
         Ok(())
     }
 

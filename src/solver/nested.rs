@@ -1,7 +1,8 @@
 //! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first, each by the loop.
 
 use super::best::Best;
-use super::iterate::{iterate, Task};
+use super::iterate::iterate;
+use super::task::Task;
 use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
 use crate::memory::zeros;

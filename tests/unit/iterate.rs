@@ -1,11 +1,14 @@
 //! Unit tests of `solver/iterate.rs`.
 
+use super::super::task::Task;
 use super::*;
 use crate::contact::NonNegative;
+use crate::contact::{Problem, State};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace};
 use crate::methods::descent::Descent;
 use crate::progress::Criterion;
+use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 use crate::threads::Threads;
 

@@ -24,6 +24,8 @@ pub struct Norm {
     last_residual: f64,
     /// The part of the tolerance that the inner solve aims at: less where its result leaves the complementarity above the tolerance.
     aim: f64,
+    /// rms over C of the last change of p.
+    update: f64,
     /// What to do with the result of the last inner solve.
     next: Next,
     /// The state before a trial.
@@ -127,6 +129,7 @@ impl Norm {
             let at_limit = S::LIMITED && state.at_limit[i];
             if S::LIMITED {
                 state.at_limit[i] = state.contact[i] && state.p[i] > 0.0;
+                state.reached_limit |= state.at_limit[i];
             }
             state.p[i] = if at_limit { state.p[i] } else { set.project(i, state.p[i]) };
             state.contact[i] = !state.contact[i];
@@ -210,7 +213,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
             }
             Next::Exchange => {
                 if !self.exchange(problem, state, set) {
-                    return Ok(Change::default());
+                    return Ok(Change { update: self.update, ..Change::default() });
                 }
                 start_from_zero(problem, state, set);
             }
@@ -224,6 +227,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
             }
         }
         let update = self.solve(problem, state, set, goal, monitor)?;
+        self.update = update;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
         monitor.count.active_set_changes += changes;

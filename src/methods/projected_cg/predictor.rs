@@ -44,6 +44,9 @@ impl Predictor {
             last += weight * state.p[i];
         }
         let share = with_last / last;
+        if !share.is_finite() {
+            return Ok(Freshness::Exact);
+        }
         let (mut work, mut energy) = (0.0, 0.0);
         for i in 0..state.p.len() {
             let change = (1.0 - share) * state.p[i] - self.p[i];

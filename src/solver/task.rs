@@ -1,0 +1,25 @@
+//! What is to be solved on one grid.
+
+use crate::contact::{AdmissibleSet, Problem, State};
+use crate::progress::{Goal, Monitor};
+
+/// What is to be solved on one grid.
+pub struct Task<'a, 'm, S> {
+    pub problem: &'a mut Problem,
+    pub state: &'a mut State,
+    pub set: S,
+    pub goal: Goal,
+    pub monitor: &'a mut Monitor<'m>,
+}
+
+impl<S: AdmissibleSet> Task<'_, '_, S> {
+    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
+    pub fn refresh(&mut self) {
+        self.problem.refresh(self.state, self.set);
+    }
+
+    /// Counts the products on this grid since the last call.
+    pub fn count_products(&mut self) {
+        self.monitor.count_products(self.problem.take_products(), self.problem.work);
+    }
+}
