@@ -9,6 +9,9 @@ const ROUNDS: u32 = 50;
 /// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Distances whose squares have no sum are never closed.
+const OUT_OF_REACH: f64 = 1e140;
+
 impl State {
     /// Whether p carries a prescribed force.
     pub fn carries(&self) -> bool {
@@ -63,11 +66,11 @@ impl State {
         None
     }
 
-    /// A uniform pressure on C; on all that is exterior and has a surface where C is empty.
+    /// A uniform pressure on C; on all that is exterior and has a surface in reach where C is empty.
     fn spread(&mut self, pressures: f64) {
         if self.contact_count() == 0 {
             for i in 0..self.h.len() {
-                self.contact[i] = self.h[i].is_finite() && !self.at_limit[i];
+                self.contact[i] = self.h[i].abs() < OUT_OF_REACH && !self.at_limit[i];
             }
         }
         let uniform = pressures / self.contact_count().max(1) as f64;
