@@ -118,7 +118,13 @@ impl<'a> Operator<'a> {
         let steps = 4.0 + (4.0 * p.len() as f64).log2();
         // A layer of the same value everywhere is a part of the coefficients.
         let norms = (self.norm + layer) * squares.sqrt();
-        coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest)
+        let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
+        // Coefficients near the largest double have a norm that is none.
+        if rounding.is_nan() {
+            f64::INFINITY
+        } else {
+            rounding
+        }
     }
 }
 

@@ -197,8 +197,9 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     if !(0..n).all(known) {
         failures.extend(failure("contact says what an element is", format!("status {status}")));
     }
-    let given = |(&found, &fixed): (&i32, &i32)| (found != 0) == (fixed != 0);
-    if fixed.as_ref().is_some_and(|fixed| !found.contact.iter().zip(fixed).all(given)) {
+    // What has no surface stays exterior.
+    let given = |((&found, &fixed), h): ((&i32, &i32), &f64)| (found != 0) == (fixed != 0 && h.is_finite());
+    if fixed.as_ref().is_some_and(|fixed| !found.contact.iter().zip(fixed).zip(&case.h).all(given)) {
         failures.extend(failure("a fixed area stays", format!("status {status}")));
     }
     if let Load::Approach(approach) = case.load {
