@@ -121,7 +121,7 @@ impl<'a> Operator<'a> {
         let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
         // Coefficients near the largest double have a norm that is none.
         if rounding.is_nan() {
-            f64::INFINITY
+            1e300
         } else {
             rounding
         }
