@@ -120,11 +120,7 @@ impl<'a> Operator<'a> {
         let norms = (self.norm + layer) * squares.sqrt();
         let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
         // Coefficients near the largest double have a norm that is none.
-        if rounding.is_nan() {
-            1e300
-        } else {
-            rounding
-        }
+        rounding.min(1e300)
     }
 }
 

@@ -66,7 +66,8 @@ impl Best {
             state.p.fill(0.0);
             task.problem.refresh(state, set);
         }
-        if by_approach && !(found <= 1.0) {
+        let found = Survey::of(state).violation(set);
+        if by_approach && !(found <= 1.0) || !found.is_finite() {
             state.p.fill(0.0);
             state.u.fill(0.0);
             if !S::FIXED {

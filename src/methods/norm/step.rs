@@ -105,7 +105,7 @@ impl Norm {
         violators > 0
     }
 
-    /// 3. Elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
+    /// Step 3: elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
     /// solve is to follow; if not, the state is a trial: perhaps the violations are within the tolerance.
     fn exchange<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &mut State, set: S) -> bool {
         if self.guard.allows_all(violators(state, set)) {
