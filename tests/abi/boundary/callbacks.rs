@@ -23,10 +23,13 @@ const UPWARD: c_int = 0x400000;
 #[cfg(target_arch = "aarch64")]
 const DOWNWARD: c_int = 0x800000;
 
+/// A third, rounded to nearest: which is down.
+const DOWN: f64 = 1.0 / 3.0;
+
 /// The rounding mode that arithmetic has: a library call might tell that of another unit.
 fn rounding() -> c_int {
     let third = |sign: f64| black_box(sign) / black_box(3.0);
-    match (third(1.0) > 0.333_333_333_333_333_31, third(-1.0) < -0.333_333_333_333_333_31) {
+    match (third(1.0) > DOWN, third(-1.0) < -DOWN) {
         (true, false) => UPWARD,
         (false, true) => DOWNWARD,
         _ => 0,
@@ -257,7 +260,7 @@ fn what_the_effects_hold_is_read_before_a_callback_runs() {
             let mut call = Call::new();
             call.each.fill(1e-5);
             change(&mut call);
-            let mut arrays = vec![&mut call.h, &mut call.table, &mut call.tables, &mut call.each];
+            let mut arrays = [&mut call.h, &mut call.table, &mut call.tables, &mut call.each];
             let mut numbers: Vec<_> = arrays.iter_mut().map(|array| (array.as_mut_ptr(), array.len())).collect();
             numbers.push((call.factors.as_mut_ptr(), 4));
             let mut spoilt = Spoilt { numbers, patch: (call.patch.as_mut_ptr(), call.patch.len()) };

@@ -147,6 +147,9 @@ fn the_last_result_is_a_start_for_another_table() {
     assert!(scale > 0.0 && (squares / scale).sqrt() <= 1e-6 + 30.0 * f64::EPSILON, "{squares:e} {scale:e}");
 }
 
+/// The status, the words of the message, and what makes it so.
+type Change = (i32, &'static [&'static str], fn(&mut Call));
+
 #[test]
 fn what_cannot_be_another_table_is_refused_and_changes_nothing() {
     let plain = Handle::of(&mut Call::new());
@@ -157,7 +160,7 @@ fn what_cannot_be_another_table_is_refused_and_changes_nothing() {
     assert_refused(set_influence(&of_rows, &with_table(1.0, 0.0)), INVALID, &["influence", "without"]);
 
     let handle = Handle::of(&mut with_table(1.0, 0.0));
-    let changes: [(i32, &[&str], fn(&mut Call)); 6] = [
+    let changes: [Change; 6] = [
         (INVALID, &["cx", "5", "mx = 6"], |c| c.influence.known.cx = 5),
         (INVALID, &["scale", "-1"], |c| c.influence.known.scale = -1.0),
         (CONTACT_NORMAL_NULL_POINTER, &["coefficients"], |c| c.influence.known.coefficients = null()),
