@@ -68,7 +68,7 @@ demo: tools all
 		"$(find_python)" python_examples/wheel_rail.py $(WHEEL_RAIL) build/wheel_rail.png
 	@echo; echo "The picture: build/wheel_rail.png"
 
-# Optimised, with debug assertions and overflow checks on; the feature is for tests/panics.rs.
+# Optimised, with debug assertions and overflow checks on; the feature is for tests/handles.
 test: tools
 	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --lib --bins --tests
 	$(CARGO) build --profile checked --locked --workspace --features contact-normal/test-panics --examples
