@@ -1,4 +1,4 @@
-//! What a scene may name beside its bodies: one file per effect, and [the list](list) of them.
+//! What a scene may name beside its bodies: one file per effect, and the list of them.
 //!
 //! | effect | goes not with | MULTIGRID, FULL_MULTIGRID | on a handle |
 //! |---|---|---|---|
