@@ -97,21 +97,7 @@ impl CoarseGrids {
             fine.start(self_influence);
             return Ok(Freshness::Stale);
         }
-        let highest = fine.out_of_reach(self_influence);
-        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
-        for l in 0..count {
-            let (from, to) = self.pair(l, fine);
-            transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
-            to.state.reached_limit = false;
-            to.state.at_limit.clear();
-            if to.level.influence().is_mean_free() {
-                shift_to_mean(&from.h, &mut to.state.h);
-            }
-            (to.state.load, to.state.approach) = (from.load, from.approach);
-        }
-        if S::LIMITED {
-            self.restrict_limits(fine, set)?;
-        }
+        let highest = self.restrict(fine, set, self_influence)?;
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
@@ -148,6 +134,26 @@ impl CoarseGrids {
         }
         monitor.enter_grid();
         Ok(displacement)
+    }
+
+    /// The distances, the load and the limits of all coarser grids. Returns the distance above which elements are out of reach.
+    fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, self_influence: f64) -> Result<f64> {
+        let highest = fine.out_of_reach(self_influence);
+        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
+        for l in 0..self.grids.len() {
+            let (from, to) = self.pair(l, fine);
+            transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
+            to.state.reached_limit = false;
+            to.state.at_limit.clear();
+            if to.level.influence().is_mean_free() {
+                shift_to_mean(&from.h, &mut to.state.h);
+            }
+            (to.state.load, to.state.approach) = (from.load, from.approach);
+        }
+        if S::LIMITED {
+            self.restrict_limits(fine, set)?;
+        }
+        Ok(highest)
     }
 
     /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over C). Errors of
