@@ -9,7 +9,6 @@ mod outline;
 mod problem;
 mod state;
 
-pub use crate::scene::PressureLimit as Limited;
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};
 pub use exchange::{admit, truncate};

@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 pub struct Problem {
     /// The grid.
     pub grid: Grid,
-    /// Coefficients coefficients.
+    /// Influence coefficients.
     pub coefficients: Coefficients,
     /// A, in double precision.
     pub operator: Arc<Operator<f64>>,

@@ -98,7 +98,6 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         regions.output_struct(accuracy, &given)?;
         regions.output("solver", solver, 1)?;
         regions.check()?;
-        let options = translated;
         // A copy: later grids are refined from it, and callbacks may write into the caller's.
         // SAFETY: as above.
         let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
@@ -114,10 +113,10 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
                 })
             }
         });
-        let mut callback = watcher(&options);
+        let mut callback = watcher(&translated);
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
         let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
-        let outcome = solve_to_accuracy(&scene, &options.options, &asked, surface, progress)?;
+        let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
 
         let found = outcome.solver.as_ref();
         let grid = found.map(|found| *found.grid());

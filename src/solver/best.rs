@@ -60,13 +60,13 @@ impl Best {
             }
             task.problem.refresh(state, set);
         }
-        let found = Survey::of(state).violation(set);
+        let mut found = Survey::of(state).violation(set);
         if !by_approach && !found.is_finite() {
             // A uniform pressure on C.
             state.p.fill(0.0);
             task.problem.refresh(state, set);
+            found = Survey::of(state).violation(set);
         }
-        let found = Survey::of(state).violation(set);
         if by_approach && !(found <= 1.0) || !found.is_finite() {
             state.p.fill(0.0);
             state.u.fill(0.0);

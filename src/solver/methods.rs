@@ -111,7 +111,7 @@ impl Methods {
         }
         let (state, set) = (&mut *task.state, task.set);
         let survey = Survey::of(state);
-        if !task.goal.by_update() && state.carries() && task.goal.holds(&survey, 0.0, set) {
+        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries() {
             return Ok(None);
         }
         let violation = survey.violation(set);
