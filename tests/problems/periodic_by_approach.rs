@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Options, Stop};
@@ -70,21 +71,7 @@ fn approaches_near_the_mean_are_solved() {
                 assert!(report.work_units <= 200.0, "{what}: {} work units", report.work_units);
                 let p = &solver.state().p;
                 let u = displacements(&scene, p);
-                let (mut residual, mut distance, mut penetration, mut count) = (0.0, 0.0, 0.0, 0.0);
-                for i in 0..p.len() {
-                    assert!(p[i] >= 0.0, "{what}");
-                    let e = h[i] - approach + u[i];
-                    if p[i] > 0.0 {
-                        residual += e * e;
-                        distance += (h[i] - approach).powi(2);
-                        count += 1.0;
-                    } else {
-                        penetration = f64::max(penetration, -e);
-                    }
-                }
-                // The tolerance of 1e-6, and round-off of the products.
-                assert!(residual.sqrt() <= 1.01e-6 * distance.sqrt(), "{what}: {}", (residual / distance).sqrt());
-                assert!(penetration <= 1.01e-6 * (distance / count).sqrt(), "{what}: {penetration}");
+                assert_conditions(&h, approach, p, &u, &what);
             }
         }
     }

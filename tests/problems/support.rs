@@ -9,3 +9,22 @@ pub fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
     assert_eq!(stop, Stop::Converged, "{:?} {:?}", options.method, scene.load);
     (solver, report)
 }
+
+/// The conditions of an answer to the default tolerance, u being the caller's own A p.
+pub fn assert_conditions(h: &[f64], approach: f64, p: &[f64], u: &[f64], what: &str) {
+    let (mut residual, mut distance, mut penetration, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for i in 0..p.len() {
+        assert!(p[i] >= 0.0, "{what}");
+        let e = h[i] - approach + u[i];
+        if p[i] > 0.0 {
+            residual += e * e;
+            distance += (h[i] - approach).powi(2);
+            count += 1.0;
+        } else {
+            penetration = f64::max(penetration, -e);
+        }
+    }
+    // The tolerance of 1e-6, and round-off of two products.
+    assert!(residual.sqrt() <= 1.01e-6 * distance.sqrt(), "{what}: residual {}", (residual / distance).sqrt());
+    assert!(penetration <= 1.01e-6 * (distance / count).sqrt(), "{what}: penetration {penetration}");
+}

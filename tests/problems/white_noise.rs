@@ -3,6 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Options, Stop};
@@ -106,21 +107,7 @@ fn work_units(m: usize, border: usize, approach: f64, h: &[f64]) -> f64 {
     assert_eq!(stop, Stop::Converged, "{what}");
     let p = &solver.state().p;
     let u = displacements(m, p);
-    let (mut residual, mut distance, mut penetration, mut count) = (0.0, 0.0, 0.0, 0.0);
-    for i in 0..p.len() {
-        assert!(p[i] >= 0.0, "{what}");
-        let e = h[i] - approach + u[i];
-        if p[i] > 0.0 {
-            residual += e * e;
-            distance += (h[i] - approach).powi(2);
-            count += 1.0;
-        } else {
-            penetration = f64::max(penetration, -e);
-        }
-    }
-    // The tolerance of 1e-6, and round-off of two products.
-    assert!(residual.sqrt() <= 1.01e-6 * distance.sqrt(), "{what}: residual {}", (residual / distance).sqrt());
-    assert!(penetration <= 1.01e-6 * (distance / count).sqrt(), "{what}: penetration {penetration}");
+    assert_conditions(h, approach, p, &u, &what);
     report.work_units
 }
 
