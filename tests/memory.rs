@@ -1,71 +1,11 @@
 //! Lack of memory is a status, at whichever allocation it comes; what was allocated is freed.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "handles/limited_memory.rs"]
+mod limited_memory;
+
 use std::ptr::null_mut;
 
 use contact_normal::ffi::*;
-
-/// The system's memory, of which this thread gets no more than it is allowed.
-struct Limited;
-
-thread_local! {
-    /// Bytes of an allocation that counts as large.
-    static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
-    /// Large allocations until one fails; all after it fail too.
-    static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
-    /// Bytes held.
-    static HELD: Cell<i64> = const { Cell::new(0) };
-}
-
-fn may_have(bytes: usize) -> bool {
-    if bytes >= LARGE.get() {
-        let allowed = ALLOWED.get();
-        ALLOWED.set(allowed.saturating_sub(1));
-        if allowed == 0 {
-            return false;
-        }
-    }
-    HELD.set(HELD.get() + bytes as i64);
-    true
-}
-
-// SAFETY: the system's allocator, or null.
-unsafe impl GlobalAlloc for Limited {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        if may_have(layout.size()) {
-            // SAFETY: by the caller.
-            unsafe { System.alloc(layout) }
-        } else {
-            null_mut()
-        }
-    }
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        if may_have(layout.size()) {
-            // SAFETY: by the caller.
-            unsafe { System.alloc_zeroed(layout) }
-        } else {
-            null_mut()
-        }
-    }
-    unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        if may_have(size) {
-            HELD.set(HELD.get() - layout.size() as i64);
-            // SAFETY: by the caller.
-            unsafe { System.realloc(old, layout, size) }
-        } else {
-            null_mut()
-        }
-    }
-    unsafe fn dealloc(&self, old: *mut u8, layout: Layout) {
-        HELD.set(HELD.get() - layout.size() as i64);
-        // SAFETY: by the caller.
-        unsafe { System.dealloc(old, layout) }
-    }
-}
-
-#[global_allocator]
-static LIMITED: Limited = Limited;
 
 fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = std::mem::MaybeUninit::uninit();
@@ -100,12 +40,9 @@ fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, al
     let mut fields = initialised(contact_normal_fields_init);
     fields.pressure = p.as_mut_ptr();
     let before = p.to_vec();
-    ALLOWED.set(allowed);
-    LARGE.set(p.len());
     // SAFETY: structs with their arrays.
-    let status = unsafe { contact_normal_solve(scene, options, &mut fields, null_mut()) };
-    LARGE.set(usize::MAX);
-    ALLOWED.set(u64::MAX);
+    let solve = || unsafe { contact_normal_solve(scene, options, &mut fields, null_mut()) };
+    let status = limited_memory::with(p.len(), allowed, solve);
     assert!(status >= 0 || p == before, "outputs were written");
     status
 }
@@ -154,10 +91,10 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
             let mut refused = 0;
             for allowed in 0.. {
                 let mut p = vec![-7.0; m * m];
-                let held = HELD.get();
+                let held = limited_memory::held();
                 let status = solve_with(scene, &options, allowed, &mut p);
                 // The message of the last refusal is kept for the thread.
-                let kept = HELD.get() - held;
+                let kept = limited_memory::held() - held;
                 assert!(kept.abs() < 500, "{name}, method {method}, {allowed} allocations: {kept} bytes are held");
                 if status >= 0 {
                     break;
@@ -182,12 +119,10 @@ fn an_absurd_size_is_out_of_memory() {
     let mut none = Vec::new();
     let mut scene = scene(1, &mut none);
     (scene.mx, scene.my, scene.undeformed_distance) = (m as i32, m as i32, h.cast());
-    LARGE.set(1 << 28);
-    ALLOWED.set(0);
     let mut handle = null_mut();
     // SAFETY: the scene's array has m * m zeros.
-    let status = unsafe { contact_normal_solver_new(&scene, std::ptr::null(), &mut handle) };
-    LARGE.set(usize::MAX);
+    let new = || unsafe { contact_normal_solver_new(&scene, std::ptr::null(), &mut handle) };
+    let status = limited_memory::with(1 << 28, 0, new);
     // SAFETY: mapped above.
     unsafe { libc::munmap(h, bytes) };
     assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY);
@@ -215,8 +150,8 @@ fn ten_thousand_handles_leave_nothing_behind() {
         }
         // What the first of each kind leaves is for the process.
         if number == METHODS.len() {
-            held = HELD.get();
+            held = limited_memory::held();
         }
     }
-    assert_eq!(HELD.get(), held, "bytes are held after 10^4 handles");
+    assert_eq!(limited_memory::held(), held, "bytes are held after 10^4 handles");
 }

@@ -11,44 +11,51 @@ thread_local! {
     static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
     /// Of those, how many succeed.
     static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
+    /// Bytes held.
+    static HELD: Cell<i64> = const { Cell::new(0) };
 }
 
 fn may_have(bytes: usize) -> bool {
-    let allowed = ALLOWED.get();
-    if bytes < LARGE.get() {
-        return true;
+    if bytes >= LARGE.get() {
+        let allowed = ALLOWED.get();
+        ALLOWED.set(allowed.saturating_sub(1));
+        if allowed == 0 {
+            return false;
+        }
     }
-    ALLOWED.set(allowed.saturating_sub(1));
-    allowed > 0
+    HELD.set(HELD.get() + bytes as i64);
+    true
 }
 
 // SAFETY: the system's allocator, or null.
 unsafe impl GlobalAlloc for Limited {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: by the caller.
         if may_have(layout.size()) {
+            // SAFETY: by the caller.
             unsafe { System.alloc(layout) }
         } else {
             null_mut()
         }
     }
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: by the caller.
         if may_have(layout.size()) {
+            // SAFETY: by the caller.
             unsafe { System.alloc_zeroed(layout) }
         } else {
             null_mut()
         }
     }
     unsafe fn realloc(&self, old: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: by the caller.
         if may_have(size) {
+            HELD.set(HELD.get() - layout.size() as i64);
+            // SAFETY: by the caller.
             unsafe { System.realloc(old, layout, size) }
         } else {
             null_mut()
         }
     }
     unsafe fn dealloc(&self, old: *mut u8, layout: Layout) {
+        HELD.set(HELD.get() - layout.size() as i64);
         // SAFETY: by the caller.
         unsafe { System.dealloc(old, layout) }
     }
@@ -65,4 +72,10 @@ pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     LARGE.set(usize::MAX);
     ALLOWED.set(u64::MAX);
     result
+}
+
+/// Bytes that this thread has allocated and not freed.
+#[allow(dead_code)] // tests/memory.rs asks; tests/handles does not.
+pub fn held() -> i64 {
+    HELD.get()
 }
