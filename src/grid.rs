@@ -1,6 +1,7 @@
 //! The potential contact area: `mx` by `my` rectangular elements of size `dx` by `dy`.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use crate::error::{invalid, require, Result};
 
@@ -74,11 +75,13 @@ impl Grid {
     /// The elements of a finer grid that element i of this one covers: up to 2 x 2, fewer at the end of an odd count or where one
     /// direction is left alone.
     pub fn children(&self, fine: &Grid, i: usize) -> impl Iterator<Item = usize> {
-        let span = |fine: usize, coarse: usize, i: usize| {
-            let factor = if coarse < fine { 2 } else { 1 };
-            factor * i..(factor * (i + 1)).min(fine)
-        };
-        let (columns, mx) = (span(fine.mx, self.mx, i % self.mx), fine.mx);
-        span(fine.my, self.my, i / self.mx).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
+        let (columns, mx) = (children(fine.mx, self.mx, i % self.mx), fine.mx);
+        children(fine.my, self.my, i / self.mx).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
     }
+}
+
+/// The rows, or columns, out of `fine` that row i out of `coarse` covers.
+pub fn children(fine: usize, coarse: usize, i: usize) -> Range<usize> {
+    let factor = if coarse < fine { 2 } else { 1 };
+    factor * i..(factor * (i + 1)).min(fine)
 }

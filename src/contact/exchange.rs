@@ -3,6 +3,7 @@
 use crate::grid::Grid;
 
 use super::admissible::AdmissibleSet;
+use super::state::lowest;
 use super::State;
 
 /// Step (4.1): elements of C that would pull go to the exterior area, with `p = 0`, and those above their limit to that. Returns how
@@ -49,7 +50,7 @@ pub fn admit<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
 /// `{h <= approach}` carry as much as a flat punch of that area, `F = 2 E* sqrt(S/pi) d` (Johnson, eq. 3.36). Grows with
 /// the approach, so bisection finds it; it is a start, not a result.
 pub fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) -> f64 {
-    let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    let lowest = lowest(h);
     let highest = h.iter().copied().filter(|h| h.is_finite()).fold(lowest, f64::max);
     let modulus = grid.modulus(self_influence);
     let carried = |approach: f64| {

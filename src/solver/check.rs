@@ -1,7 +1,7 @@
 //! What a solver refuses before it begins: what is not as at the set-up, a guess that is none, units out of range.
 
 use super::{Guess, InitialGuess, Method, Options, SetUp};
-use crate::contact::Problem;
+use crate::contact::{self, Problem};
 use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::scene::{Load, Scene};
@@ -100,7 +100,7 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
 pub fn range(scene: &Scene<'_>, problem: &Problem, largest: f64, fixed: Option<Guess<'_>>) -> Result<()> {
     let influence = problem.self_influence();
     let h = scene.undeformed_distance;
-    let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
+    let lowest = contact::lowest(h);
     // The largest on the given contact area.
     let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
         let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());

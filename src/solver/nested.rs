@@ -86,11 +86,10 @@ impl FullMultigrid {
 
     /// The undeformed distance and the load of all coarser grids; p = 0.
     fn restrict(&mut self, fine: &State, highest: f64) {
-        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
         for l in 0..self.coarser.len() {
             let (finer, coarser) = self.coarser.split_at_mut(l);
             let (from, to) = (finer.last().map_or(fine, |(_, state)| state), &mut coarser[0].1);
-            transfer::restrict_distance(&from.grid, &to.grid, |i| within(from.h[i]), &mut to.h);
+            transfer::restrict_distance(&from.grid, &to.grid, &from.h, highest, &mut to.h);
             (to.load, to.approach) = (from.load, from.approach);
             to.unload();
         }
@@ -123,8 +122,8 @@ impl FullMultigrid {
 /// p of the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements above `highest` are out of reach.
 fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
-    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
-    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.u, &mut fine.u, |to, value| *to = value);
     fine.approach = coarse.approach;
     for i in 0..fine.p.len() {
         if fine.h[i].is_infinite() || fine.h[i] > highest {

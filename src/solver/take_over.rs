@@ -1,7 +1,7 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
 use super::{Guess, InitialGuess, Options};
-use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{lowest, norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::Monitor;
@@ -119,7 +119,7 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
 
 /// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.
 pub fn is_without_contact(state: &mut State, fixed: bool) -> bool {
-    let lowest = state.h.iter().copied().fold(f64::INFINITY, f64::min);
+    let lowest = lowest(&state.h);
     let nothing = match state.load {
         Load::Approach(approach) => !fixed && lowest > approach,
         Load::Force(force) => !fixed && force == 0.0,

@@ -97,8 +97,9 @@ fn cycle(levels: &[Antiperiodic], shape: &CycleShape) -> Mat<f64> {
     }
     for j in 0..coarse.grid.len() {
         let mut column = vec![0.0; n];
-        let unit = |i: usize| if i == j { 1.0 } else { 0.0 };
-        transfer::interpolate(&level.grid, &coarse.grid, unit, &mut column, |to, value| *to = value);
+        let mut unit = vec![0.0; coarse.grid.len()];
+        unit[j] = 1.0;
+        transfer::interpolate(&level.grid, &coarse.grid, &unit, &mut column, |to, value| *to = value);
         column.iter().enumerate().for_each(|(i, value)| interpolation[(i, j)] = *value);
     }
     let solution = coarse.whole.partial_piv_lu().solve(&(restriction * &level.whole));

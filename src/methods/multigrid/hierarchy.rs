@@ -80,7 +80,7 @@ impl Level {
     /// Adds the correction of the next coarser level, piecewise constant, zero outside the contact area.
     pub(super) fn correct(&mut self, coarser: &Level, workspace: &mut Workspace<f64>) {
         let Level { grid, operator, smoother, correction, residual, contact, products, .. } = self;
-        let from = |i: usize| coarser.correction[i];
+        let from = &coarser.correction;
         if let Smoother::Fft(fft) = smoother {
             let fill = |to: &mut [f64]| interpolate(grid, &coarser.grid, from, to, |to, value| *to = value);
             fft.correct(correction, residual, contact, fill, |changes, product| {

@@ -3,87 +3,87 @@
 //! A coarse element covers up to 2 x 2 fine ones, its children: four by standard coarsening, fewer at the end of an odd
 //! count or where one direction is left alone.
 
-use crate::grid::Grid;
+use crate::grid::{children, Grid};
 
 /// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64, to: &mut [f64]) {
-    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
-        *to = mean(coarse.children(fine, i).map(&from));
-    }
+    let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
+    collect(fine, coarse, to, add, |(sum, count)| sum / count);
 }
 
-/// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has.
-pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: impl Fn(usize) -> f64, to: &mut [f64]) {
-    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
-        let mean = mean(coarse.children(fine, i).map(&h).filter(|h| h.is_finite()));
-        *to = if mean.is_nan() { f64::INFINITY } else { mean };
-    }
-}
-
-/// The mean of values, NaN of none.
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    sum / count
+/// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has. Distances above
+/// `highest` count as that.
+pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64]) {
+    let add = |(sum, count): (f64, f64), child: usize| match h[child] {
+        f64::INFINITY => (sum, count),
+        h => (sum + h.min(highest), count + 1.0),
+    };
+    collect(fine, coarse, to, add, |(sum, count)| if count > 0.0 { sum / count } else { f64::INFINITY });
 }
 
 /// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
 pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
-    for (i, to) in to[..coarse.len()].iter_mut().enumerate() {
-        let (mut inside, mut count) = (0, 0);
-        for child in coarse.children(fine, i) {
-            inside += usize::from(contact[child]);
-            count += 1;
+    let add = |(inside, count): (usize, usize), child: usize| (inside + usize::from(contact[child]), count + 1);
+    collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
+}
+
+/// Every coarse element gets what `result` makes of what `add` has collected from its children.
+fn collect<A: Default, B>(
+    fine: &Grid,
+    coarse: &Grid,
+    to: &mut [B],
+    add: impl Fn(A, usize) -> A,
+    result: impl Fn(A) -> B,
+) {
+    for (y, row) in to.chunks_exact_mut(coarse.mx).enumerate() {
+        for (x, to) in row.iter_mut().enumerate() {
+            let mut all = A::default();
+            for y in children(fine.my, coarse.my, y) {
+                for x in children(fine.mx, coarse.mx, x) {
+                    all = add(all, y * fine.mx + x);
+                }
+            }
+            *to = result(all);
         }
-        *to = 2 * inside >= count;
     }
 }
 
 /// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
-pub fn interpolate<A: Copy>(
-    fine: &Grid,
-    coarse: &Grid,
-    from: impl Fn(usize) -> A,
-    to: &mut [f64],
-    combine: impl Fn(&mut f64, A),
-) {
-    for i in 0..coarse.len() {
-        let value = from(i);
-        coarse.children(fine, i).for_each(|child| combine(&mut to[child], value));
+pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], combine: impl Fn(&mut f64, f64)) {
+    let of = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
+    for (y, row) in to.chunks_exact_mut(fine.mx).enumerate() {
+        let from = &from[y / of(fine.my, coarse.my) * coarse.mx..][..coarse.mx];
+        for (children, value) in row.chunks_mut(of(fine.mx, coarse.mx)).zip(from) {
+            children.iter_mut().for_each(|child| combine(child, *value));
+        }
     }
 }
 
-/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost: every fine element gets
-/// `combine(its value, the interpolated value)`.
-pub fn interpolate_linearly(
-    fine: &Grid,
-    coarse: &Grid,
-    from: impl Fn(usize) -> f64,
-    to: &mut [f64],
-    combine: impl Fn(&mut f64, f64),
-) {
-    // The coarse element that holds fine element i, its neighbour on the side of i, and the neighbour's weight.
-    let between = |i: usize, fine: usize, coarse: usize| {
-        if coarse == fine {
-            return (i, i, 0.0);
+/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost and beside values that are not known
+/// (`+infinity`, outside a window).
+pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64]) {
+    let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
+    for (y, row) in to.chunks_exact_mut(fine.mx).enumerate() {
+        // The coarse row that holds this one, and its neighbour on the same side.
+        let (near, far) = match (coarse.my == fine.my, y % 2) {
+            (true, _) => (y, y),
+            (_, 0) => (y / 2, (y / 2).saturating_sub(1)),
+            _ => (y / 2, (y / 2 + 1).min(coarse.my - 1)),
+        };
+        let (near, far) = (&from[near * coarse.mx..][..coarse.mx], &from[far * coarse.mx..][..coarse.mx]);
+        let at = |x: usize| mix(near[x], far[x]);
+        if coarse.mx == fine.mx {
+            row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
+            continue;
         }
-        let neighbour = if i % 2 == 0 { (i / 2).saturating_sub(1) } else { (i / 2 + 1).min(coarse - 1) };
-        (i / 2, neighbour, 0.25)
-    };
-    for (iy, row) in to.chunks_exact_mut(fine.mx).enumerate() {
-        let (y, next_y, weight_y) = between(iy, fine.my, coarse.my);
-        for (ix, to) in row.iter_mut().enumerate() {
-            let (x, next_x, weight_x) = between(ix, fine.mx, coarse.mx);
-            // No neighbour, or one whose value is not known (+infinity, beside a window): constant.
-            let mix = |a: f64, b: f64, weight: f64| {
-                let known = weight != 0.0 && b != f64::INFINITY;
-                if known {
-                    (1.0 - weight) * a + weight * b
-                } else {
-                    a
-                }
-            };
-            let in_row = |y: usize| mix(from(coarse.index(x, y)), from(coarse.index(next_x, y)), weight_x);
-            combine(to, mix(in_row(y), in_row(next_y), weight_y));
+        let (mut before, mut here) = (at(0), at(0));
+        for (x, children) in row.chunks_mut(2).enumerate() {
+            let after = if x + 1 < coarse.mx { at(x + 1) } else { here };
+            children[0] = mix(here, before);
+            if let Some(second) = children.get_mut(1) {
+                *second = mix(here, after);
+            }
+            (before, here) = (here, after);
         }
     }
 }

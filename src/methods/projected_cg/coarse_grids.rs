@@ -139,10 +139,9 @@ impl CoarseGrids {
     /// The distances, the load and the limits of all coarser grids. Returns the distance above which elements are out of reach.
     fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, self_influence: f64) -> Result<f64> {
         let highest = fine.out_of_reach(self_influence);
-        let within = |h: f64| if h.is_finite() { h.min(highest) } else { h };
         for l in 0..self.grids.len() {
             let (from, to) = self.pair(l, fine);
-            transfer::restrict_distance(&from.grid, &to.state.grid, |i| within(from.h[i]), &mut to.state.h);
+            transfer::restrict_distance(&from.grid, &to.state.grid, &from.h, highest, &mut to.state.h);
             to.state.reached_limit = false;
             to.state.at_limit.clear();
             if to.level.influence().is_mean_free() {
@@ -241,8 +240,8 @@ fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
 /// contact area, and its displacements, linearly interpolated. Elements above `highest` are out of reach.
 fn prolong(coarse: &State, fine: &mut State, highest: f64) {
     let (from, to) = (coarse.grid, fine.grid);
-    transfer::interpolate(&to, &from, |i| coarse.p[i], &mut fine.p, |to, value| *to = value);
-    transfer::interpolate_linearly(&to, &from, |i| coarse.u[i], &mut fine.u, |to, value| *to = value);
+    transfer::interpolate(&to, &from, &coarse.p, &mut fine.p, |to, value| *to = value);
+    transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u);
     fine.approach = coarse.approach;
     for ((p, inside), h) in fine.p.iter_mut().zip(&mut fine.contact).zip(&fine.h) {
         if h.is_infinite() || *h > highest {
