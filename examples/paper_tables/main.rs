@@ -129,8 +129,8 @@ fn figure_4(path: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     let (coarse, _, _) = solve(&case::scene(m / 2, &coarse_h), &options)?;
     let (fine_grid, coarse_grid) = (case::grid(m), case::grid(m / 2));
     let (mut p, mut u) = (vec![0.0; m * m], vec![0.0; m * m]);
-    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.state().p[i], &mut p, |to, value| *to = value);
-    transfer::interpolate(&fine_grid, &coarse_grid, |i| coarse.state().u[i], &mut u, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.state().p, &mut p, |to, value| *to = value);
+    transfer::interpolate(&fine_grid, &coarse_grid, &coarse.state().u, &mut u, |to, value| *to = value);
     let by_full_multigrid: Vec<bool> = (0..m * m).map(|i| p[i] > 0.0 || h[i] - APPROACH + u[i] <= 0.0).collect();
     // (c) the true one
     let (fine, _, _) = solve(&case::scene(m, &h), &options)?;
