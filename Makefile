@@ -64,7 +64,7 @@ demo: tools all
 	@echo; echo "== Wheel and rail, from Fortran"
 	@LD_LIBRARY_PATH=build build/wheel_rail_f $(WHEEL_RAIL)
 	@echo; echo "== Wheel and rail, from Python"
-	@CONTACT_NORMAL_LIBRARY=target/release/libcontact_normal.so PYTHONDONTWRITEBYTECODE=1 \
+	@CONTACT_NORMAL_LIBRARY=target/release/libcontact_normal.so PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
 		"$(find_python)" python_examples/wheel_rail.py $(WHEEL_RAIL) build/wheel_rail.png
 	@echo; echo "The picture: build/wheel_rail.png"
 

@@ -1093,8 +1093,8 @@ void contact_normal_solver_free(struct contact_normal_solver *solver);
 
  A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
  status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
- else of the first one that stopped early (> 0); `contact_normal_last_error` says which it is, as "problem 3: ...", counted
- from 0. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+ else of the first one that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each of them,
+ counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 
  Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
  `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.

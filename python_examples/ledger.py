@@ -39,23 +39,15 @@ def draw(ledger, report, exact, path):
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
+    axes = ledger.plot()
     seconds = [row["seconds"] for row in ledger]
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
     true = [abs(row["force"] / exact.force - 1) for row in ledger]
-    axes.loglog(seconds, true, "o-", label="true error")
-    axes.loglog(seconds, [row["error_force"] / row["force"] for row in ledger], "s--", mfc="none", label="estimated error")
+    axes.loglog(seconds, true, "k--", label="force: true error")
     if report["halved_seconds"] > 0:
         finer = report["halved_error_force"] / report["force"]
-        axes.loglog([seconds[-1], report["halved_seconds"]], [true[-1], finer], ":", color="grey")
-        axes.loglog(report["halved_seconds"], finer, "x", color="grey", label="advice: half the element")
-    for row, second, error in zip(ledger, seconds, true):
-        axes.annotate(row["mx"], (second, error), textcoords="offset points", xytext=(5, 4), fontsize=8)
-    axes.set(xlabel="seconds", ylabel="relative error of the force", title="What accuracy costs: the ledger of one solve")
-    axes.grid(alpha=0.3)
-    axes.legend()
-    figure.savefig(path, dpi=120)
+        axes.loglog(report["halved_seconds"], finer, "kx", label="advice: half the element")
+    axes.legend(loc="lower left")
+    axes.figure.savefig(path, dpi=120)
 
 
 if __name__ == "__main__":

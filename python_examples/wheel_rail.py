@@ -50,44 +50,19 @@ def compare(scene, h, reference, reference_contact, result):
     print(f"largest difference of pressures below 1e-6 of the maximum: {'yes' if difference < 1e-6 else difference}")
 
 
-def draw(path, title, scene, result):
+def draw(path, title, result):
     """Pressure and contact area, as seen from above."""
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    my, mx = result.pressure.shape
-    x_edges, y_edges = ((np.arange(m + 1) - 0.5 * m) * d for m, d in ((mx, scene["dx"]), (my, scene["dy"])))
-    extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
-    shown = np.ma.masked_where(~result.contact, result.pressure)
-
-    figure, axes = plt.subplots(figsize=(8.4, 6.6), layout="constrained")
-    image = axes.imshow(shown, origin="lower", extent=extent, cmap="viridis", vmin=0.0, interpolation="nearest")
-    axes.set_facecolor("0.94")
-    _outline(axes, result.contact, x_edges, y_edges)
-    bar = figure.colorbar(image, ax=axes, shrink=0.9)
-    bar.set_label("pressure  [N/mm²]")
-    peak = np.unravel_index(result.pressure.argmax(), result.pressure.shape)
-    x_peak, y_peak = (0.5 * (edges[i] + edges[i + 1]) for edges, i in ((x_edges, peak[1]), (y_edges, peak[0])))
-    axes.plot(x_peak, y_peak, "k+", markersize=10, label=f"largest: {result.pressure.max():.0f} N/mm²")
-    axes.plot([], [], color="crimson", linewidth=1.6,
-              label=f"contact area: {result.report['contact_area']:.1f} mm²")
-    axes.set(xlabel="x, along the rail  [mm]", ylabel="y, across the rail  [mm]", aspect="equal")
-    axes.legend(loc="upper right", framealpha=1.0)
-    load = f"force {result.force / 1000:.1f} kN, approach {result.approach:.4f} mm, {mx} × {my} elements"
-    figure.suptitle(f"Pressure between wheel and rail\n{title.split(';')[0]}", fontsize=11)
-    axes.set_title(load, fontsize=9)
-    figure.savefig(path, dpi=150)
-
-
-def _outline(axes, contact, x_edges, y_edges):
-    """The border of the contact area along the edges of its elements."""
-    padded = np.pad(contact, 1)
-    rows, columns = np.nonzero(padded[1:, 1:-1] != padded[:-1, 1:-1])
-    axes.hlines(y_edges[rows], x_edges[columns], x_edges[columns + 1], color="crimson", linewidth=1.6)
-    rows, columns = np.nonzero(padded[1:-1, 1:] != padded[1:-1, :-1])
-    axes.vlines(x_edges[columns], y_edges[rows], y_edges[rows + 1], color="crimson", linewidth=1.6)
+    axes = result.plot()
+    axes.set(xlabel="x, along the rail  [mm]", ylabel="y, across the rail  [mm]")
+    axes.set_title(
+        f"{title.split(';')[0]}\n{result.force / 1000:.1f} kN: largest pressure {result.pressure.max():.0f} N/mm²,"
+        f" contact area {result.report['contact_area']:.1f} mm²",
+        fontsize=10,
+    )
+    axes.figure.savefig(path, dpi=150)
 
 
 def write_arrays(path, scene, h, result):
@@ -115,7 +90,7 @@ def main(data=DATA, picture="wheel_rail.png", arrays=None):
     if result.status != contact_normal.OK:
         sys.exit(f"stopped early: {result.message}")
     compare(scene, h, reference, reference_contact, result)
-    draw(picture, title, scene, result)
+    draw(picture, title, result)
     if arrays:
         write_arrays(arrays, scene, h, result)
 

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "python_examples"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "python"))
 
 HALF_DECADES = [10 ** (-0.5 * k) for k in range(4, 20)]
 DECADES = [10.0**-k for k in range(2, 10)]

@@ -24,8 +24,8 @@ use crate::solver::{Options, Solver};
 ///
 /// A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
 /// status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
-/// else of the first one that stopped early (> 0); `contact_normal_last_error` says which it is, as "problem 3: ...", counted
-/// from 0. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+/// else of the first one that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each of them,
+/// counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 ///
 /// Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
 /// `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.
@@ -67,13 +67,13 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         options.add_to(regions, options_at)?;
         batch.add_to(regions, solver.grid().len())?;
         regions.check()?;
-        let worst = Mutex::new(Worst::default());
+        let not_ok = Mutex::new(NotOk::default());
         solver.distribute(count, |i, worker| {
             // SAFETY: each problem is solved by one thread.
             let outcome = unsafe { batch.solve(i, worker, &options.options) };
-            worst.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
+            not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
         })?;
-        worst.into_inner().unwrap_or_else(PoisonError::into_inner).outcome.conclude()
+        not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome().conclude()
     })
 }
 
@@ -174,21 +174,28 @@ impl Batch {
     }
 }
 
-/// What the call returns: of the first problem that was refused, or else of the first that stopped early.
-#[derive(Default)]
-struct Worst {
-    problem: usize,
-    outcome: Outcome,
-}
+/// At most so many problems have a line in the message of a batch.
+const LINES: usize = 1000;
 
-impl Worst {
+/// The problems that are not OK: those that were refused before those that stopped early, then by number.
+#[derive(Default)]
+struct NotOk(Vec<(usize, Outcome)>);
+
+impl NotOk {
     fn note(&mut self, problem: usize, outcome: Outcome) {
-        // Refused before stopped early before solved, then by number.
-        let rank =
-            |problem: usize, outcome: &Outcome| (outcome.status >= 0, outcome.status == CONTACT_NORMAL_OK, problem);
-        if rank(problem, &outcome) < rank(self.problem, &self.outcome) {
-            let message = format!("problem {problem}: {}", outcome.message);
-            *self = Worst { problem, outcome: Outcome { message, ..outcome } };
+        let rank = |(problem, outcome): &(usize, Outcome)| (outcome.status > CONTACT_NORMAL_OK, *problem);
+        if outcome.status != CONTACT_NORMAL_OK {
+            let noted = (problem, outcome);
+            self.0.insert(self.0.partition_point(|other| rank(other) < rank(&noted)), noted);
+            self.0.truncate(LINES);
         }
+    }
+
+    /// What the call returns: the status of the first, and a line for each.
+    fn outcome(self) -> Outcome {
+        let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
+        let lines: Vec<String> =
+            self.0.iter().map(|(i, outcome)| format!("problem {i}: {}", outcome.message)).collect();
+        Outcome { status, message: lines.join("\n") }
     }
 }

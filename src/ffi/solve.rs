@@ -65,7 +65,6 @@ impl Request<'_> {
 }
 
 /// How a solve ended, and its message; none after OK.
-#[derive(Default)]
 pub(super) struct Outcome {
     pub status: contact_normal_status,
     pub message: String,

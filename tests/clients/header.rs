@@ -49,7 +49,7 @@ fn the_header_and_the_modules_have_the_versions_of_the_library() {
         ("include/contact_normal.h", format!("\n * contact-normal {}: ", env!("CARGO_PKG_VERSION"))),
         ("include/contact_normal.h", format!("\n#define CONTACT_NORMAL_ABI_VERSION {abi}\n")),
         ("include/contact_normal.f90", format!(":: CONTACT_NORMAL_ABI_VERSION = {abi}\n")),
-        ("python_examples/contact_normal_abi.py", format!("\nABI_VERSION = {abi}\n")),
+        ("python/contact_normal/_constants.py", format!("\nABI_VERSION = {abi}\n")),
     ] {
         assert!(read(file).contains(&stands), "{file} has no {stands:?}");
     }

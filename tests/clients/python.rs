@@ -1,5 +1,5 @@
-//! Python by ctypes: the example prints what is expected and its solution holds; structs have the layout of the library's;
-//! a process forked after a solve with threads solves too.
+//! The Python package: its own tests pass; the examples print what is expected and their solutions hold; structs have the layout of
+//! the library's; a process forked after a solve with threads solves too.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -42,7 +42,7 @@ fn python_in(folder: &Path) -> Command {
     command
         .current_dir(folder)
         .env("CONTACT_NORMAL_LIBRARY", folder.join("libcontact_normal.so"))
-        .env("PYTHONPATH", root().join("python_examples"))
+        .env("PYTHONPATH", root().join("python"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
         // matplotlib keeps its cache there, and complains when it cannot.
         .env("MPLCONFIGDIR", folder);
@@ -65,6 +65,38 @@ fn recomputed(arrays: &Path) -> Recomputed {
     let steel = Bodies::same(82000.0, 0.28);
     let influence = Coefficients::from(HalfSpace::new(grid.dx, grid.dy, steel.compliance()));
     recompute(&grid, &influence, &column(0), numbers[4], &column(1), &contact)
+}
+
+/// The package's own tests, in Python: arguments, handles, batches, pictures.
+#[test]
+fn the_tests_of_the_package_pass() {
+    let mut command = python_in(&scratch("python_package"));
+    let tests = root().join("python/tests");
+    let output = command.args(["-m", "unittest", "discover", "-s"]).arg(&tests).output().expect("a Python");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    // "Ran 15 tests in ...": none found would be a success, too.
+    let ran = told.lines().find_map(|line| line.strip_prefix("Ran ")?.split(' ').next()?.parse::<usize>().ok());
+    let written: usize = std::fs::read_dir(&tests)
+        .expect("python/tests")
+        .map(|file| file.expect("a file").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "py"))
+        .map(|path| std::fs::read_to_string(path).expect("a test").matches("\n    def test_").count())
+        .sum();
+    assert_eq!(ran, Some(written), "{told}");
+    assert!(!told.contains("skipped"), "{told}");
+}
+
+/// The examples in the documentation of the package's functions.
+#[test]
+fn the_examples_in_docstrings_hold() {
+    let script = "
+import doctest, pkgutil, importlib, contact_normal
+found = [doctest.testmod(importlib.import_module('contact_normal.' + module.name)) for module in pkgutil.iter_modules(contact_normal.__path__)]
+print(sum(each.failed for each in found), sum(each.attempted for each in found) > 10)
+";
+    let printed = run(python_in(&scratch("python_docstrings")).args(["-c", script]));
+    assert_eq!(printed, "0 True\n");
 }
 
 #[test]
@@ -333,8 +365,8 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         area
     );
     let script = "
-import ctypes, contact_normal
-for name, kind in vars(contact_normal).items():
+import ctypes, contact_normal._structs
+for name, kind in vars(contact_normal._structs).items():
     if isinstance(kind, type) and issubclass(kind, ctypes.Structure):
         print(f'{name} sizeof:{ctypes.sizeof(kind)}')
         for member, _ in kind._fields_:
@@ -353,11 +385,11 @@ for name, kind in vars(contact_normal).items():
 fn constants_and_prototypes_are_those_of_the_header() {
     let header = std::fs::read_to_string(root().join("include/contact_normal.h")).expect("the header");
     let script = "
-import contact_normal, contact_normal_abi
+import contact_normal, contact_normal._library
 for name, value in vars(contact_normal).items():
     if name.isupper() and isinstance(value, int) and not name.startswith('_'):
         print('#define CONTACT_NORMAL_' + name, value)
-for name in contact_normal_abi._PROTOTYPES:
+for name in contact_normal._library.PROTOTYPES:
     print('contact_normal_' + name + '(')
 ";
     let mut theirs: Vec<String> =
@@ -459,7 +491,7 @@ True
 True True
 True
 raised
-[0, 0, -2, 0] an invalid argument
+[0, 0, -2, 0] force is -300; it must not be negative: an elastic contact does not pull
 True True
 0
 True

@@ -209,6 +209,9 @@ fn a_problem_that_fails_harms_no_other() {
             "{}",
             last_error()
         );
+        let problems: Vec<String> =
+            last_error().lines().map(|line| line.split(": ").next().unwrap().to_owned()).collect();
+        assert_eq!(problems, ["problem 4", "problem 6", "problem 7"]);
         for i in 0..count {
             let expected = match i {
                 4 => CONTACT_NORMAL_NOT_FINITE,
@@ -238,6 +241,8 @@ fn stopping_early_counts_less_than_a_refusal() {
     assert_eq!(batch.solve(), CONTACT_NORMAL_INVALID_ARGUMENT);
     assert!(last_error().starts_with("problem 3: load is 9"), "{}", last_error());
     assert_eq!(batch.statuses, [1, 1, 1, CONTACT_NORMAL_INVALID_ARGUMENT, 1]);
+    let problems: Vec<String> = last_error().lines().map(|line| line[.."problem 3".len()].to_owned()).collect();
+    assert_eq!(problems, ["problem 3", "problem 0", "problem 1", "problem 2", "problem 4"]);
 }
 
 #[test]

@@ -1,33 +1,7 @@
-"""The C ABI of contact-normal for ctypes: constants, structs and prototypes as in include/contact_normal.h, and the library. A part of
-contact_normal.py.
-
-The library is the one that the environment variable CONTACT_NORMAL_LIBRARY names, else the one built in this project
-(target/release), else the system's. Its version and the sizes of its structs are compared with those here at import.
-"""
+"""The structs and callbacks of include/contact_normal.h for ctypes, member by member."""
 
 import ctypes
-import ctypes.util
-import os
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
-
-# Statuses: 0: solved; > 0: stopped early, usable; < 0: refused.
-OK, ITERATION_LIMIT, CANCELLED, STAGNATED = 0, 1, 2, 3
-NULL_POINTER, INVALID_ARGUMENT, NOT_FINITE, STRUCT_SIZE, UNSUPPORTED = -1, -2, -3, -4, -5
-INFEASIBLE, NOT_POSITIVE_DEFINITE, OUT_OF_MEMORY, INTERNAL = -6, -7, -8, -99
-
-ABI_VERSION = 1
-
-PRESCRIBED_APPROACH, PRESCRIBED_FORCE = 0, 1
-METHOD_AUTO, METHOD_NORM, METHOD_MULTIGRID, METHOD_FULL_MULTIGRID, METHOD_PROJECTED_CG = 0, 1, 2, 3, 4
-SMOOTHER_AUTO, SMOOTHER_GAUSS_SEIDEL, SMOOTHER_RED_BLACK, SMOOTHER_JACOBI, SMOOTHER_FFT = 0, 1, 2, 3, 4
-ACTIVE_SET_FREE, ACTIVE_SET_FIXED = 0, 1
-INITIAL_GUESS_NONE, INITIAL_GUESS_GIVEN, INITIAL_GUESS_PREVIOUS = 0, 1, 2
-CRITERION_RESIDUAL, CRITERION_UPDATE = 0, 1
-PRECISION_AUTO, PRECISION_DOUBLE, PRECISION_MIXED = 0, 1, 2
-LOG_OFF, LOG_WARNING, LOG_INFO = 0, 1, 2
-UNTRUSTED_FORCE, UNTRUSTED_MAX_PRESSURE, UNTRUSTED_PRESSURE = 1, 2, 4
-LIMITED_BY_UNKNOWN, LIMITED_BY_GRID, LIMITED_BY_TOLERANCE = 0, 1, 2
-
 
 class Influence(ctypes.Structure):
     """contact_normal_influence."""
@@ -268,96 +242,22 @@ class HertzSolution(ctypes.Structure):
     ]
 
 
-# Result and arguments of every export.
-_PROTOTYPES = {
-    "status_text": (c_char_p, [c_int32]),
-    "last_error": (c_char_p, []),
-    "version": (c_char_p, []),
-    "abi_version": (c_int32, []),
-    "scene_init": (None, [POINTER(Scene)]),
-    "influence_init": (None, [POINTER(Influence)]),
-    "layer_init": (None, [POINTER(Layer)]),
-    "pressure_limit_init": (None, [POINTER(PressureLimit)]),
-    "period_init": (None, [POINTER(Period)]),
-    "patches_init": (None, [POINTER(Patches)]),
-    "row_tables_init": (None, [POINTER(RowTables)]),
-    "options_init": (None, [POINTER(Options)]),
-    "fields_init": (None, [POINTER(Fields)]),
-    "report_init": (None, [POINTER(Report)]),
-    "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
-    "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
-    "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
-    "solver_solve_batch": (
-        c_int32,
-        [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
-    ),
-    "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
-    "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
-    "solver_free": (None, [c_void_p]),
-    "accuracy_init": (None, [POINTER(Accuracy)]),
-    "solve_to_accuracy": (
-        c_int32,
-        [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],
-    ),
-    "hertz": (
-        c_int32,
-        [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
-    ),
-    "influence_half_space": (
-        c_int32,
-        [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
-    ),
-    "set_log": (c_int32, [LogCallback, c_int32, c_void_p]),
-}
+def names(kind: type[ctypes.Structure]) -> list[str]:
+    """The members of a struct."""
+    return [field[0] for field in kind._fields_]
+
 
 # The structs that begin with their size, by the name of their _init.
-_SIZED = {
-    "scene": Scene, "influence": Influence, "layer": Layer, "pressure_limit": PressureLimit, "period": Period,
-    "patches": Patches, "row_tables": RowTables, "options": Options, "fields": Fields, "report": Report,
+SIZED: dict[str, type[ctypes.Structure]] = {
+    "scene": Scene,
+    "influence": Influence,
+    "layer": Layer,
+    "pressure_limit": PressureLimit,
+    "period": Period,
+    "patches": Patches,
+    "row_tables": RowTables,
+    "options": Options,
+    "fields": Fields,
+    "report": Report,
     "accuracy": Accuracy,
 }
-
-
-def _find():
-    named = os.environ.get("CONTACT_NORMAL_LIBRARY")
-    if named:
-        return named
-    here = os.path.dirname(os.path.abspath(__file__))
-    built = os.path.join(here, "..", "target", "release", "libcontact_normal.so")
-    if os.path.exists(built):
-        return built
-    return ctypes.util.find_library("contact_normal") or "libcontact_normal.so.0"
-
-
-def _load():
-    path = _find()
-    try:
-        library = ctypes.CDLL(path)
-    except OSError as error:
-        raise ImportError(f"{path}: {error}; name the library in CONTACT_NORMAL_LIBRARY") from error
-    for name, (result, arguments) in _PROTOTYPES.items():
-        function = getattr(library, "contact_normal_" + name)
-        function.restype, function.argtypes = result, arguments
-    version = library.contact_normal_abi_version()
-    if version < ABI_VERSION:
-        raise ImportError(f"{path} has ABI version {version}; this module needs {ABI_VERSION} or newer")
-    for name, kind in _SIZED.items():
-        # Larger than we think: room for a struct that has grown, so that finding out does no harm.
-        room = ctypes.create_string_buffer(4096)
-        struct = ctypes.cast(room, POINTER(kind))
-        getattr(library, f"contact_normal_{name}_init")(struct)
-        size = struct.contents.struct_size
-        if size != ctypes.sizeof(kind):
-            raise ImportError(f"{path}: contact_normal_{name} has {size} bytes, here {ctypes.sizeof(kind)}")
-    return library
-
-
-_library = _load()
-
-VERSION = _library.contact_normal_version().decode()
-
-
-def _initialised(name):
-    struct = _SIZED[name]()
-    getattr(_library, f"contact_normal_{name}_init")(ctypes.byref(struct))
-    return struct

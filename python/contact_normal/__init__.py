@@ -1,0 +1,38 @@
+"""contact-normal: the elastic normal contact problem on numpy arrays.
+
+    import contact_normal
+    result = contact_normal.solve(h, dx, dy, force=82.0e3, shear_modulus=82000.0, poisson_ratio=0.28)
+    result.pressure, result.contact, result.approach, result.report["residual"], result.ledger
+    result.plot()
+
+Arrays are (my, mx), C order: x runs along a row. Constants have the names of include/contact_normal.h without the prefix.
+"""
+
+from ._arguments import SolveOptions
+from ._callbacks import Progress, set_log
+from ._constants import *  # noqa: F403
+from ._library import VERSION, ContactNormalError
+from ._result import Ledger, Result
+from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
+from ._solver import Solver
+from ._special import HertzSolution, hertz, influence_half_space
+
+__version__ = VERSION
+
+__all__ = [
+    "AccurateResult",
+    "ContactNormalError",
+    "HertzSolution",
+    "Ledger",
+    "Progress",
+    "Result",
+    "SolveOptions",
+    "Solver",
+    "VERSION",
+    "hertz",
+    "influence_half_space",
+    "set_log",
+    "solve",
+    "solve_to_accuracy",
+    "to_accuracy",
+]

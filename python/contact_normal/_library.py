@@ -1,0 +1,159 @@
+"""Finds and loads the library, and compares it with this package: ABI version and sizes of the structs."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import os
+import sys
+from ctypes import POINTER, c_char_p, c_double, c_int32, c_void_p
+from pathlib import Path
+from typing import Any
+
+from ._constants import ABI_VERSION
+from ._structs import (
+    SIZED,
+    Accuracy,
+    Fields,
+    HertzSolution,
+    Influence,
+    Layer,
+    LogCallback,
+    Options,
+    Patches,
+    Period,
+    PressureLimit,
+    Report,
+    RowTables,
+    Scene,
+)
+
+# Result and arguments of every export.
+PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
+    "status_text": (c_char_p, [c_int32]),
+    "last_error": (c_char_p, []),
+    "version": (c_char_p, []),
+    "abi_version": (c_int32, []),
+    "scene_init": (None, [POINTER(Scene)]),
+    "influence_init": (None, [POINTER(Influence)]),
+    "layer_init": (None, [POINTER(Layer)]),
+    "pressure_limit_init": (None, [POINTER(PressureLimit)]),
+    "period_init": (None, [POINTER(Period)]),
+    "patches_init": (None, [POINTER(Patches)]),
+    "row_tables_init": (None, [POINTER(RowTables)]),
+    "options_init": (None, [POINTER(Options)]),
+    "fields_init": (None, [POINTER(Fields)]),
+    "report_init": (None, [POINTER(Report)]),
+    "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
+    "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "solver_solve_batch": (
+        c_int32,
+        [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
+    ),
+    "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
+    "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
+    "solver_free": (None, [c_void_p]),
+    "accuracy_init": (None, [POINTER(Accuracy)]),
+    "solve_to_accuracy": (
+        c_int32,
+        [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],
+    ),
+    "hertz": (
+        c_int32,
+        [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
+    ),
+    "influence_half_space": (
+        c_int32,
+        [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
+    ),
+    "set_log": (c_int32, [LogCallback, c_int32, c_void_p]),
+}
+
+
+def candidates() -> list[str]:
+    """The libraries that are tried, the first one that exists is loaded.
+
+    The one that the environment variable CONTACT_NORMAL_LIBRARY names and no other; else the one inside this package (a wheel),
+    the one built in this clone, those in `lib` of this Python's prefix and of the package's own, the system's.
+    """
+    named = os.environ.get("CONTACT_NORMAL_LIBRARY")
+    if named:
+        return [named]
+    here = Path(__file__).resolve().parent
+    paths = [here / "libcontact_normal.so", here.parents[1] / "target" / "release" / "libcontact_normal.so"]
+    paths += [prefix / "lib" / "libcontact_normal.so.0" for prefix in [Path(sys.prefix), *here.parents[2:5]]]
+    found = [str(path) for path in paths if path.exists()]
+    return found + [ctypes.util.find_library("contact_normal") or "libcontact_normal.so.0"]
+
+
+def load() -> ctypes.CDLL:
+    """The library with its prototypes set.
+
+    Raises
+    ------
+    ImportError
+        If there is none, or it does not suit this package.
+    """
+    path = candidates()[0]
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise ImportError(f"{path}: {error}; name the library in CONTACT_NORMAL_LIBRARY") from error
+    library.contact_normal_abi_version.restype = c_int32
+    version = library.contact_normal_abi_version()
+    if version < ABI_VERSION:
+        raise ImportError(f"{path} has ABI version {version}; this package needs {ABI_VERSION} or newer")
+    for name, (result, arguments) in PROTOTYPES.items():
+        function = getattr(library, "contact_normal_" + name)
+        function.restype, function.argtypes = result, arguments
+    for name, kind in SIZED.items():
+        # Larger than we think: room for a struct that has grown, so that finding out does no harm.
+        room = ctypes.create_string_buffer(4096)
+        struct = ctypes.cast(room, POINTER(kind))
+        getattr(library, f"contact_normal_{name}_init")(struct)
+        size = struct.contents.struct_size
+        if size != ctypes.sizeof(kind):
+            raise ImportError(f"{path}: contact_normal_{name} has {size} bytes, here {ctypes.sizeof(kind)}")
+    return library
+
+
+library = load()
+
+VERSION: str = library.contact_normal_version().decode()
+
+
+def initialised(name: str) -> Any:
+    """A struct as its `_init` of the library fills it."""
+    struct = SIZED[name]()
+    getattr(library, f"contact_normal_{name}_init")(ctypes.byref(struct))
+    return struct
+
+
+class ContactNormalError(Exception):
+    """A call that the library refused.
+
+    Attributes
+    ----------
+    status : int
+        The negative status: `INVALID_ARGUMENT`, `INFEASIBLE`, ...
+    message : str
+        The argument, its value and the rule it breaks.
+    """
+
+    def __init__(self, status: int, message: str) -> None:
+        text = library.contact_normal_status_text(status).decode()
+        super().__init__(f"{message or text} (status {status}: {text})")
+        self.status, self.message = status, message
+
+
+def last_error() -> str:
+    """The message of the last call on this thread that did not return OK."""
+    return str(library.contact_normal_last_error().decode())
+
+
+def check(status: int) -> int:
+    """The status, if it is not negative; raises ContactNormalError otherwise."""
+    if status < 0:
+        raise ContactNormalError(status, last_error())
+    return status

@@ -1,0 +1,86 @@
+"""Pictures by matplotlib, which is imported only here: `pip install contact-normal[plot]`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from ._result import Ledger, Result
+
+
+def _new_axes(size: tuple[float, float]) -> Axes:
+    try:
+        from matplotlib import pyplot
+    except ImportError as error:
+        raise ImportError("plots need matplotlib: pip install contact-normal[plot]") from error
+    axes: Axes = pyplot.subplots(figsize=size, layout="constrained")[1]
+    return axes
+
+
+def plot_pressure(result: Result, axes: Axes | None) -> Axes:
+    """See `Result.plot`."""
+    axes = axes or _new_axes((8.0, 6.0))
+    my, mx = result.pressure.shape
+    x_edges, y_edges = ((np.arange(m + 1) - 0.5 * m) * d for m, d in ((mx, result.dx), (my, result.dy)))
+    shown = np.ma.masked_where(~result.contact, result.pressure)
+    image = axes.imshow(
+        shown,
+        origin="lower",
+        extent=(x_edges[0], x_edges[-1], y_edges[0], y_edges[-1]),
+        cmap="viridis",
+        vmin=0.0,
+        interpolation="nearest",
+    )
+    axes.set_facecolor("0.94")
+    _outline(axes, result.contact, x_edges, y_edges)
+    axes.figure.colorbar(image, ax=axes, shrink=0.9, label="pressure")
+    axes.set(xlabel="x", ylabel="y", aspect="equal")
+    axes.set_title(f"force {result.force:.4g}, approach {result.approach:.4g}, {mx} × {my} elements", fontsize=10)
+    return axes
+
+
+def _outline(axes: Axes, contact: npt.NDArray[np.bool_], x_edges: Any, y_edges: Any) -> None:
+    """The border of the contact area along the edges of its elements."""
+    padded = np.pad(contact, 1)
+    rows, columns = np.nonzero(padded[1:, 1:-1] != padded[:-1, 1:-1])
+    axes.hlines(y_edges[rows], x_edges[columns], x_edges[columns + 1], color="crimson", linewidth=1.6)
+    rows, columns = np.nonzero(padded[1:-1, 1:] != padded[1:-1, :-1])
+    axes.vlines(x_edges[columns], y_edges[rows], y_edges[rows + 1], color="crimson", linewidth=1.6)
+
+
+def plot_ledger(ledger: Ledger, axes: Axes | None) -> Axes:
+    """See `Ledger.plot`."""
+    axes = axes or _new_axes((6.4, 4.2))
+    for name, error, of in (
+        ("pressures (rms)", "error_pressure", None),
+        (ledger.estimated, "error_force", ledger.estimated),
+        ("largest pressure", "error_max_pressure", "max_pressure"),
+    ):
+        scales = [1.0 if of is None else row[of] for row in ledger]
+        points = [(row["seconds"], row[error] / scale) for row, scale in zip(ledger, scales) if row[error] > 0 and scale > 0]
+        if points:
+            axes.loglog(*zip(*points), "o-", label=name)
+    shown = 0.0
+    for row in ledger:
+        if row["seconds"] < 1.15 * shown:  # its label would lie on the one before
+            continue
+        shown = row["seconds"]
+        axes.axvline(row["seconds"], color="0.9", zorder=0)
+        axes.annotate(
+            f"{row['mx']:.0f} × {row['my']:.0f}",
+            (row["seconds"], 0.99),
+            xycoords=("data", "axes fraction"),
+            rotation=90,
+            va="top",
+            ha="right",
+            fontsize=7,
+        )
+    axes.set(xlabel="seconds", ylabel="estimated relative error", title="What accuracy costs: the ledger of one solve")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower left", fontsize="small")
+    return axes

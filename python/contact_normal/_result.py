@@ -1,0 +1,146 @@
+"""What a solve found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from ctypes import c_int32
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import doubles, integers, pointer
+from ._constants import INITIAL_GUESS_GIVEN, INITIAL_GUESS_NONE, PRESCRIBED_APPROACH
+from ._library import initialised, library
+from ._structs import LedgerRow, Report, names
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from ._arguments import Doubles
+    from ._scene import Scene
+
+_LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
+
+
+class Ledger(list[dict[str, float]]):
+    """What was known on each grid and what it had cost: one dict per grid, coarsest first.
+
+    `estimated` is what "error_force" speaks of: "force", or "approach" where the force is prescribed.
+
+    The keys are the members of `contact_normal_ledger_row`: "mx", "my", "cycles", "seconds", "work_units", "residual", "approach",
+    "force", "max_pressure", "contact_area", "error_force", ... Estimated errors are absolute; a negative one is not known.
+    """
+
+    def __init__(self, rows: Iterable[dict[str, float]] = (), estimated: str = "force") -> None:
+        super().__init__(rows)
+        self.estimated = estimated
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the estimated error of every grid over the seconds it took.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save: `axes.figure.savefig("ledger.png")`.
+        """
+        from ._plot import plot_ledger
+
+        return plot_ledger(self, axes)
+
+
+class Result:
+    """What a solve found.
+
+    Attributes
+    ----------
+    status : int
+        0 (OK): the contact conditions hold to the tolerance. > 0: stopped early, the arrays hold the best iterate. < 0 (batches
+        only): refused, the arrays mean nothing.
+    message : str
+        Why, if the status is not OK.
+    pressure, deformed_distance, displacement : ndarray of float, (my, mx)
+        p, e and u.
+    contact : ndarray of bool, (my, mx)
+        The contact area, with the elements at the pressure limit.
+    at_limit : ndarray of bool, (my, mx)
+        The elements at the pressure limit.
+    dx, dy : float
+        Element sizes.
+    report : dict
+        The numbers of `contact_normal_report`: "cycles", "residual", "max_pressure", "contact_area", "error_force", ...
+    ledger : Ledger
+        One dict per grid.
+    """
+
+    def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene) -> None:
+        self.status, self.message = status, message
+        self.pressure, self.deformed_distance, self.displacement = outputs.doubles
+        self.contact: npt.NDArray[np.bool_] = outputs.contact != 0
+        self.at_limit: npt.NDArray[np.bool_] = outputs.contact == 2
+        self.dx: float = scene.struct.dx
+        self.dy: float = scene.struct.dy
+        hidden = ("struct_size", "ledger", "ledger_capacity")
+        self.report: dict[str, float] = {name: getattr(report, name) for name in names(Report) if name not in hidden}
+        rows = outputs.rows[: min(report.ledger_rows, _LEDGER_ROOM)]
+        members = [name for name in names(LedgerRow) if name != "reserved"]
+        estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+        self.ledger = Ledger(({name: getattr(row, name) for name in members} for row in rows), estimated)
+
+    @property
+    def approach(self) -> float:
+        """Approach of the bodies."""
+        return self.report["approach"]
+
+    @property
+    def force(self) -> float:
+        """Normal force: the sum of p dx dy."""
+        return self.report["force"]
+
+    def __repr__(self) -> str:
+        my, mx = self.pressure.shape
+        status = library.contact_normal_status_text(self.status).decode()
+        return f"<Result: {status}; {mx} x {my} elements, force {self.force:.6g}, approach {self.approach:.6g}>"
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the pressures and the outline of the contact area, seen from above.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save: `axes.figure.savefig("pressure.png")`.
+        """
+        from ._plot import plot_pressure
+
+        return plot_pressure(self, axes)
+
+
+class Outputs:
+    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess."""
+
+    def __init__(self, shape: tuple[int, int], pressure: Any, contact: Any, options: Any) -> None:
+        self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
+        self.contact = np.zeros(shape, dtype=np.int32)
+        if pressure is not None:
+            self.doubles[0][:] = doubles("pressure", pressure, shape)
+            if contact is None:
+                self.contact[:] = self.doubles[0] > 0
+        if contact is not None:
+            self.contact[:] = integers("contact", contact, shape)
+        if pressure is not None and options.initial_guess == INITIAL_GUESS_NONE:
+            options.initial_guess = INITIAL_GUESS_GIVEN
+        self.fields, self.report = initialised("fields"), initialised("report")
+        self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(pointer, self.doubles)
+        self.fields.contact = pointer(self.contact, c_int32)
+        self.rows = (LedgerRow * _LEDGER_ROOM)()
+        self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM

@@ -1,0 +1,231 @@
+"""One scene solved: on a given grid, or on grids fine enough for an accuracy."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from ctypes import c_void_p
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import Both, SolveOptions, integer, options
+from ._callbacks import Progress, Surface, Watched
+from ._library import check, initialised, last_error, library
+from ._result import Outputs, Result
+from ._scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from typing_extensions import Unpack
+
+
+def run(call: Callable[[Any, Any], int], scene: Scene, outputs: Outputs, watched: Watched) -> Result:
+    """The result of `call(fields, report)`."""
+    status = call(ctypes.byref(outputs.fields), ctypes.byref(outputs.report))
+    message = last_error() if status else ""
+    watched.finish()
+    check(status)
+    return Result(status, message, outputs, outputs.report, scene)
+
+
+def solve(
+    h: npt.ArrayLike,
+    dx: float,
+    dy: float,
+    *,
+    approach: float | None = None,
+    force: float | None = None,
+    shear_modulus: Both,
+    poisson_ratio: Both,
+    influence: Any = None,
+    layer: npt.ArrayLike | None = None,
+    pressure_limit: npt.ArrayLike | None = None,
+    period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    row_tables: Any = None,
+    pressure: npt.ArrayLike | None = None,
+    contact: npt.ArrayLike | None = None,
+    progress: Callable[[Progress], Any] | bool | None = None,
+    **given: Unpack[SolveOptions],
+) -> Result:
+    """Solves one scene: the undeformed distance on a grid and the prescribed approach or force.
+
+    Parameters
+    ----------
+    h : array_like, (my, mx)
+        Undeformed distance, a length; inf: no surface there. Any consistent units: mm, N and N/mm2, or m, N and Pa.
+    dx, dy : float
+        Element sizes in x (along rows) and y.
+    approach, force : float
+        Exactly one of them: the approach of the bodies, or the normal force.
+    shear_modulus, poisson_ratio : float or pair of floats
+        Of both bodies, or of each; a shear modulus of inf is a rigid body.
+    influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
+        Own influence coefficients instead of the half-space, times a scale.
+    layer : float or array_like, (my, mx), optional
+        Compliance of a thin layer, a length per pressure.
+    pressure_limit : float or array_like, (my, mx), optional
+        No pressure is larger.
+    period : {"x", "y", "xy"}, optional
+        The grid is one period of a scene that repeats itself.
+    patches : (array_like of int (my, mx), array_like (count, count)), optional
+        The patch of each element, from 0 on, and the factors of their interaction.
+    row_tables : array_like, (my, my, 2 cx), or (array_like, scale), optional
+        Own coefficients of each loaded row, row and offset in x.
+    pressure, contact : array_like, (my, mx), optional
+        Initial guess; `contact` (booleans or integers) is the contact area with `active_set="FIXED"`.
+    progress : callable or bool, optional
+        Called with a `Progress` after each cycle, a true result cancels; True: draws a bar on stderr.
+    **given : SolveOptions
+        method, tolerance, max_cycles, threads, ...
+
+    Returns
+    -------
+    Result
+        Its `status` is `OK` if the contact conditions hold to the tolerance, else > 0: stopped early, and `message` says why.
+
+    Raises
+    ------
+    ContactNormalError
+        If the library refuses the scene or an option.
+    TypeError, ValueError
+        If an argument has a wrong type or shape.
+
+    Examples
+    --------
+    A steel ball of radius 50 mm, pressed onto a steel plate by 1000 N:
+
+    >>> import numpy as np, contact_normal
+    >>> x = (np.arange(64) - 31.5) * 0.05
+    >>> h = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * 50.0)
+    >>> result = contact_normal.solve(h, 0.05, 0.05, force=1000.0, shear_modulus=82000.0, poisson_ratio=0.28)
+    >>> result.status, round(result.force), result.pressure.shape
+    (0, 1000, (64, 64))
+    """
+    effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
+               "row_tables": row_tables}
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
+    struct = options(given)
+    outputs = Outputs(scene.shape, pressure, contact, struct)
+    watched = Watched(progress, struct, scene.h.size)
+
+    def call(fields: Any, report: Any) -> int:
+        return int(library.contact_normal_solve(ctypes.byref(scene.struct), ctypes.byref(struct), fields, report))
+
+    return run(call, scene, outputs, watched)
+
+
+class AccurateResult(Result):
+    """What `solve_to_accuracy` found, on the grid that it took.
+
+    Attributes
+    ----------
+    reached : float or None
+        Estimated relative error of the force (of the approach, if the force is prescribed); None: not known.
+    seconds : float
+        Seconds for all grids together.
+    """
+
+    reached: float | None
+    seconds: float
+
+
+def solve_to_accuracy(
+    h: npt.ArrayLike | Callable[[Any, Any], Any],
+    dx: float,
+    dy: float,
+    *,
+    target: float = 1e-3,
+    max_seconds: float = 0.0,
+    max_bytes: int = 0,
+    max_elements: int = 0,
+    shape: tuple[int, int] | None = None,
+    corner: tuple[float, float] | None = None,
+    approach: float | None = None,
+    force: float | None = None,
+    shear_modulus: Both,
+    poisson_ratio: Both,
+    progress: Callable[[Progress], Any] | bool | None = None,
+    **given: Unpack[SolveOptions],
+) -> AccurateResult:
+    """Solves on finer and finer grids until the estimated relative error of the force is at most `target`.
+
+    Where the force is prescribed, it is the error of the approach. `to_accuracy` is a short name for this function.
+
+    Parameters
+    ----------
+    h : array_like, (my, mx), or callable
+        Undeformed distance on the first grid, which is refined by cubics; or h(x, y) of the coordinates of element centres, arrays of
+        the shapes (1, mx) and (my, 1).
+    dx, dy : float
+        Element sizes of the first grid.
+    target : float
+        Relative error.
+    max_seconds, max_bytes, max_elements : number
+        What it may cost; 0: no limit.
+    shape : (my, mx), optional
+        Elements of the first grid, needed where `h` is a callable.
+    corner : (x, y), optional
+        Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
+    approach, force, shear_modulus, poisson_ratio, progress, **given
+        As for `solve`.
+
+    Returns
+    -------
+    AccurateResult
+        With the arrays of the grid that was taken. Its `status` is `OK` where the target is met by the estimate; else `message` says
+        the best that was reached.
+
+    Raises
+    ------
+    ContactNormalError
+        If the library refuses the scene, the target or an option.
+
+    Examples
+    --------
+    >>> import contact_normal
+    >>> result = contact_normal.solve_to_accuracy(lambda x, y: 0.002 * (x**2 + y**2), 0.5, 0.5, shape=(32, 32), target=1e-3,
+    ...                                           force=1000.0, shear_modulus=82000.0, poisson_ratio=0.28)
+    >>> result.status, result.reached <= 1e-3
+    (0, True)
+    """
+    surface = None
+    if callable(h):
+        if shape is None:
+            raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
+        my, mx = (integer("shape", m) for m in shape)
+        surface = Surface(h, (-0.5 * mx * dx, -0.5 * my * dy) if corner is None else corner)
+        h = np.zeros((my, mx))  # not read
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, {})
+    struct = options(given)
+    watched = Watched(progress, struct, None)
+    accuracy, handle = initialised("accuracy"), c_void_p()
+    accuracy.target, accuracy.max_seconds = target, max_seconds
+    accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
+    if surface:
+        accuracy.surface = surface.callback
+    ledger = Outputs((0, 0), None, None, struct)
+    try:
+        status = library.contact_normal_solve_to_accuracy(
+            ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle),
+            ctypes.byref(ledger.report),
+        )
+        message = last_error() if status else ""
+        watched.finish()
+        if surface:
+            surface.finish()
+        check(status)
+        outputs = Outputs((accuracy.my, accuracy.mx), None, None, struct)
+        outputs.rows = ledger.rows
+        if handle:
+            check(library.contact_normal_solver_fields(handle, ctypes.byref(outputs.fields)))
+    finally:
+        library.contact_normal_solver_free(handle)
+    result = AccurateResult(status, message, outputs, ledger.report, scene)
+    result.dx, result.dy, result.seconds = accuracy.dx, accuracy.dy, accuracy.seconds
+    result.reached = accuracy.reached if accuracy.reached >= 0 else None
+    return result
+
+
+to_accuracy = solve_to_accuracy
