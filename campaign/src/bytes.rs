@@ -7,8 +7,9 @@ use std::ptr::{null, null_mut};
 use contact_normal::ffi::*;
 
 use crate::call::{effect_structs, initialised, EffectStructs, Outputs};
-use crate::case::{Case, Grid, How, Load};
+use crate::case::{Case, How};
 use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::grid::{Grid, Load};
 use crate::rules::is_true;
 
 /// Arrays have room for so many elements.

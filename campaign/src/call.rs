@@ -6,8 +6,9 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::case::{Case, How, Load};
+use crate::case::{Case, How};
 use crate::effects::{Effects, Values};
+use crate::grid::Load;
 
 /// What outputs hold before a call.
 const SENTINEL: f64 = -12345.678;

@@ -3,40 +3,12 @@
 use contact_normal::ffi::*;
 
 use crate::effects::{self, Effects};
+use crate::grid::{Grid, Load};
 use crate::half_space::compliance;
 use crate::operator::Operator;
 use crate::random::Random;
+use crate::scales::{self, Scales};
 use crate::surface;
-
-/// The elements.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    pub mx: usize,
-    pub my: usize,
-    pub dx: f64,
-    pub dy: f64,
-}
-
-impl Grid {
-    pub fn len(&self) -> usize {
-        self.mx * self.my
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    pub fn element_area(&self) -> f64 {
-        self.dx * self.dy
-    }
-}
-
-/// What is prescribed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Load {
-    Approach(f64),
-    Force(f64),
-}
 
 /// How it is to be solved.
 #[derive(Clone, Debug)]
@@ -94,7 +66,7 @@ impl Case {
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);
         if kinds.limit {
-            effects.limit = Some(effects::limit(random, &scales, load, &h, &grid));
+            effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
         }
         let how = How::any(random, &scales, &h, load, kinds.limit);
         let through_handle = random.chance(0.2);
@@ -113,7 +85,7 @@ impl Case {
         let scales = Scales::of(&next.h, &self.effects, &self.grid, c);
         next.load = load(random, &scales, &self.grid);
         if self.effects.limit.is_some() {
-            next.effects.limit = Some(effects::limit(random, &scales, next.load, &next.h, &self.grid));
+            next.effects.limit = Some(scales::limit(random, &scales, next.load, &next.h, &self.grid));
         }
         let how = How::any(random, &scales, &next.h, next.load, self.effects.limit.is_some());
         let set_up = &self.how;
@@ -183,25 +155,6 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
         _ => dx * random.decades(1.0 / slenderness, slenderness),
     };
     Grid { mx, my, dx, dy }
-}
-
-/// Of what size a scene's distances and pressures are.
-pub struct Scales {
-    pub lowest: f64,
-    /// Between the lowest and the highest point, or what a flat surface has instead.
-    pub depth: f64,
-    pub pressure: f64,
-}
-
-impl Scales {
-    pub fn of(h: &[f64], effects: &Effects, grid: &Grid, c: f64) -> Scales {
-        let finite = || h.iter().copied().filter(|h| h.is_finite());
-        let (lowest, highest) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        let own = Operator::new(grid, c, effects).diagonal();
-        let size = (grid.mx as f64 * grid.dx).max(grid.my as f64 * grid.dy);
-        let depth = if highest > lowest { highest - lowest } else { 1e-3 * size };
-        Scales { lowest, depth, pressure: depth / (own * (grid.len() as f64).sqrt()) }
-    }
 }
 
 fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {

@@ -1,6 +1,6 @@
 //! The effects that a scene may name, and random ones.
 
-use crate::case::{Grid, Load, Scales};
+use crate::grid::Grid;
 use crate::half_space::free;
 use crate::random::Random;
 
@@ -222,25 +222,4 @@ fn row_tables(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite
         }
     }
     OwnCoefficients { cx, cy: my, values }
-}
-
-/// A limit: with a force one by which it is a part of the greatest, mostly near to all of it.
-pub fn limit(random: &mut Random, scales: &Scales, load: Load, h: &[f64], grid: &Grid) -> Values {
-    let shape: Vec<f64> = match random.chance(0.5) {
-        true => vec![1.0; grid.len()],
-        false => (0..grid.len()).map(|_| random.between(0.5, 1.5)).collect(),
-    };
-    let uniform = shape.iter().all(|&s| s == 1.0);
-    let size = match load {
-        Load::Force(force) if force > 0.0 => {
-            let carried: f64 = (0..h.len()).filter(|&i| h[i].is_finite()).map(|i| shape[i]).sum();
-            let part = random.pick(&[0.05, 0.3, 0.7, 0.95, 0.9999, 1.0, 1.1]);
-            force / (part * carried * grid.element_area())
-        }
-        _ => scales.pressure * random.decades(0.05, 20.0),
-    };
-    if uniform {
-        return Values::Uniform(if random.chance(0.05) { f64::INFINITY } else { size });
-    }
-    Values::PerElement(shape.iter().map(|s| s * size).collect())
 }

@@ -9,10 +9,12 @@ pub mod bytes;
 pub mod call;
 pub mod case;
 pub mod effects;
+pub mod grid;
 pub mod half_space;
 pub mod operator;
 pub mod random;
 pub mod rules;
+pub mod scales;
 pub mod sequence;
 pub mod surface;
 

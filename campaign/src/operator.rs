@@ -1,7 +1,7 @@
 //! u = A p by direct summation, for every effect, and what rounding may do to it.
 
-use crate::case::Grid;
 use crate::effects::{Effects, OwnCoefficients, Values};
+use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
 
 /// Where the coefficients come from.

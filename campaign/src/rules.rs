@@ -3,7 +3,8 @@
 use contact_normal::ffi::*;
 
 use crate::call::Outputs;
-use crate::case::{Case, Load};
+use crate::case::Case;
+use crate::grid::Load;
 
 /// A promise that was not kept.
 #[derive(Clone, Debug)]

@@ -3,8 +3,9 @@
 use contact_normal::ffi::*;
 
 use crate::call::{self, Handle, Outputs};
-use crate::case::{Case, Load};
+use crate::case::Case;
 use crate::effects;
+use crate::grid::Load;
 use crate::random::Random;
 use crate::rules::{check, may_be_refused, Failure};
 

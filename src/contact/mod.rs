@@ -7,6 +7,7 @@ mod exchange;
 mod guard;
 mod outline;
 mod problem;
+mod start;
 mod state;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};

@@ -6,8 +6,6 @@ use crate::memory::reserve;
 use crate::operator::zeros;
 use crate::scene::Load;
 
-use super::exchange::estimate_approach;
-
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
 
@@ -69,14 +67,6 @@ impl State {
             load,
             round_off: 0.0,
         })
-    }
-
-    /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.
-    pub fn start(&mut self, self_influence: f64) {
-        if let Load::Force(force) = self.load {
-            self.approach = estimate_approach(&self.grid, &self.h, force, self_influence);
-        }
-        self.contact.iter_mut().zip(&self.h).for_each(|(inside, h)| *inside = *h <= self.approach);
     }
 
     /// Bytes held.

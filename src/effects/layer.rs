@@ -1,6 +1,6 @@
 //! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
 
-use super::{check_values, Effect, Value};
+use super::effect::{check_values, Effect, Value};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
@@ -16,7 +16,7 @@ pub enum Layer<'a> {
 
 impl Layer<'_> {
     /// Whether it gives way nowhere: then it is none.
-    pub(crate) fn is_rigid(&self) -> bool {
+    fn is_rigid(&self) -> bool {
         match self {
             Layer::Uniform(c) => *c == 0.0,
             Layer::PerElement(c) => c.iter().all(|c| *c == 0.0),
@@ -39,6 +39,10 @@ impl Effect for Layer<'_> {
             Layer::Uniform(c) => require("layer->compliance", *c),
             Layer::PerElement(c) => check_values("layer->compliances", c, grid, require),
         }
+    }
+
+    fn gives_way(&self) -> bool {
+        !self.is_rigid()
     }
 
     fn without_multigrid(&self) -> Option<&'static str> {

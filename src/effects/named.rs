@@ -7,21 +7,9 @@
 
 use std::sync::Arc;
 
-use super::{effects, list, replace_bodies, Effect, COUNT};
+use super::effect::{Effect, Value};
+use super::list::{effects, list, replace_bodies, COUNT};
 use crate::scene::{Bodies, Scene};
-
-/// A value of an effect.
-#[derive(Clone, Copy, Debug)]
-pub enum Value<'a> {
-    /// A number, a count, or a switch (0 or 1).
-    Number(f64),
-    /// One per element.
-    Array(&'a [f64]),
-    /// One per element, whole.
-    Integers(&'a [i32]),
-    /// Many, which the coefficients hold, too.
-    Shared(&'a Arc<Vec<f64>>),
-}
 
 /// What is kept of a value.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Effect: several contact patches on one grid, whose interaction is scaled. See [`influence::Patches`](crate::influence::Patches).
 
-use super::{Effect, Value};
+use super::effect::{Effect, Value};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};

@@ -4,11 +4,11 @@
 
 use std::sync::Arc;
 
-use super::{Effect, Layer, Value};
+use super::effect::{Effect, Value};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel, Periodic};
-use crate::scene::{Load, Scene};
+use crate::scene::{Load, Plain};
 
 /// In which directions the scene repeats itself, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,10 +33,10 @@ impl Effect for Period {
 
     // With two periods the mean displacement is zero, so no approach is possible at which the mean of the distance vanishes: contact
     // is full there, and any force fits.
-    fn check_load(&self, scene: &Scene<'_>) -> Result<()> {
+    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
-        if scene.layer.as_ref().is_some_and(|layer: &Layer| !layer.is_rigid()) {
-            return Ok(()); // gives way in the mean, too
+        if others.iter().flatten().any(|other| other.gives_way()) {
+            return Ok(());
         }
         let h = scene.undeformed_distance;
         let mean = h.iter().sum::<f64>() / h.len() as f64;
@@ -53,7 +53,7 @@ impl Effect for Period {
         Some(self.name())
     }
 
-    fn kernel(&self, scene: &Scene<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn kernel(&self, scene: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
         let half_space = HalfSpace::new(scene.grid.dx, scene.grid.dy, scene.bodies.compliance());
         Ok(Some(Arc::new(Periodic::new(half_space, (self.x, self.y), &scene.grid)?)))
     }

@@ -9,10 +9,10 @@
 //! p = p_max,      e <= 0    at the limit
 //! ```
 
-use super::{check_values, Effect};
+use super::effect::{check_values, Effect};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::scene::{Load, Scene};
+use crate::scene::{Load, Plain};
 
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl Effect for PressureLimit<'_> {
     }
 
     // A force that is more than all elements with a surface carry at the limit.
-    fn check_load(&self, scene: &Scene<'_>) -> Result<()> {
+    fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;
         let Load::Force(force) = scene.load else { return Ok(()) };
         let h = scene.undeformed_distance;

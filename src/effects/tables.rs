@@ -4,11 +4,11 @@
 
 use std::sync::Arc;
 
-use super::{Effect, Value};
+use super::effect::{Effect, Value};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Kernel, RowTables, Table};
-use crate::scene::Scene;
+use crate::scene::Plain;
 
 impl Effect for Table {
     fn name(&self) -> &'static str {
@@ -32,7 +32,7 @@ impl Effect for Table {
         true
     }
 
-    fn kernel(&self, _scene: &Scene<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn kernel(&self, _: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
 
@@ -67,7 +67,7 @@ impl Effect for RowTables {
         Some(self.name())
     }
 
-    fn kernel(&self, _scene: &Scene<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn kernel(&self, _: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
 

@@ -2,17 +2,17 @@
 
 mod bodies;
 mod load;
+mod plain;
 mod refine;
 
 pub use crate::effects::{Layer, Patches, Period, PressureLimit};
 pub use bodies::Bodies;
 pub use load::Load;
+pub use plain::Plain;
 pub use refine::refine;
 
-use crate::effects;
-use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{Coefficients, RowTables, Table};
+use crate::influence::{RowTables, Table};
 
 /// One contact problem: `e = h - approach + A p`.
 #[derive(Clone, Debug)]
@@ -56,41 +56,9 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The coefficients that this scene asks for.
-    pub fn coefficients(&self) -> Result<Coefficients> {
-        effects::coefficients(self)
-    }
-
-    /// Checks everything the solver relies on.
-    pub fn check(&self) -> Result<()> {
-        self.check_distance_and_load()?;
-        effects::check(self)
-    }
-
-    /// Checks what changes from solve to solve.
-    pub fn check_distance_and_load(&self) -> Result<()> {
-        let h = self.undeformed_distance;
-        if h.len() != self.grid.len() {
-            return invalid(format!(
-                "undeformed_distance has {} values; the grid has {} elements",
-                h.len(),
-                self.grid.len()
-            ));
-        }
-        if let Some(i) = h.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
-            return Err(Error::NotFinite(format!(
-                "undeformed_distance of {} is {}; it must be a number, or +infinity where there is no surface",
-                self.grid.element(i),
-                h[i]
-            )));
-        }
-        self.load.check()?;
-        effects::check_load(self)?;
-        match self.load {
-            Load::Force(force) if force > 0.0 && h.iter().all(|v| v.is_infinite()) => Err(Error::Infeasible(format!(
-                "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
-            ))),
-            _ => Ok(()),
-        }
+    /// The same without its effects.
+    pub fn plain(&self) -> Plain<'a> {
+        let Scene { grid, undeformed_distance, bodies, load, .. } = *self;
+        Plain { grid, undeformed_distance, bodies, load }
     }
 }

@@ -34,19 +34,12 @@
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
-use super::limits::Beyond;
 use super::passes::{Step, Update};
-use super::preconditioner::Preconditioner;
-use super::segments::Segments;
+use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
-use crate::error::Result;
-use crate::grid::Grid;
-use crate::influence::Coefficients;
 use crate::operator::fft::Real;
-use crate::operator::{reserve, zeros, Operator, Workspace};
 use crate::progress::Goal;
 use crate::scene::Load;
-use crate::threads::Threads;
 
 /// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
@@ -65,24 +58,6 @@ const ROUNDINGS: f64 = 200.0;
 /// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
 /// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
 const PATIENCE: u32 = 20;
-/// Operator, preconditioner and directions of one grid.
-pub struct Iteration<T: Real> {
-    pub(super) operator: Operator<T>,
-    pub(super) preconditioner: Option<Preconditioner<T>>,
-    pub(super) workspace: Workspace<T>,
-    pub(super) t: Vec<T>,
-    pub(super) q: Vec<T>,
-    pub(super) z: Vec<T>,
-    pub(super) runs: Segments,
-    /// Truncated elements and the pressures that u still lacks.
-    pub(super) debts: Vec<(usize, f64)>,
-    /// With limits.
-    pub(super) limits: Beyond,
-    /// Whether an element of a row enters.
-    pub(super) entering: Vec<bool>,
-    pub(super) threads: Threads,
-}
-
 /// What one iteration did.
 #[derive(Clone, Copy, Debug)]
 pub struct Cycle {
@@ -114,57 +89,6 @@ pub enum End {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's
-    /// circulant is not positive, the iteration does without.
-    pub fn new(
-        operator: Operator<T>,
-        influence: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        threads: &Threads,
-    ) -> Result<Iteration<T>> {
-        let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
-        if preconditioner.is_none() {
-            log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
-        }
-        let n = grid.len();
-        // A pass takes about a tenth of the time of a product.
-        let threads = &threads.suited_to(n / 10);
-        let directions = || zeros(n, "search directions");
-        let mut debts = Vec::new();
-        reserve(&mut debts, n, "truncated elements")?;
-        Ok(Iteration {
-            workspace: operator.workspace()?,
-            operator,
-            preconditioner,
-            t: directions()?,
-            q: directions()?,
-            z: directions()?,
-            runs: Segments::new(grid, threads)?,
-            debts,
-            limits: Beyond::default(),
-            entering: vec![false; grid.my],
-            threads: threads.clone(),
-        })
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.len() * 3 * size_of::<T>()
-    }
-
-    /// `u = A p` in the iteration's precision.
-    pub fn displace(&mut self, state: &mut State) {
-        for (t, p) in self.t.iter_mut().zip(&state.p) {
-            *t = T::of(*p);
-        }
-        self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-        for (u, q) in state.u.iter_mut().zip(&self.q) {
-            *u = q.to_double();
-        }
-    }
-
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {

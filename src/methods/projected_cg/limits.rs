@@ -16,13 +16,12 @@
 //! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
 //! forecast.
 
-use super::iteration::Iteration;
 use super::passes::Update;
+use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
 use crate::operator::fft::Real;
 use crate::operator::reserve;
-use crate::progress::Goal;
 use crate::scene::Load;
 
 /// A step goes back where the least energy lies before this part of it. Measured over 84 scenes: at 0.5 one is not solved, at 1 the
@@ -32,24 +31,6 @@ const STEP_BACK: f64 = 0.7;
 /// Too much force by this part is scaled away. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
 /// the greatest pressure): without, the work is 1.16 times as much in the mean and 2.2 times in the worst.
 const TOO_MUCH: f64 = 0.05;
-
-/// What goes beyond the plain iteration.
-#[derive(Default)]
-pub(super) struct Beyond {
-    /// What is missing of a prescribed force, as a sum of pressures.
-    pub(super) missing: f64,
-    /// How far the approach moves on for that.
-    pub(super) shift: f64,
-    /// The pressures that u knows of: those of before the iteration without what was owed then.
-    known: Vec<f64>,
-}
-
-impl Beyond {
-    /// Whether the force is carried.
-    pub(super) fn carries(&self, state: &State, goal: &Goal) -> bool {
-        self.missing.abs() <= goal.tolerance * state.p.iter().sum::<f64>()
-    }
-}
 
 impl<T: Real> Iteration<T> {
     /// Memory that a scene with limits needs beyond that of one without.
@@ -84,6 +65,31 @@ impl<T: Real> Iteration<T> {
         let shift = (self.limits.missing / carried).min(1.0) * depth;
         self.limits.shift = if shift.is_finite() { shift } else { 0.0 };
         Some(1.0)
+    }
+
+    /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
+    pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
+        let Load::Force(force) = state.load else { return 1.0 };
+        self.runs.find(&state.contact);
+        if S::LIMITED {
+            if let Some(factor) = self.carry_beside_limits(state) {
+                return factor;
+            }
+        }
+        let p = &state.p;
+        let [carried] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let p = &p[run];
+                sums.add(p.len(), |i| [p[i]]);
+            }
+        });
+        let factor = force / (carried * state.grid.element_area());
+        if !(factor.is_finite() && factor > 0.0) {
+            return 1.0;
+        }
+        self.scale(state, factor);
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        factor
     }
 
     /// With a limit: keeps the pressures that u knows of.

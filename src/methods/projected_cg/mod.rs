@@ -12,9 +12,11 @@ mod predictor;
 mod scaling;
 mod segments;
 mod step;
+mod vectors;
 mod window;
 
 pub use coarser_solutions::Sample;
-pub use iteration::{Cycle, End, Iteration};
+pub use iteration::{Cycle, End};
 pub use step::ProjectedCg;
+pub use vectors::Iteration;
 pub use window::Window;

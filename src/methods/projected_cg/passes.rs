@@ -1,6 +1,6 @@
 //! The passes over the contact area, each over its segments, and over the grid.
 
-use super::iteration::Iteration;
+use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
 use crate::scene::Load;
@@ -217,31 +217,6 @@ impl<T: Real> Iteration<T> {
         (self.debts.len() - before) as u64
     }
 
-    /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
-    pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
-        let Load::Force(force) = state.load else { return 1.0 };
-        self.runs.find(&state.contact);
-        if S::LIMITED {
-            if let Some(factor) = self.carry_beside_limits(state) {
-                return factor;
-            }
-        }
-        let p = &state.p;
-        let [carried] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let p = &p[run];
-                sums.add(p.len(), |i| [p[i]]);
-            }
-        });
-        let factor = force / (carried * state.grid.element_area());
-        if !(factor.is_finite() && factor > 0.0) {
-            return 1.0;
-        }
-        self.scale(state, factor);
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        factor
-    }
-
     /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
     /// returns the factor, with which u is to be scaled. It costs no product.
     pub(super) fn least_energy(&mut self, state: &mut State, update: &Update) -> f64 {
@@ -267,7 +242,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// p = factor p on C.
-    fn scale(&mut self, state: &mut State, factor: f64) {
+    pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (_, local) in block.runs() {
                 p[local].iter_mut().for_each(|p| *p *= factor);

@@ -1,0 +1,49 @@
+//! Step 1 of section 4.1: the contact area to start from.
+
+use super::state::lowest;
+use super::State;
+use crate::grid::Grid;
+use crate::scene::Load;
+
+impl State {
+    /// Step 1: the starting contact area `h <= approach`; with a prescribed force, of the estimated approach.
+    pub fn start(&mut self, self_influence: f64) {
+        if let Load::Force(force) = self.load {
+            self.approach = estimate_approach(&self.grid, &self.h, force, self_influence);
+        }
+        self.contact.iter_mut().zip(&self.h).for_each(|(inside, h)| *inside = *h <= self.approach);
+    }
+}
+
+/// The approach whose starting contact area would carry about this force: area S and mean penetration d of
+/// `{h <= approach}` carry as much as a flat punch of that area, `F = 2 E* sqrt(S/pi) d` (Johnson, eq. 3.36). Grows with
+/// the approach, so bisection finds it; it is a start, not a result.
+fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) -> f64 {
+    let lowest = lowest(h);
+    let highest = h.iter().copied().filter(|h| h.is_finite()).fold(lowest, f64::max);
+    let modulus = grid.modulus(self_influence);
+    let carried = |approach: f64| {
+        let (mut count, mut sum) = (0.0, 0.0);
+        for h in h.iter().filter(|h| **h <= approach) {
+            count += 1.0;
+            sum += approach - h;
+        }
+        let area = count * grid.element_area();
+        2.0 * modulus * (area / std::f64::consts::PI).sqrt() * sum / f64::max(count, 1.0)
+    };
+    // One element alone carries `force` at the second of these, so the answer lies below it.
+    let alone = force / (2.0 * modulus * (grid.element_area() / std::f64::consts::PI).sqrt());
+    let (mut low, mut high) = (lowest, lowest + alone.min(2.0 * (highest - lowest) + alone));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if carried(middle) < force {
+            low = middle;
+        } else {
+            high = middle;
+        }
+        if high - low <= 1e-3 * (high - lowest) {
+            break;
+        }
+    }
+    high
+}

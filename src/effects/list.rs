@@ -1,0 +1,87 @@
+//! The list of effects, and what all those of a scene say together.
+
+use std::sync::Arc;
+
+use super::effect::Effect;
+use crate::error::{Error, Result};
+use crate::influence::{Coefficients, HalfSpace};
+use crate::scene::Scene;
+
+/// Number of effects.
+pub(super) const COUNT: usize = 6;
+
+/// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients.
+pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
+    fn of<'s, E: Effect>(effect: &'s Option<E>) -> Option<&'s (dyn Effect + 's)> {
+        effect.as_ref().map(|effect| effect as &dyn Effect)
+    }
+    [
+        of(&scene.influence),
+        of(&scene.row_tables),
+        of(&scene.period),
+        of(&scene.patches),
+        of(&scene.layer),
+        of(&scene.pressure_limit),
+    ]
+}
+
+pub(super) fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn Effect> {
+    list(scene).into_iter().flatten()
+}
+
+/// Checks each effect of a scene, and refuses pairs that are not solved.
+pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
+    for effect in effects(scene) {
+        effect.check(&scene.grid)?;
+        if let Some(other) = effects(scene).find(|other| effect.excludes().contains(&other.name())) {
+            return Err(Error::Unsupported(format!(
+                "{} and {} are both given; this version does not solve them together",
+                effect.name(),
+                other.name()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the bodies do not matter: own coefficients know none.
+pub fn replace_bodies(scene: &Scene<'_>) -> bool {
+    effects(scene).any(Effect::replaces_bodies)
+}
+
+/// What of a scene MULTIGRID and FULL_MULTIGRID do not solve.
+pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
+    effects(scene).find_map(Effect::without_multigrid)
+}
+
+impl Scene<'_> {
+    /// The coefficients that this scene asks for.
+    pub fn coefficients(&self) -> Result<Coefficients> {
+        let (plain, mut kernel) = (self.plain(), None);
+        for effect in effects(self) {
+            kernel = kernel.or(effect.kernel(&plain)?);
+        }
+        let half_space = || Arc::new(HalfSpace::new(self.grid.dx, self.grid.dy, self.bodies.compliance()));
+        let coefficients = Coefficients::new(kernel.unwrap_or_else(|| half_space()));
+        effects(self).try_fold(coefficients, |coefficients, effect| effect.apply(coefficients))
+    }
+
+    /// Checks everything the solver relies on: each effect, the pairs that are not solved, and the bodies if they matter.
+    pub fn check(&self) -> Result<()> {
+        self.check_distance_and_load()?;
+        check_effects(self)?;
+        if replace_bodies(self) {
+            return Ok(());
+        }
+        self.bodies.check()
+    }
+
+    /// Checks what changes from solve to solve.
+    pub fn check_distance_and_load(&self) -> Result<()> {
+        let plain = self.plain();
+        plain.check_distance()?;
+        self.load.check()?;
+        effects(self).try_for_each(|effect| effect.check_load(&plain, &list(self)))?;
+        plain.check_surface()
+    }
+}

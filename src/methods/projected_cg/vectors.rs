@@ -1,0 +1,101 @@
+//! What the iteration on one grid holds.
+
+use super::preconditioner::Preconditioner;
+use super::segments::Segments;
+use crate::contact::State;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::operator::fft::Real;
+use crate::operator::{reserve, zeros, Operator, Workspace};
+use crate::progress::Goal;
+use crate::threads::Threads;
+
+/// What goes beyond the plain iteration.
+#[derive(Default)]
+pub(super) struct Beyond {
+    /// What is missing of a prescribed force, as a sum of pressures.
+    pub(super) missing: f64,
+    /// How far the approach moves on for that.
+    pub(super) shift: f64,
+    /// The pressures that u knows of: those of before the iteration without what was owed then.
+    pub(super) known: Vec<f64>,
+}
+
+impl Beyond {
+    /// Whether the force is carried.
+    pub(super) fn carries(&self, state: &State, goal: &Goal) -> bool {
+        self.missing.abs() <= goal.tolerance * state.p.iter().sum::<f64>()
+    }
+}
+
+/// Operator, preconditioner and directions of one grid.
+pub struct Iteration<T: Real> {
+    pub(super) operator: Operator<T>,
+    pub(super) preconditioner: Option<Preconditioner<T>>,
+    pub(super) workspace: Workspace<T>,
+    pub(super) t: Vec<T>,
+    pub(super) q: Vec<T>,
+    pub(super) z: Vec<T>,
+    pub(super) runs: Segments,
+    /// Truncated elements and the pressures that u still lacks.
+    pub(super) debts: Vec<(usize, f64)>,
+    /// With limits.
+    pub(super) limits: Beyond,
+    /// Whether an element of a row enters.
+    pub(super) entering: Vec<bool>,
+    pub(super) threads: Threads,
+}
+
+impl<T: Real> Iteration<T> {
+    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's
+    /// circulant is not positive, the iteration does without.
+    pub fn new(
+        operator: Operator<T>,
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Iteration<T>> {
+        let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
+        if preconditioner.is_none() {
+            log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
+        }
+        let n = grid.len();
+        // A pass takes about a tenth of the time of a product.
+        let threads = &threads.suited_to(n / 10);
+        let directions = || zeros(n, "search directions");
+        let mut debts = Vec::new();
+        reserve(&mut debts, n, "truncated elements")?;
+        Ok(Iteration {
+            workspace: operator.workspace()?,
+            operator,
+            preconditioner,
+            t: directions()?,
+            q: directions()?,
+            z: directions()?,
+            runs: Segments::new(grid, threads)?,
+            debts,
+            limits: Beyond::default(),
+            entering: vec![false; grid.my],
+            threads: threads.clone(),
+        })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
+        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.len() * 3 * size_of::<T>()
+    }
+
+    /// `u = A p` in the iteration's precision.
+    pub fn displace(&mut self, state: &mut State) {
+        for (t, p) in self.t.iter_mut().zip(&state.p) {
+            *t = T::of(*p);
+        }
+        self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
+        for (u, q) in state.u.iter_mut().zip(&self.q) {
+            *u = q.to_double();
+        }
+    }
+}
