@@ -71,12 +71,13 @@ pub struct Asked {
 
 impl Asked {
     /// Each kernel: its load and component.
-    fn list(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn list(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let loads = (0..3).filter(|&load| self.loaded[load]);
         loads.flat_map(|load| (0..6).filter(|&c| self.components[c]).map(move |c| (load, c)))
     }
 
-    fn count(&self) -> usize {
+    /// Number of kernels.
+    pub fn count(&self) -> usize {
         self.list().count()
     }
 }

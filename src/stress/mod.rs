@@ -13,12 +13,15 @@
 //! products by FFT ([`product`]); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
 //! tabulated. At places off the centres the sum is direct ([`points`]).
 //!
+//! Where the loads repeat themselves, kernels are sums over waves ([`periodic`]).
+//!
 //! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
 
 mod depth;
 mod element;
 mod kernels;
 mod loads;
+mod periodic;
 mod point_force;
 mod points;
 mod product;
@@ -36,6 +39,7 @@ use crate::grid::Grid;
 use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
 use depth::DepthMemory;
+use periodic::Waves;
 use product::Product;
 
 /// Names of the components, in their order.
@@ -51,6 +55,8 @@ pub struct Body {
     pub grid: Grid,
     /// nu, in (-1, 0.5].
     pub poisson_ratio: f64,
+    /// Whether all repeats itself after a grid's length in x and in y. Lateral strains have mean zero.
+    pub periodic: bool,
 }
 
 impl Body {
@@ -85,7 +91,7 @@ impl Body {
 ///
 /// # Errors
 /// `NotFinite`: a load or a depth is no number; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
-/// Poisson ratio out of range; `OutOfMemory`.
+/// Poisson ratio out of range; `Unsupported`: a period, very slender elements, and a depth of less than their longer side; `OutOfMemory`.
 pub fn subsurface_stress(
     body: &Body,
     loads: &Loads<'_>,
@@ -100,8 +106,12 @@ pub fn subsurface_stress(
     loads.check(&body.grid)?;
     for (k, &z) in depths.iter().enumerate() {
         require(z >= 0.0 && z.is_finite(), &format!("depths[{k}]"), z, "a depth must be finite and not negative")?;
+        if body.periodic {
+            Waves::check(body, z)?;
+        }
     }
-    let product = Product::new(body, loads)?;
+    let near = body.periodic && depths.iter().any(|&z| Waves::is_near(body.in_units(z)));
+    let product = Product::new(body, loads, near)?;
     let at_once = threads.count().min(depths.len());
     let mut memory = Vec::new();
     for _ in 0..at_once {

@@ -3,14 +3,14 @@
 use super::kernels;
 use super::tensor::Tensor;
 use super::{Body, Loads};
-use crate::error::{invalid, require, Result};
+use crate::error::{invalid, require, Error, Result};
 use crate::threads::Threads;
 
 /// The stresses at points `(x, y, z)`: x and y are counted from the outer corner of element (0, 0), so that element `(ix, iy)` has its
 /// centre at `((ix + 1/2) dx, (iy + 1/2) dy)`; z is the depth. `out` has one tensor per point.
 ///
 /// # Errors
-/// `InvalidArgument`: a negative depth, or a point on the edge of an element at the surface, where stresses jump or are infinite;
+/// `Unsupported`: a period; `InvalidArgument`: a negative depth, or a point on the edge of an element at the surface, where stresses jump or are infinite;
 /// otherwise as [`subsurface_stress`](super::subsurface_stress).
 pub fn stress_at_points(
     body: &Body,
@@ -20,6 +20,11 @@ pub fn stress_at_points(
     out: &mut [Tensor],
 ) -> Result<()> {
     assert_eq!(points.len(), out.len());
+    if body.periodic {
+        return Err(Error::Unsupported(
+            "period is given; stresses at points are those of a scene that does not repeat itself".into(),
+        ));
+    }
     body.check()?;
     loads.check(&body.grid)?;
     points.iter().enumerate().try_for_each(|(i, point)| check(body, i, *point))?;

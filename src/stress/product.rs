@@ -6,8 +6,11 @@
 //! ```text
 //! stress = F^-1 sum over loads of i^(number of odd directions) S . F load
 //! ```
+//!
+//! With a period nothing is padded.
 
 use super::kernels::{is_odd, Asked, Kernels};
+use super::periodic::Waves;
 use super::{Body, Loads};
 use crate::error::Result;
 use crate::memory::zeros;
@@ -25,32 +28,50 @@ pub struct Product {
     loads: [Option<Vec<Complex<f64>>>; 3],
     /// What the loads were divided by.
     scale: f64,
+    /// With a period: whether some depth is near the surface.
+    near: bool,
+}
+
+/// Kernels of one depth.
+enum Source {
+    Free(Kernels),
+    Periodic(Waves),
 }
 
 /// Memory for the products of one depth.
 pub struct Workspace {
-    kernels: Kernels,
-    /// Of one kernel: transforms in x, `[bin in x][ky]`, and its spectrum, `[load][bin in x][bin in y >= 0]`.
-    in_x: Vec<f64>,
+    source: Source,
+    /// Whether the depth that was entered is near the surface.
+    near: bool,
+    transform: Transform,
+    /// Of the kernels of one component: `[load][bin in x][bin in y >= 0]`.
     spectrum: Vec<f64>,
+    /// Of the stresses: `[iy][bin in x]`.
+    stress: Vec<Complex<f64>>,
+}
+
+/// Memory for transforms.
+struct Transform {
+    /// Of one kernel: transforms in x, `[bin in x][ky]`.
+    in_x: Vec<f64>,
     row: Vec<f64>,
     bins: Vec<Complex<f64>>,
     column: Vec<Complex<f64>>,
-    /// Of the stresses: `[iy][bin in x]`.
-    stress: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
 }
 
 impl Product {
     /// Transforms the loads, which were checked.
-    pub fn new(body: &Body, loads: &Loads<'_>) -> Result<Product> {
-        let (px, py) = (good_length(2 * body.grid.mx - 1), good_length(2 * body.grid.my - 1));
+    pub fn new(body: &Body, loads: &Loads<'_>, near: bool) -> Result<Product> {
+        let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
+        let (px, py) = (period(body.grid.mx), period(body.grid.my));
         let mut product = Product {
             body: *body,
             rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             loads: [const { None }; 3],
             scale: loads.scale(),
+            near,
         };
         for (k, load) in loads.list().into_iter().enumerate() {
             product.loads[k] = load.map(|load| product.transform(load)).transpose()?;
@@ -81,21 +102,34 @@ impl Product {
         let loaded = self.loads.each_ref().map(Option::is_some);
         let mut scratch = self.rows.scratch();
         self.columns.fit(&mut scratch);
+        let offsets = if self.body.periodic { (grid.mx / 2 + 1, grid.my / 2 + 1) } else { (grid.mx, grid.my) };
+        let asked = Asked { loaded, components, offsets };
         Ok(Workspace {
-            kernels: Kernels::new(Asked { loaded, components, offsets: (grid.mx, grid.my) })?,
-            in_x: zeros((nb + nb % 2) * grid.my, STRESS)?,
+            source: match self.body.periodic {
+                true => Source::Periodic(Waves::new(&self.body, asked, self.near)?),
+                false => Source::Free(Kernels::new(asked)?),
+            },
+            near: false,
+            transform: Transform {
+                in_x: zeros((nb + nb % 2) * offsets.1, STRESS)?,
+                row: zeros(self.rows.length(), STRESS)?,
+                bins: zeros(nb, STRESS)?,
+                column: zeros(py, STRESS)?,
+                scratch,
+            },
             spectrum: zeros(3 * (nb + nb % 2) * (py / 2 + 1), STRESS)?,
-            row: zeros(self.rows.length(), STRESS)?,
-            bins: zeros(nb, STRESS)?,
-            column: zeros(py, STRESS)?,
             stress: zeros(grid.my * nb, STRESS)?,
-            scratch,
         })
     }
 
     /// Computes the kernels of depth z.
     pub fn enter(&self, z: f64, workspace: &mut Workspace) {
-        workspace.kernels.compute(&self.body, self.body.in_units(z));
+        let z = self.body.in_units(z);
+        match &mut workspace.source {
+            Source::Free(kernels) => kernels.compute(&self.body, z),
+            Source::Periodic(waves) => waves.compute(&self.body, z),
+        }
+        workspace.near = Waves::is_near(z);
     }
 
     /// Component c at the depth that was entered.
@@ -107,7 +141,7 @@ impl Product {
         }
         self.multiply(c, workspace);
         let (nb, mx) = (self.rows.bins(), self.body.grid.mx);
-        let Workspace { row, stress, scratch, .. } = workspace;
+        let Workspace { transform: Transform { row, scratch, .. }, stress, .. } = workspace;
         for (bins, out) in stress.chunks_exact_mut(nb).zip(out.chunks_exact_mut(mx)) {
             self.rows.inverse(bins, row, scratch);
             out.iter_mut().zip(&*row).for_each(|(out, value)| *out = self.scale * value);
@@ -116,17 +150,49 @@ impl Product {
 
     /// S of one kernel.
     fn transform_kernel(&self, load: usize, c: usize, workspace: &mut Workspace) {
-        let (mx, my) = (self.body.grid.mx, self.body.grid.my);
-        let (px, py, nb) = (self.rows.length(), self.columns.length(), self.rows.bins());
-        let (odd_x, odd_y) = is_odd(load, c);
-        let Workspace { kernels, in_x, spectrum, row, bins, column, scratch, .. } = workspace;
-        let Some(table) = kernels.table(load, c) else { return };
+        let (py, nb) = (self.columns.length(), self.rows.bins());
+        let of_load = (nb + nb % 2) * (py / 2 + 1);
+        let Workspace { source, transform, spectrum, near, .. } = workspace;
+        let spectrum = &mut spectrum[load * of_load..(load + 1) * of_load];
+        let (table, waves) = match source {
+            Source::Free(kernels) => (kernels.table(load, c), None),
+            Source::Periodic(waves) => match waves.kernel(load, c) {
+                Some((waves, images)) => (images.filter(|_| *near), Some(waves)),
+                None => (None, None),
+            },
+        };
+        match table {
+            Some(table) => self.transform_table(table, is_odd(load, c), transform, spectrum),
+            None => spectrum.fill(0.0),
+        }
+        for (sum, wave) in spectrum.iter_mut().zip(waves.unwrap_or_default()) {
+            *sum += wave;
+        }
+    }
+
+    /// The spectrum of the table of a kernel, without its factors i.
+    fn transform_table(
+        &self,
+        table: &[f64],
+        (odd_x, odd_y): (bool, bool),
+        memory: &mut Transform,
+        spectrum: &mut [f64],
+    ) {
+        let (px, py) = (self.rows.length(), self.columns.length());
+        let grid = &self.body.grid;
+        let given = |m: usize| if self.body.periodic { m / 2 + 1 } else { m };
+        let (mx, my) = (given(grid.mx), given(grid.my));
+        let sign = |odd: bool| if odd { -1.0 } else { 1.0 };
+        let Transform { in_x, row, bins, column, scratch } = memory;
         for (ky, table) in table.chunks_exact(mx).enumerate() {
+            row.fill(0.0);
             row[..mx].copy_from_slice(table);
-            row[mx..px - mx + 1].fill(0.0);
-            let sign = if odd_x { -1.0 } else { 1.0 };
             for kx in 1..mx {
-                row[px - kx] = sign * table[kx];
+                row[px - kx] = sign(odd_x) * table[kx];
+            }
+            // Half a period away an odd kernel is its own opposite.
+            if odd_x && 2 * (mx - 1) == px {
+                row[mx - 1] = 0.0;
             }
             self.rows.forward(row, bins, scratch);
             for (bin, value) in bins.iter().enumerate() {
@@ -134,17 +200,17 @@ impl Product {
             }
         }
         let half = py / 2 + 1;
-        let of_load = (nb + nb % 2) * half;
-        let spectrum = &mut spectrum[load * of_load..(load + 1) * of_load];
         for (two, out) in in_x.chunks_exact(2 * my).zip(spectrum.chunks_exact_mut(2 * half)) {
-            let sign = if odd_y { -1.0 } else { 1.0 };
-            column[my..py - my + 1].fill(Complex::default());
+            column.fill(Complex::default());
             for ky in 0..my {
                 let value = Complex::new(two[ky], two[my + ky]);
                 column[ky] = value;
                 if ky > 0 {
-                    column[py - ky] = value * sign;
+                    column[py - ky] = value * sign(odd_y);
                 }
+            }
+            if odd_y && 2 * (my - 1) == py {
+                column[my - 1] = Complex::default();
             }
             self.columns.forward(column, scratch);
             for (k, value) in column[..half].iter().enumerate() {
@@ -158,7 +224,7 @@ impl Product {
         let (py, nb) = (self.columns.length(), self.rows.bins());
         let half = py / 2 + 1;
         let of_load = (nb + nb % 2) * half;
-        let Workspace { spectrum, column, stress, scratch, .. } = workspace;
+        let Workspace { spectrum, transform: Transform { column, scratch, .. }, stress, .. } = workspace;
         for bin in 0..nb {
             column.fill(Complex::default());
             for (load, transform) in self.loads.iter().enumerate() {

@@ -26,7 +26,7 @@ fn noise(seed: u64, n: usize) -> Vec<f64> {
 }
 
 fn body(mx: usize, my: usize, dx: f64, dy: f64, poisson_ratio: f64) -> Body {
-    Body { grid: Grid::new(mx, my, dx, dy).unwrap(), poisson_ratio }
+    Body { grid: Grid::new(mx, my, dx, dy).unwrap(), poisson_ratio, periodic: false }
 }
 
 fn all_depths(body: &Body, loads: &Loads<'_>, depths: &[f64], wanted: &Wanted, threads: usize) -> Vec<Depth> {
@@ -337,4 +337,102 @@ fn progress_counts_depths_and_cancels() {
     let depths = [0.0, 1.0, 2.0, 3.0];
     let done = subsurface_stress(&body, &loads, &depths, &TENSOR, &Threads::One, Some(&mut progress), |_, _| kept += 1);
     assert_eq!((done, told, kept), (Ok(false), vec![1, 2], 2));
+}
+
+/// A load that varies in x alone: sums over waves, term by term, in the test.
+#[test]
+fn a_periodic_load_is_a_sum_of_waves() {
+    let (m, nu) = (6, 0.3);
+    let load = noise(11, m);
+    let rows = 4;
+    let body = Body { periodic: true, ..body(m, rows, 0.5, 0.7, nu) };
+    let everywhere: Vec<f64> = (0..rows).flat_map(|_| load.iter().copied()).collect();
+    let depths = [0.0, 1e-9, 0.05, 0.3, 0.65, 0.71, 2.0, 30.0];
+    let pressed = all_depths(&body, &Loads::pressure(&everywhere), &depths, &TENSOR, 1);
+    let sheared = all_depths(&body, &Loads { traction_x: Some(&everywhere), ..Loads::default() }, &depths, &TENSOR, 1);
+    let mean = load.iter().sum::<f64>() / m as f64;
+    for (k, z) in depths.into_iter().enumerate() {
+        for i in 0..m * rows {
+            // p: xx = -(1 - kz), yy = -2 nu, zz = -(1 + kz), xz = i kz; qx: xx = i (2 - kz), yy = 2 nu i, zz = i kz, xz = -(1 - kz)
+            let (mut p, mut q) =
+                ([-nu / (1.0 - nu) * mean, -nu / (1.0 - nu) * mean, -mean, 0.0], [0.0, 0.0, 0.0, -mean]);
+            let length = 0.5 * m as f64;
+            for wave in 1..200_000 {
+                let number = 2.0 * PI * wave as f64 / length;
+                if number * z > 40.0 || (z < 0.01 && wave % m == 0) {
+                    if number * z > 40.0 {
+                        break;
+                    } else {
+                        continue;
+                    }
+                }
+                let fade = (-number * z).exp() * (0.25 * number).sin() / (0.25 * number) * 2.0 / m as f64;
+                let phase = |j: usize| number * 0.5 * ((i % m) as f64 - j as f64);
+                let cos: f64 = (0..m).map(|j| load[j] * phase(j).cos()).sum::<f64>() * fade;
+                let sin: f64 = (0..m).map(|j| load[j] * phase(j).sin()).sum::<f64>() * fade;
+                let kz = number * z;
+                p[0] -= (1.0 - kz) * cos;
+                p[1] -= 2.0 * nu * cos;
+                p[2] -= (1.0 + kz) * cos;
+                p[3] -= kz * sin;
+                q[0] -= (2.0 - kz) * sin;
+                q[1] -= 2.0 * nu * sin;
+                q[2] -= kz * sin;
+                q[3] -= (1.0 - kz) * cos;
+                if z < 0.01 && wave > 20_000 {
+                    break;
+                }
+            }
+            // Waves are cut off near the surface: they leave 1/20000 of the load there.
+            let tolerance = if z < 0.01 { 2e-4 } else { 1e-11 };
+            for (found, exact) in [(&pressed[k], p), (&sheared[k], q)] {
+                for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact) {
+                    let found = found.stress[c][i];
+                    assert!(
+                        (found - exact).abs() <= tolerance,
+                        "z {z}, element {i}, component {c}: {found} for {exact}"
+                    );
+                }
+                assert!(found.stress[3][i].abs() <= 1e-11 && found.stress[5][i].abs() <= 1e-11);
+            }
+            if z == 0.0 {
+                // Exactly: sxx = -p but for the mean, syy = -2 nu p.
+                let (p, [xx, yy, zz, _, xz, _]) = (everywhere[i], tensor(&pressed[k], i));
+                let sideways = nu / (1.0 - nu) * mean;
+                assert!((zz + p).abs() <= 1e-11 && xz.abs() <= 1e-11, "{zz} {xz}");
+                assert!((xx + (p - mean) + sideways).abs() <= 1e-11, "{xx}");
+                assert!((yy + 2.0 * nu * (p - mean) + sideways).abs() <= 1e-11, "{yy}");
+                assert!((tensor(&sheared[k], i)[4] + p).abs() <= 1e-11);
+            }
+        }
+    }
+}
+
+/// In two dimensions: near the surface as by the waves that are left there, which another grid of a quarter of the element sums.
+#[test]
+fn periodic_stresses_are_those_of_finer_elements() {
+    let coarse = Body { periodic: true, ..body(5, 4, 1.0, 0.8, 0.25) };
+    let fine = Body { periodic: true, ..body(15, 12, 1.0 / 3.0, 0.8 / 3.0, 0.25) };
+    let loads: [Vec<f64>; 3] = [1, 2, 3].map(|seed| noise(seed, 20));
+    let refined =
+        loads.each_ref().map(|load| (0..180).map(|i| load[(i / 15) / 3 * 5 + (i % 15) / 3]).collect::<Vec<f64>>());
+    let of = |loads: &[Vec<f64>; 3]| {
+        let [p, qx, qy] = loads.each_ref().map(|load| load.as_slice());
+        let depths = [0.0, 0.1, 0.5, 0.9, 1.5];
+        let loads = Loads { pressure: Some(p), traction_x: Some(qx), traction_y: Some(qy) };
+        if p.len() == 20 {
+            all_depths(&coarse, &loads, &depths, &TENSOR, 2)
+        } else {
+            all_depths(&fine, &loads, &depths, &TENSOR, 1)
+        }
+    };
+    for (depth, (one, other)) in of(&loads).iter().zip(&of(&refined)).enumerate() {
+        for i in 0..20 {
+            let middle = (3 * (i / 5) + 1) * 15 + 3 * (i % 5) + 1;
+            for c in 0..6 {
+                let (one, other) = (one.stress[c][i], other.stress[c][middle]);
+                assert!((one - other).abs() <= 1e-11, "depth {depth}, element {i}, component {c}: {one} {other}");
+            }
+        }
+    }
 }

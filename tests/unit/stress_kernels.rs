@@ -118,7 +118,7 @@ fn reference([x, y, z]: [f64; 3], (dx, dy): (f64, f64), nu: f64, consts: &mut Co
 /// The largest error of a kernel at these offsets, relative to the largest component there of all three loads.
 fn error(element: (f64, f64), nu: f64, z: f64, size: (usize, usize), offsets: &[(usize, usize)]) -> f64 {
     let grid = Grid::new(1, 1, element.0, element.1).unwrap();
-    let body = Body { grid, poisson_ratio: nu };
+    let body = Body { grid, poisson_ratio: nu, periodic: false };
     let asked = Asked { loaded: [true; 3], components: [true; 6], offsets: size };
     let mut kernels = Kernels::new(asked).unwrap();
     kernels.compute(&body, z / body.unit());
