@@ -68,10 +68,10 @@ fn products_are_direct_sums() {
             let centre = |i: usize| [((i % mx) as f64 + 0.5) * dx, ((i / mx) as f64 + 0.5) * dy, z];
             let points: Vec<_> = (0..mx * my).map(centre).collect();
             for (i, exact) in at(&body, &loads, &points).iter().enumerate() {
-                for c in 0..6 {
-                    let error = (depth.stress[c][i] - exact[c]).abs();
+                for (found, exact) in tensor(depth, i).iter().zip(exact) {
+                    let error = (found - exact).abs();
                     // Loads of 1; the two sum kernels that differ by 1e-12 of the largest far away, where they are small.
-                    assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}, component {c}: {error:e}");
+                    assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}: {error:e}");
                 }
             }
         }
@@ -339,70 +339,54 @@ fn progress_counts_depths_and_cancels() {
     assert_eq!((done, told, kept), (Ok(false), vec![1, 2], 2));
 }
 
-/// A load that varies in x alone: sums over waves, term by term, in the test.
+/// The waves of element-wise constant loads that vary in x alone, summed term by term: xx, yy, zz, xz by a pressure and by a traction.
+fn waves(load: &[f64], d: f64, nu: f64, i: usize, z: f64) -> [[f64; 4]; 2] {
+    let m = load.len();
+    let mean = load.iter().sum::<f64>() / m as f64;
+    let sideways = -nu / (1.0 - nu) * mean;
+    let (mut p, mut q) = ([sideways, sideways, -mean, 0.0], [0.0, 0.0, 0.0, -mean]);
+    for wave in 1.. {
+        let number = 2.0 * PI * wave as f64 / (m as f64 * d);
+        let kz = number * z;
+        if kz > 40.0 {
+            break;
+        }
+        let fade = (-kz).exp() * (0.5 * number * d).sin() / (0.5 * number * d) * 2.0 / m as f64;
+        let phase = |j: usize| number * d * (i as f64 - j as f64);
+        let cos: f64 = (0..m).map(|j| load[j] * phase(j).cos()).sum::<f64>() * fade;
+        let sin: f64 = (0..m).map(|j| load[j] * phase(j).sin()).sum::<f64>() * fade;
+        let of_pressure = [-(1.0 - kz) * cos, -2.0 * nu * cos, -(1.0 + kz) * cos, -kz * sin];
+        let of_traction = [-(2.0 - kz) * sin, -2.0 * nu * sin, -kz * sin, -(1.0 - kz) * cos];
+        p.iter_mut().zip(of_pressure).for_each(|(sum, value)| *sum += value);
+        q.iter_mut().zip(of_traction).for_each(|(sum, value)| *sum += value);
+    }
+    [p, q]
+}
+
 #[test]
 fn a_periodic_load_is_a_sum_of_waves() {
-    let (m, nu) = (6, 0.3);
+    let (m, rows, d, nu) = (6, 4, 0.5, 0.3);
     let load = noise(11, m);
-    let rows = 4;
-    let body = Body { periodic: true, ..body(m, rows, 0.5, 0.7, nu) };
+    let body = Body { periodic: true, ..body(m, rows, d, 0.7, nu) };
     let everywhere: Vec<f64> = (0..rows).flat_map(|_| load.iter().copied()).collect();
-    let depths = [0.0, 1e-9, 0.05, 0.3, 0.65, 0.71, 2.0, 30.0];
+    let depths = [0.0, 0.05, 0.3, 0.65, 0.71, 2.0, 30.0];
     let pressed = all_depths(&body, &Loads::pressure(&everywhere), &depths, &TENSOR, 1);
-    let sheared = all_depths(&body, &Loads { traction_x: Some(&everywhere), ..Loads::default() }, &depths, &TENSOR, 1);
+    let traction = Loads { traction_x: Some(&everywhere), ..Loads::default() };
+    let sheared = all_depths(&body, &traction, &depths, &TENSOR, 1);
     let mean = load.iter().sum::<f64>() / m as f64;
     for (k, z) in depths.into_iter().enumerate() {
-        for i in 0..m * rows {
-            // p: xx = -(1 - kz), yy = -2 nu, zz = -(1 + kz), xz = i kz; qx: xx = i (2 - kz), yy = 2 nu i, zz = i kz, xz = -(1 - kz)
-            let (mut p, mut q) =
-                ([-nu / (1.0 - nu) * mean, -nu / (1.0 - nu) * mean, -mean, 0.0], [0.0, 0.0, 0.0, -mean]);
-            let length = 0.5 * m as f64;
-            for wave in 1..200_000 {
-                let number = 2.0 * PI * wave as f64 / length;
-                if number * z > 40.0 || (z < 0.01 && wave % m == 0) {
-                    if number * z > 40.0 {
-                        break;
-                    } else {
-                        continue;
-                    }
-                }
-                let fade = (-number * z).exp() * (0.25 * number).sin() / (0.25 * number) * 2.0 / m as f64;
-                let phase = |j: usize| number * 0.5 * ((i % m) as f64 - j as f64);
-                let cos: f64 = (0..m).map(|j| load[j] * phase(j).cos()).sum::<f64>() * fade;
-                let sin: f64 = (0..m).map(|j| load[j] * phase(j).sin()).sum::<f64>() * fade;
-                let kz = number * z;
-                p[0] -= (1.0 - kz) * cos;
-                p[1] -= 2.0 * nu * cos;
-                p[2] -= (1.0 + kz) * cos;
-                p[3] -= kz * sin;
-                q[0] -= (2.0 - kz) * sin;
-                q[1] -= 2.0 * nu * sin;
-                q[2] -= kz * sin;
-                q[3] -= (1.0 - kz) * cos;
-                if z < 0.01 && wave > 20_000 {
-                    break;
-                }
-            }
-            // Waves are cut off near the surface: they leave 1/20000 of the load there.
-            let tolerance = if z < 0.01 { 2e-4 } else { 1e-11 };
-            for (found, exact) in [(&pressed[k], p), (&sheared[k], q)] {
-                for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact) {
+        for (i, p) in everywhere.iter().enumerate() {
+            // At the surface exactly: sxx = -p and syy = -2 nu p but for the mean, szz = -p, sxz = -q.
+            let sideways = -nu / (1.0 - nu) * mean;
+            let surface = [sideways - (p - mean), sideways - 2.0 * nu * (p - mean), -p, 0.0];
+            let exact = if z > 0.0 { waves(&load, d, nu, i % m, z) } else { [surface, [f64::NAN, f64::NAN, 0.0, -p]] };
+            for (found, exact) in [&pressed[k], &sheared[k]].into_iter().zip(exact) {
+                for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact).filter(|(_, exact)| !exact.is_nan()) {
+                    // A tenth difference: its weights, of up to 252, times round-off, and what is left beyond its reach.
                     let found = found.stress[c][i];
-                    assert!(
-                        (found - exact).abs() <= tolerance,
-                        "z {z}, element {i}, component {c}: {found} for {exact}"
-                    );
+                    assert!((found - exact).abs() <= 1e-11, "z {z}, element {i}, component {c}: {found} for {exact}");
                 }
                 assert!(found.stress[3][i].abs() <= 1e-11 && found.stress[5][i].abs() <= 1e-11);
-            }
-            if z == 0.0 {
-                // Exactly: sxx = -p but for the mean, syy = -2 nu p.
-                let (p, [xx, yy, zz, _, xz, _]) = (everywhere[i], tensor(&pressed[k], i));
-                let sideways = nu / (1.0 - nu) * mean;
-                assert!((zz + p).abs() <= 1e-11 && xz.abs() <= 1e-11, "{zz} {xz}");
-                assert!((xx + (p - mean) + sideways).abs() <= 1e-11, "{xx}");
-                assert!((yy + 2.0 * nu * (p - mean) + sideways).abs() <= 1e-11, "{yy}");
-                assert!((tensor(&sheared[k], i)[4] + p).abs() <= 1e-11);
             }
         }
     }
