@@ -249,6 +249,30 @@ module contact_normal
     real(c_double) :: area = 0
   end type
 
+  ! The largest value of a field of stresses, and where it is: its depth counted from 0, as the element (ix, iy) is. Since 0.1.
+  type, bind(C), public :: contact_normal_stress_maximum
+    real(c_double) :: value = 0
+    real(c_double) :: x = 0
+    real(c_double) :: y = 0
+    real(c_double) :: z = 0
+    integer(c_int32_t) :: ix = 0
+    integer(c_int32_t) :: iy = 0
+    integer(c_int32_t) :: depth = 0
+    integer(c_int32_t) :: reserved = 0
+  end type
+
+  ! What is wanted of subsurface stresses: see contact_normal_set_stress_outputs. Since 0.1.
+  type, bind(C), public :: contact_normal_stress_outputs
+    integer(c_int64_t) :: struct_size = 0
+    type(c_ptr) :: stress(6) = c_null_ptr
+    type(c_ptr) :: von_mises = c_null_ptr
+    type(c_ptr) :: maximum_shear = c_null_ptr
+    type(c_ptr) :: principal(3) = c_null_ptr
+    type(c_ptr) :: directions(3) = c_null_ptr
+    type(c_ptr) :: largest_von_mises = c_null_ptr
+    type(c_ptr) :: largest_shear = c_null_ptr
+  end type
+
   ! Operators and workspace for many solves. Copies share what they stand for: free one of them. Since 0.1.
   type, public :: contact_normal_solver
     private
@@ -284,6 +308,7 @@ module contact_normal
   include 'contact_normal_exports.inc'
   public :: contact_normal_status_text, contact_normal_last_error_message, contact_normal_version_string, &
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
+    contact_normal_set_stress_outputs, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
     contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
@@ -422,6 +447,37 @@ contains
     if (present(contact)) fields%contact = c_loc(contact)
     if (present(displacement)) fields%displacement = c_loc(displacement)
     if (present(deformed_distance)) fields%deformed_distance = c_loc(deformed_distance)
+  end subroutine
+
+  ! Attaches what is wanted at n depths: stress(mx, my, n, 6) with the components xx, yy, zz, xy, xz, yz, von_mises and maximum_shear
+  ! (mx, my, n), principal(mx, my, n, 3), directions(3, mx, my, n, 3), and the largest values. What is not given is not computed.
+  ! `outputs` must be initialised. Since 0.1.
+  subroutine contact_normal_set_stress_outputs(outputs, stress, von_mises, maximum_shear, principal, directions, &
+      largest_von_mises, largest_shear)
+    type(contact_normal_stress_outputs), intent(inout) :: outputs
+    real(c_double), pointer, contiguous, intent(in), optional :: stress(:, :, :, :), von_mises(:, :, :), maximum_shear(:, :, :)
+    real(c_double), pointer, contiguous, intent(in), optional :: principal(:, :, :, :), directions(:, :, :, :, :)
+    type(contact_normal_stress_maximum), pointer, intent(in), optional :: largest_von_mises, largest_shear
+    integer :: k
+    if (present(stress)) then
+      do k = 1, 6
+        outputs%stress(k) = c_loc(stress(1, 1, 1, k))
+      end do
+    end if
+    if (present(von_mises)) outputs%von_mises = c_loc(von_mises)
+    if (present(maximum_shear)) outputs%maximum_shear = c_loc(maximum_shear)
+    if (present(principal)) then
+      do k = 1, 3
+        outputs%principal(k) = c_loc(principal(1, 1, 1, k))
+      end do
+    end if
+    if (present(directions)) then
+      do k = 1, 3
+        outputs%directions(k) = c_loc(directions(1, 1, 1, 1, k))
+      end do
+    end if
+    if (present(largest_von_mises)) outputs%largest_von_mises = c_loc(largest_von_mises)
+    if (present(largest_shear)) outputs%largest_shear = c_loc(largest_shear)
   end subroutine
 
   ! Attaches room for the ledger. Since 0.1.

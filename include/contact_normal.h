@@ -954,6 +954,82 @@ typedef struct contact_normal_hertz_solution {
 } contact_normal_hertz_solution;
 
 /*
+ The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
+ */
+typedef struct contact_normal_stress_maximum {
+  /*
+   The value.
+   */
+  double value;
+  /*
+   Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+   */
+  double x;
+  /*
+   The same in y.
+   */
+  double y;
+  /*
+   The depth.
+   */
+  double z;
+  /*
+   The element above it.
+   */
+  int32_t ix;
+  /*
+   The same in y.
+   */
+  int32_t iy;
+  /*
+   Which of the depths, from 0.
+   */
+  int32_t depth;
+  /*
+   Always 0.
+   */
+  int32_t reserved;
+} contact_normal_stress_maximum;
+
+/*
+ Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
+ */
+typedef struct contact_normal_stress_outputs {
+  /*
+   Set by `contact_normal_stress_outputs_init`.
+   */
+  int64_t struct_size;
+  /*
+   The components xx, yy, zz, xy, xz, yz, `[n][my][mx]` each for n depths; default NULL.
+   */
+  double *stress[6];
+  /*
+   The von Mises stress, `[n][my][mx]`, or NULL (default).
+   */
+  double *von_mises;
+  /*
+   The largest shear stress, half of what the first and the third principal stress differ by, `[n][my][mx]`, or NULL (default).
+   */
+  double *maximum_shear;
+  /*
+   The principal stresses, the largest first, `[n][my][mx]` each; default NULL.
+   */
+  double *principal[3];
+  /*
+   The unit vectors of their directions, `[n][my][mx][3]` each; default NULL.
+   */
+  double *directions[3];
+  /*
+   The largest von Mises stress of all depths, or NULL (default).
+   */
+  struct contact_normal_stress_maximum *largest_von_mises;
+  /*
+   The largest shear stress of all depths, or NULL (default).
+   */
+  struct contact_normal_stress_maximum *largest_shear;
+} contact_normal_stress_outputs;
+
+/*
  Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
  floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
@@ -1153,6 +1229,45 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           const double *shear_modulus,
                                                           const double *poisson_ratio,
                                                           double *coefficients);
+
+/*
+ Fills outputs with NULL: nothing is wanted. Since 0.1.
+ */
+void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *outputs);
+
+/*
+ Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
+ tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
+ this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
+ `period` in both directions matter. With `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
+ (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
+ left alone. Since 0.1.
+ */
+contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
+                                                       int32_t body,
+                                                       const double *pressure,
+                                                       const double *traction_x,
+                                                       const double *traction_y,
+                                                       const double *depths,
+                                                       int32_t n,
+                                                       const struct contact_normal_options *options,
+                                                       struct contact_normal_stress_outputs *outputs);
+
+/*
+ Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
+ element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
+ point. A point at z = 0 on the edge of an element is refused: stresses jump there or are infinite. Time grows with n times the
+ number of loaded elements. With `period`: UNSUPPORTED. Since 0.1.
+ */
+contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
+                                                      int32_t body,
+                                                      const double *pressure,
+                                                      const double *traction_x,
+                                                      const double *traction_y,
+                                                      const double *points,
+                                                      int32_t n,
+                                                      const struct contact_normal_options *options,
+                                                      double *stress);
 
 /*
  Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.

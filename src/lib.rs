@@ -51,6 +51,7 @@
 //! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
+//! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
 //! | [`threads`] | the pool |
 //! | [`ffi`] | the C ABI, translation only |
@@ -75,6 +76,7 @@ pub mod panics;
 pub mod progress;
 pub mod scene;
 pub mod solver;
+pub mod stress;
 pub mod threads;
 
 #[cfg(panic = "abort")]

@@ -26,6 +26,7 @@ from ._structs import (
     Report,
     RowTables,
     Scene,
+    StressOutputs,
 )
 
 # Result and arguments of every export.
@@ -66,6 +67,15 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "influence_half_space": (
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
+    ),
+    "stress_outputs_init": (None, [POINTER(StressOutputs)]),
+    "subsurface_stress": (
+        c_int32,
+        [POINTER(Scene), c_int32] + [POINTER(c_double)] * 4 + [c_int32, POINTER(Options), POINTER(StressOutputs)],
+    ),
+    "stress_at_points": (
+        c_int32,
+        [POINTER(Scene), c_int32] + [POINTER(c_double)] * 4 + [c_int32, POINTER(Options), POINTER(c_double)],
     ),
     "set_log": (c_int32, [LogCallback, c_int32, c_void_p]),
 }

@@ -242,6 +242,36 @@ class HertzSolution(ctypes.Structure):
     ]
 
 
+class StressMaximum(ctypes.Structure):
+    """contact_normal_stress_maximum: the largest value of a field of stresses, and where it is."""
+
+    _fields_ = [
+        ("value", c_double),
+        ("x", c_double),
+        ("y", c_double),
+        ("z", c_double),
+        ("ix", c_int32),
+        ("iy", c_int32),
+        ("depth", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class StressOutputs(ctypes.Structure):
+    """contact_normal_stress_outputs."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("stress", POINTER(c_double) * 6),
+        ("von_mises", POINTER(c_double)),
+        ("maximum_shear", POINTER(c_double)),
+        ("principal", POINTER(c_double) * 3),
+        ("directions", POINTER(c_double) * 3),
+        ("largest_von_mises", POINTER(StressMaximum)),
+        ("largest_shear", POINTER(StressMaximum)),
+    ]
+
+
 def names(kind: type[ctypes.Structure]) -> list[str]:
     """The members of a struct."""
     return [field[0] for field in kind._fields_]
@@ -260,4 +290,5 @@ SIZED: dict[str, type[ctypes.Structure]] = {
     "fields": Fields,
     "report": Report,
     "accuracy": Accuracy,
+    "stress_outputs": StressOutputs,
 }

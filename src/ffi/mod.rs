@@ -20,6 +20,7 @@ mod solve;
 mod solver;
 mod special;
 mod status;
+mod stress;
 mod structs;
 
 pub use self::log::*;
@@ -34,3 +35,4 @@ pub use solve::*;
 pub use solver::*;
 pub use special::*;
 pub use status::*;
+pub use stress::*;

@@ -32,6 +32,22 @@ pub struct Progress {
     pub residual: f64,
 }
 
+impl Progress {
+    /// After a depth of subsurface stresses: a cycle is a depth.
+    pub fn of_depth(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
+        Progress {
+            mx: grid.mx,
+            my: grid.my,
+            cycles,
+            active_set_changes: 0,
+            seconds,
+            work_units: 0.0,
+            update: 0.0,
+            residual: 0.0,
+        }
+    }
+}
+
 /// Told the progress after each cycle; says whether to cancel.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 

@@ -5,3 +5,4 @@ mod boundary;
 mod call;
 mod callbacks;
 mod rows;
+mod subsurface_stress;

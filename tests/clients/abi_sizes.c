@@ -169,5 +169,23 @@ int main(void)
     OFFSET(contact_normal_hertz_solution, approach);
     OFFSET(contact_normal_hertz_solution, force);
     OFFSET(contact_normal_hertz_solution, area);
+    SIZE(contact_normal_stress_maximum);
+    OFFSET(contact_normal_stress_maximum, value);
+    OFFSET(contact_normal_stress_maximum, x);
+    OFFSET(contact_normal_stress_maximum, y);
+    OFFSET(contact_normal_stress_maximum, z);
+    OFFSET(contact_normal_stress_maximum, ix);
+    OFFSET(contact_normal_stress_maximum, iy);
+    OFFSET(contact_normal_stress_maximum, depth);
+    OFFSET(contact_normal_stress_maximum, reserved);
+    SIZE(contact_normal_stress_outputs);
+    OFFSET(contact_normal_stress_outputs, struct_size);
+    OFFSET(contact_normal_stress_outputs, stress);
+    OFFSET(contact_normal_stress_outputs, von_mises);
+    OFFSET(contact_normal_stress_outputs, maximum_shear);
+    OFFSET(contact_normal_stress_outputs, principal);
+    OFFSET(contact_normal_stress_outputs, directions);
+    OFFSET(contact_normal_stress_outputs, largest_von_mises);
+    OFFSET(contact_normal_stress_outputs, largest_shear);
     return 0;
 }

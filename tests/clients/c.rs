@@ -262,6 +262,12 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_hertz_solution {
             semi_axis_x, semi_axis_y, max_pressure, approach, force, area
         }
+        contact_normal_stress_maximum {
+            value, x, y, z, ix, iy, depth, reserved
+        }
+        contact_normal_stress_outputs {
+            struct_size, stress, von_mises, maximum_shear, principal, directions, largest_von_mises, largest_shear
+        }
     };
     let folder = scratch("abi_sizes");
     let program = compile(compiler("cc", "c99"), "tests/clients/abi_sizes.c", &folder);

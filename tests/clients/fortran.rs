@@ -222,6 +222,8 @@ fn derived_types_are_laid_out_as_the_structs() {
             user, mx, my, dx, dy, reached, seconds;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
+        contact_normal_stress_maximum: value, x, y, z, ix, iy, depth, reserved;
+        contact_normal_stress_outputs: struct_size, stress, von_mises, maximum_shear, principal, directions, largest_von_mises, largest_shear;
     };
     assert_eq!(run_linked(&program, &[], &folder), expected);
 }

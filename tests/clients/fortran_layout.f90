@@ -17,6 +17,8 @@ program fortran_layout
   type(contact_normal_report), target :: report
   type(contact_normal_accuracy), target :: accuracy
   type(contact_normal_hertz_solution), target :: solution
+  type(contact_normal_stress_maximum), target :: largest
+  type(contact_normal_stress_outputs), target :: outputs
   integer(c_intptr_t) :: base
 
   base = place(c_loc(influence))
@@ -206,6 +208,28 @@ program fortran_layout
   call show("contact_normal_hertz_solution.approach", c_loc(solution%approach))
   call show("contact_normal_hertz_solution.force", c_loc(solution%force))
   call show("contact_normal_hertz_solution.area", c_loc(solution%area))
+
+  base = place(c_loc(largest))
+  print '(a, i0)', "contact_normal_stress_maximum ", c_sizeof(largest)
+  call show("contact_normal_stress_maximum.value", c_loc(largest%value))
+  call show("contact_normal_stress_maximum.x", c_loc(largest%x))
+  call show("contact_normal_stress_maximum.y", c_loc(largest%y))
+  call show("contact_normal_stress_maximum.z", c_loc(largest%z))
+  call show("contact_normal_stress_maximum.ix", c_loc(largest%ix))
+  call show("contact_normal_stress_maximum.iy", c_loc(largest%iy))
+  call show("contact_normal_stress_maximum.depth", c_loc(largest%depth))
+  call show("contact_normal_stress_maximum.reserved", c_loc(largest%reserved))
+
+  base = place(c_loc(outputs))
+  print '(a, i0)', "contact_normal_stress_outputs ", c_sizeof(outputs)
+  call show("contact_normal_stress_outputs.struct_size", c_loc(outputs%struct_size))
+  call show("contact_normal_stress_outputs.stress", c_loc(outputs%stress))
+  call show("contact_normal_stress_outputs.von_mises", c_loc(outputs%von_mises))
+  call show("contact_normal_stress_outputs.maximum_shear", c_loc(outputs%maximum_shear))
+  call show("contact_normal_stress_outputs.principal", c_loc(outputs%principal))
+  call show("contact_normal_stress_outputs.directions", c_loc(outputs%directions))
+  call show("contact_normal_stress_outputs.largest_von_mises", c_loc(outputs%largest_von_mises))
+  call show("contact_normal_stress_outputs.largest_shear", c_loc(outputs%largest_shear))
 
 contains
 

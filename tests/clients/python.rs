@@ -231,6 +231,20 @@ fn ctypes_structs_have_the_layout_of_the_library() {
     );
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
     layout!(ours, "Patches", contact_normal_patches, struct_size, count, reserved, patch, factors);
+    layout!(ours, "StressMaximum", contact_normal_stress_maximum, value, x, y, z, ix, iy, depth, reserved);
+    layout!(
+        ours,
+        "StressOutputs",
+        contact_normal_stress_outputs,
+        struct_size,
+        stress,
+        von_mises,
+        maximum_shear,
+        principal,
+        directions,
+        largest_von_mises,
+        largest_shear
+    );
     layout!(ours, "Layer", contact_normal_layer, struct_size, compliance, compliances);
     layout!(ours, "PressureLimit", contact_normal_pressure_limit, struct_size, limit, limits);
     layout!(ours, "Period", contact_normal_period, struct_size, x, y);

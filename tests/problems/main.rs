@@ -36,6 +36,7 @@ mod rough_surface;
 mod row_tables;
 mod smoothers;
 mod special;
+mod subsurface_stress;
 mod support;
 mod threads;
 mod wheel_rail;

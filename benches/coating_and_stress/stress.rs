@@ -1,0 +1,50 @@
+//! 128 x 128 elements, 32 depths, one thread: pressures alone, and with tractions.
+
+use std::time::Instant;
+
+use contact_normal::grid::Grid;
+use contact_normal::stress::{subsurface_stress, Body, Loads, Wanted};
+use contact_normal::threads::Threads;
+
+const M: usize = 128;
+const DEPTHS: usize = 32;
+const RUNS: usize = 9;
+
+/// The median of the times, in seconds.
+fn median(mut run: impl FnMut()) -> f64 {
+    let mut seconds: Vec<f64> = (0..RUNS)
+        .map(|_| {
+            let began = Instant::now();
+            run();
+            began.elapsed().as_secs_f64()
+        })
+        .collect();
+    seconds.sort_by(f64::total_cmp);
+    seconds[RUNS / 2]
+}
+
+/// Prints the table.
+pub fn report() {
+    let body = Body { grid: Grid::new(M, M, 1.0, 1.0).unwrap(), poisson_ratio: 0.3, periodic: false };
+    let place = |k: usize| (k as f64 - 63.5) / 48.0;
+    let p: Vec<f64> = (0..M * M).map(|i| (1.0 - place(i % M).powi(2) - place(i / M).powi(2)).max(0.0).sqrt()).collect();
+    let q: Vec<f64> = p.iter().map(|p| 0.2 * p).collect();
+    let depths: Vec<f64> = (0..DEPTHS).map(|k| 1.5 * k as f64).collect();
+    let tensor = Wanted { components: [true; 6], ..Wanted::default() };
+    let mises = Wanted { von_mises: true, ..Wanted::default() };
+    let principal = Wanted { principal: true, ..Wanted::default() };
+    let one = Wanted { components: [false, false, true, false, false, false], ..Wanted::default() };
+    let all = Loads { pressure: Some(&p), traction_x: Some(&q), traction_y: Some(&q) };
+    println!("Subsurface stresses, {M} x {M} elements, {DEPTHS} depths, one thread; medians of {RUNS} runs\n");
+    println!("| loads | wanted | s | ms a depth |\n|---|---|---:|---:|");
+    for (loads, of) in [(Loads::pressure(&p), "p"), (all, "p, qx, qy")] {
+        for (wanted, what) in
+            [(tensor, "six components"), (mises, "von Mises"), (principal, "principal stresses"), (one, "zz")]
+        {
+            let seconds = median(|| {
+                subsurface_stress(&body, &loads, &depths, &wanted, &Threads::One, None, |_, _| {}).unwrap();
+            });
+            println!("| {of} | {what} | {seconds:.3} | {:.2} |", 1e3 * seconds / DEPTHS as f64);
+        }
+    }
+}

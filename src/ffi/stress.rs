@@ -1,0 +1,308 @@
+//! Stresses below the surface: `contact_normal_subsurface_stress`, `contact_normal_stress_at_points`.
+
+use super::arguments::{not_negative, optional, required, Regions};
+use super::guard::guard;
+use super::options::{self, contact_normal_options, Translated};
+use super::scene::{contact_normal_scene, Named};
+use super::solve::watcher;
+use super::status::{
+    contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
+    CONTACT_NORMAL_UNSUPPORTED,
+};
+use super::structs::{self, versioned};
+use crate::effects;
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::progress::ProgressCallback;
+use crate::scene::Period;
+use crate::stress::{self, Body, Depth, Loads, Maximum, Wanted};
+use crate::threads::Threads;
+
+/// The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_stress_maximum {
+    /// The value.
+    pub value: f64,
+    /// Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+    pub x: f64,
+    /// The same in y.
+    pub y: f64,
+    /// The depth.
+    pub z: f64,
+    /// The element above it.
+    pub ix: i32,
+    /// The same in y.
+    pub iy: i32,
+    /// Which of the depths, from 0.
+    pub depth: i32,
+    /// Always 0.
+    pub reserved: i32,
+}
+
+/// Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_stress_outputs {
+    /// Set by `contact_normal_stress_outputs_init`.
+    pub struct_size: i64,
+    /// The components xx, yy, zz, xy, xz, yz, `[n][my][mx]` each for n depths; default NULL.
+    pub stress: [*mut f64; 6],
+    /// The von Mises stress, `[n][my][mx]`, or NULL (default).
+    pub von_mises: *mut f64,
+    /// The largest shear stress, half of what the first and the third principal stress differ by, `[n][my][mx]`, or NULL (default).
+    pub maximum_shear: *mut f64,
+    /// The principal stresses, the largest first, `[n][my][mx]` each; default NULL.
+    pub principal: [*mut f64; 3],
+    /// The unit vectors of their directions, `[n][my][mx][3]` each; default NULL.
+    pub directions: [*mut f64; 3],
+    /// The largest von Mises stress of all depths, or NULL (default).
+    pub largest_von_mises: *mut contact_normal_stress_maximum,
+    /// The largest shear stress of all depths, or NULL (default).
+    pub largest_shear: *mut contact_normal_stress_maximum,
+}
+
+versioned! { contact_normal_stress_outputs, 136 }
+
+/// Fills outputs with NULL: nothing is wanted. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contact_normal_stress_outputs) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(outputs) }
+}
+
+/// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
+/// tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
+/// this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
+/// `period` in both directions matter. With `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
+/// (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
+/// left alone. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_subsurface_stress(
+    scene: *const contact_normal_scene,
+    body: i32,
+    pressure: *const f64,
+    traction_x: *const f64,
+    traction_y: *const f64,
+    depths: *const f64,
+    n: i32,
+    options: *const contact_normal_options,
+    outputs: *mut contact_normal_stress_outputs,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (all): NULL or as the conventions of the ABI say.
+        unsafe {
+            let load = Load { scene, body, options, arrays: [pressure, traction_x, traction_y] };
+            let (body, loads, options) = load.read()?;
+            let n = not_negative("n", n)?;
+            let written = structs::read(outputs.cast_const(), "outputs")?;
+            let mut regions = Regions::default();
+            load.add_to(&mut regions, &body.grid)?;
+            regions.input("depths", depths, n)?;
+            written.add_to(&mut regions, outputs, (n, body.grid.len()))?;
+            regions.check()?;
+            let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
+            run(&body, &loads, depths, &options, &written)
+        }
+    })
+}
+
+/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
+/// element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
+/// point. A point at z = 0 on the edge of an element is refused: stresses jump there or are infinite. Time grows with n times the
+/// number of loaded elements. With `period`: UNSUPPORTED. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_stress_at_points(
+    scene: *const contact_normal_scene,
+    body: i32,
+    pressure: *const f64,
+    traction_x: *const f64,
+    traction_y: *const f64,
+    points: *const f64,
+    n: i32,
+    options: *const contact_normal_options,
+    stress: *mut f64,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (all): NULL or as the conventions of the ABI say.
+        unsafe {
+            let load = Load { scene, body, options, arrays: [pressure, traction_x, traction_y] };
+            let (body, loads, options) = load.read()?;
+            let n = not_negative("n", n)?;
+            if n == 0 {
+                return Ok(CONTACT_NORMAL_OK);
+            }
+            let points = required("points", points.cast::<[f64; 3]>(), n)?;
+            if stress.is_null() {
+                return Err(Refusal::null("stress"));
+            }
+            let mut regions = Regions::default();
+            load.add_to(&mut regions, &body.grid)?;
+            regions.input("points", points.as_ptr(), n)?;
+            regions.output("stress", stress.cast::<[f64; 6]>(), n)?;
+            regions.check()?;
+            let mut found = zeros(n, "the stresses of points")?;
+            stress::stress_at_points(&body, &loads, points, &Threads::new(options.options.threads)?, &mut found)?;
+            std::ptr::copy_nonoverlapping(found.as_ptr(), stress.cast::<[f64; 6]>(), n);
+            Ok(CONTACT_NORMAL_OK)
+        }
+    })
+}
+
+/// What both exports are given first.
+struct Load {
+    scene: *const contact_normal_scene,
+    body: i32,
+    options: *const contact_normal_options,
+    arrays: [*const f64; 3],
+}
+
+impl Load {
+    unsafe fn read<'a>(&self) -> Result<(Body, Loads<'a>, Translated), Refusal> {
+        // SAFETY (all): by the caller.
+        unsafe {
+            let named = Named::read(self.scene)?;
+            let scene = named.with_distance(&[])?;
+            let options = options::translate(self.options)?;
+            effects::check_effects(&scene)?;
+            let poisson_ratio = match self.body {
+                1 | 2 => scene.bodies.poisson_ratio[self.body as usize - 1],
+                other => return Err(Refusal::invalid(format!("body is {other}; it must be 1 or 2"))),
+            };
+            let refused = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
+            if let Some((name, _)) = refused.into_iter().find(|(_, given)| *given) {
+                let why = "subsurface stresses are those of a half-space";
+                return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, format!("{name} is given; {why}")));
+            }
+            let n = scene.grid.len();
+            let [pressure, traction_x, traction_y] = self.arrays.map(|array| optional(array, n));
+            let periodic = match scene.period {
+                None => false,
+                Some(Period { x: true, y: true }) => true,
+                Some(_) => {
+                    let why = "subsurface stresses know both or none";
+                    return Err(Refusal::new(
+                        CONTACT_NORMAL_UNSUPPORTED,
+                        format!("period repeats in one direction; {why}"),
+                    ));
+                }
+            };
+            let body = Body { grid: scene.grid, poisson_ratio, periodic };
+            Ok((body, Loads { pressure, traction_x, traction_y }, options))
+        }
+    }
+
+    /// Adds what is read.
+    unsafe fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+        // SAFETY (all): by the caller; both were read before.
+        unsafe {
+            Named::read(self.scene)?.add_to(regions, self.scene)?;
+            options::translate(self.options)?.add_to(regions, self.options)?;
+        }
+        for (name, array) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.arrays) {
+            regions.input(name, array, grid.len())?;
+        }
+        Ok(())
+    }
+}
+
+impl contact_normal_stress_outputs {
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            components: self.stress.map(|stress| !stress.is_null()),
+            von_mises: !self.von_mises.is_null() || !self.largest_von_mises.is_null(),
+            maximum_shear: !self.maximum_shear.is_null() || !self.largest_shear.is_null(),
+            principal: self.principal.iter().any(|stress| !stress.is_null()),
+            directions: self.directions.iter().any(|direction| !direction.is_null()),
+        }
+    }
+
+    /// Adds what is written at n depths of so many elements, and the struct that says where.
+    fn add_to(
+        &self,
+        regions: &mut Regions,
+        at: *const contact_normal_stress_outputs,
+        (n, elements): (usize, usize),
+    ) -> Result<(), Refusal> {
+        let count = n.saturating_mul(elements);
+        regions.input_struct(at, self)?;
+        for stress in self.stress {
+            regions.output("stress", stress, count)?;
+        }
+        regions.output("von_mises", self.von_mises, count)?;
+        regions.output("maximum_shear", self.maximum_shear, count)?;
+        for (stress, direction) in self.principal.into_iter().zip(self.directions) {
+            regions.output("principal", stress, count)?;
+            regions.output("directions", direction, count.saturating_mul(3))?;
+        }
+        regions.output("largest_von_mises", self.largest_von_mises, 1)?;
+        regions.output("largest_shear", self.largest_shear, 1)
+    }
+
+    /// Writes what is wanted of depth k.
+    unsafe fn write(&self, k: usize, depth: &Depth) {
+        unsafe fn copy<A>(values: &[A], to: *mut f64, k: usize) {
+            if !to.is_null() {
+                // SAFETY: room for n depths, by the conventions of the ABI, and nothing overlaps (`Regions`).
+                unsafe {
+                    std::ptr::copy_nonoverlapping(values.as_ptr(), to.cast::<A>().add(k * values.len()), values.len())
+                };
+            }
+        }
+        // SAFETY (all): by the caller.
+        unsafe {
+            for c in 0..6 {
+                copy(&depth.stress[c], self.stress[c], k);
+            }
+            copy(&depth.von_mises, self.von_mises, k);
+            copy(&depth.maximum_shear, self.maximum_shear, k);
+            for i in 0..3 {
+                copy(&depth.principal[i], self.principal[i], k);
+                copy(&depth.directions[i], self.directions[i], k);
+            }
+        }
+    }
+}
+
+fn run(
+    body: &Body,
+    loads: &Loads<'_>,
+    depths: &[f64],
+    options: &Translated,
+    outputs: &contact_normal_stress_outputs,
+) -> Result<contact_normal_status, Refusal> {
+    let threads = Threads::new(options.options.threads)?;
+    let mut callback = watcher(options);
+    let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
+    let (mut mises, mut shear) = (None, None);
+    let all = stress::subsurface_stress(body, loads, depths, &outputs.wanted(), &threads, progress, |k, depth| {
+        Maximum::join(&mut mises, &depth.von_mises, k, &body.grid);
+        Maximum::join(&mut shear, &depth.maximum_shear, k, &body.grid);
+        // SAFETY: the caller's arrays, which were checked.
+        unsafe { outputs.write(k, depth) };
+    })?;
+    for (found, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
+        if let (Some(found), false) = (found, to.is_null()) {
+            let Maximum { value, depth, ix, iy } = found;
+            let place = |k: usize, d: f64| (k as f64 + 0.5) * d;
+            // SAFETY: not null: room for one, by the conventions of the ABI.
+            unsafe {
+                to.write(contact_normal_stress_maximum {
+                    value,
+                    x: place(ix, body.grid.dx),
+                    y: place(iy, body.grid.dy),
+                    z: depths[depth],
+                    ix: ix as i32,
+                    iy: iy as i32,
+                    depth: depth as i32,
+                    reserved: 0,
+                });
+            }
+        }
+    }
+    if !all {
+        set_last_error("the progress callback cancelled; the depths done so far are written");
+        return Ok(CONTACT_NORMAL_CANCELLED);
+    }
+    Ok(CONTACT_NORMAL_OK)
+}

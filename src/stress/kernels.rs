@@ -1,0 +1,252 @@
+//! The kernels of one depth: stresses at offsets `(kx, ky) >= 0` by unit loads on one element.
+//!
+//! By the distance between the centres, in longer sides of an element:
+//!
+//! * below [`NEAR`] the closed form of [`element`](super::element), whose corner differences lose digits as the distance grows;
+//! * below [`FAR`] point forces at 4 x 4 Gauss points of the element;
+//! * beyond, point forces at the centres of the elements. The mean over an element, which is asked for, follows from the values at it and
+//!   its neighbours: with `d` the central difference between neighbours
+//!
+//! ```text
+//! mean f = (d/2)/asinh(d/2) f = (1 + d^2/24 - 17 d^4/5760 + 367 d^6/967680 - 27859 d^8/464486400 + ...) f
+//! ```
+//!
+//! in x, then in y: one evaluation per element, and no cancellation however far it is.
+
+use super::element;
+use super::point_force::{self, Lanes, Values, LANES};
+use super::{Body, Loaded};
+use crate::error::Result;
+use crate::memory::zeros;
+
+/// Up to this distance the closed form.
+const NEAR: f64 = 12.0;
+/// Up to this distance Gauss points.
+const FAR: f64 = 32.0;
+/// Neighbours on either side that a mean takes.
+const HALO: usize = 4;
+const ROWS: usize = 2 * HALO + 1;
+
+/// The weights of an element and of its neighbours at distance 1 to 4 in a mean, to the eighth difference.
+const MEAN: [f64; HALO + 1] = {
+    let (a, b, c, d) = (1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0);
+    [
+        1.0 - 2.0 * a + 6.0 * b - 20.0 * c + 70.0 * d,
+        a - 4.0 * b + 15.0 * c - 56.0 * d,
+        b - 6.0 * c + 28.0 * d,
+        c - 8.0 * d,
+        d,
+    ]
+};
+
+/// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
+const GAUSS: [(f64, f64); 4] = [
+    (-0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
+    (-0.169_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.169_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// Whether a kernel is odd in x and in y: by the load and the component.
+pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
+    let (x, y) = match component {
+        0..=2 => (false, false),
+        3 => (true, true),
+        4 => (true, false),
+        _ => (false, true),
+    };
+    (x != (load == 1), y != (load == 2))
+}
+
+/// What of the kernels is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// The loads.
+    pub loaded: Loaded,
+    /// The components.
+    pub components: [bool; 6],
+    /// Offsets in x and in y: less than that.
+    pub offsets: (usize, usize),
+}
+
+impl Asked {
+    /// Each kernel: its load and component.
+    pub fn list(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let loads = (0..3).filter(|&load| self.loaded[load]);
+        loads.flat_map(|load| (0..6).filter(|&c| self.components[c]).map(move |c| (load, c)))
+    }
+
+    /// Number of kernels.
+    pub fn count(&self) -> usize {
+        self.list().count()
+    }
+}
+
+/// Kernels of one depth, and the memory that they are computed in.
+pub struct Kernels {
+    asked: Asked,
+    /// Of each kernel asked for, `[ky][kx]`.
+    tables: Vec<f64>,
+    /// Where the table of a load and component is.
+    place: [[Option<usize>; 6]; 3],
+    /// Point forces along one row, per kernel, and means in x of the last rows.
+    points: Vec<f64>,
+    means: Vec<f64>,
+}
+
+impl Kernels {
+    /// Memory for the kernels asked for.
+    pub fn new(asked: Asked) -> Result<Kernels> {
+        let (what, (mx, my)) = ("the kernels of a depth", asked.offsets);
+        let mut place = [[None; 6]; 3];
+        asked.list().enumerate().for_each(|(k, (load, c))| place[load][c] = Some(k));
+        Ok(Kernels {
+            asked,
+            tables: zeros(asked.count() * mx * my, what)?,
+            place,
+            points: zeros(asked.count() * width(mx), what)?,
+            means: zeros(asked.count() * ROWS * mx, what)?,
+        })
+    }
+
+    /// The table of a load and component, if it was asked for.
+    pub fn table(&self, load: usize, component: usize) -> Option<&[f64]> {
+        let n = self.asked.offsets.0 * self.asked.offsets.1;
+        self.place[load][component].map(|k| &self.tables[k * n..(k + 1) * n])
+    }
+
+    /// Computes all at depth z, in units of `body.unit()`.
+    pub fn compute(&mut self, body: &Body, z: f64) {
+        self.fill_far(body, z);
+        if z < FAR {
+            self.fill_near(body, z);
+        }
+    }
+
+    /// Means of point forces, at all offsets.
+    fn fill_far(&mut self, body: &Body, z: f64) {
+        let ((mx, my), halo) = (self.asked.offsets, HALO as i64);
+        for row in 0..my + 2 * HALO {
+            self.fill_points(body, row as i64 - halo, z);
+            let (points, slot) = (self.points.chunks_exact(width(mx)), row % ROWS);
+            for (points, means) in points.zip(self.means.chunks_exact_mut(ROWS * mx)) {
+                mean_in_x(points, &mut means[slot * mx..(slot + 1) * mx]);
+            }
+            if row >= 2 * HALO {
+                let ky = row - 2 * HALO;
+                for (table, means) in self.tables.chunks_exact_mut(mx * my).zip(self.means.chunks_exact(ROWS * mx)) {
+                    mean_in_y(means, ky + HALO, &mut table[ky * mx..(ky + 1) * mx]);
+                }
+            }
+        }
+    }
+
+    /// Point forces at offsets `-HALO..` of one row.
+    fn fill_points(&mut self, body: &Body, ky: i64, z: f64) {
+        let ((dx, dy), width) = (body.element(), width(self.asked.offsets.0));
+        let y = ky as f64 * dy;
+        for first in (0..width).step_by(LANES) {
+            let x: Lanes = std::array::from_fn(|i| ((first + i) as f64 - HALO as f64) * dx);
+            let mut values: Values = [[[0.0; LANES]; 6]; 3];
+            point_force::add(body, self.asked.loaded, (&x, y, z), dx * dy, &mut values);
+            for ((load, c), points) in self.asked.list().zip(self.points.chunks_exact_mut(width)) {
+                points[first..first + LANES].copy_from_slice(&values[load][c]);
+            }
+        }
+    }
+
+    /// Gauss points and the closed form, at the offsets that are near.
+    fn fill_near(&mut self, body: &Body, z: f64) {
+        let ((mx, my), (dx, dy)) = (self.asked.offsets, body.element());
+        // Offsets in x at which the distance is less than that.
+        let within = |distance: f64, y: f64| {
+            let x2 = distance * distance - y * y - z * z;
+            if x2 > 0.0 {
+                ((x2.sqrt() / dx).ceil() as usize).min(mx)
+            } else {
+                0
+            }
+        };
+        for ky in 0..my {
+            let y = ky as f64 * dy;
+            let (near, far) = (within(NEAR, y), within(FAR, y));
+            if far == 0 {
+                break;
+            }
+            for kx in 0..near {
+                let values = element::stresses(body, self.asked.loaded, (kx as f64 * dx, y, z), (dx, dy));
+                self.store((kx, ky), |load, c| values[load][c]);
+            }
+            for first in (near..far).step_by(LANES) {
+                let values = by_gauss(body, self.asked.loaded, (first as f64 * dx, y, z));
+                for kx in first..far.min(first + LANES) {
+                    self.store((kx, ky), |load, c| values[load][c][kx - first]);
+                }
+            }
+        }
+    }
+
+    fn store(&mut self, (kx, ky): (usize, usize), value: impl Fn(usize, usize) -> f64) {
+        let (mx, my) = self.asked.offsets;
+        for ((load, c), table) in self.asked.list().zip(self.tables.chunks_exact_mut(mx * my)) {
+            table[ky * mx + kx] = value(load, c);
+        }
+    }
+}
+
+/// Places in a row with its neighbours, rounded up to whole lanes.
+fn width(mx: usize) -> usize {
+    (mx + 2 * HALO).next_multiple_of(LANES)
+}
+
+fn mean_in_x(points: &[f64], out: &mut [f64]) {
+    let n = out.len();
+    let at = |k: usize| &points[k..k + n];
+    let [a, b, c, d, e, f, g, h, i] = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)];
+    for k in 0..n {
+        out[k] = mean([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k], i[k]]);
+    }
+}
+
+/// `means` holds the last rows, `row % ROWS` each; the one in the middle is asked for.
+fn mean_in_y(means: &[f64], middle: usize, out: &mut [f64]) {
+    let n = out.len();
+    let at = |k: usize| {
+        let slot = (middle - HALO + k) % ROWS;
+        &means[slot * n..(slot + 1) * n]
+    };
+    let [a, b, c, d, e, f, g, h, i] = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)];
+    for k in 0..n {
+        out[k] = mean([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k], i[k]]);
+    }
+}
+
+#[inline]
+fn mean([a, b, c, d, e, f, g, h, i]: [f64; ROWS]) -> f64 {
+    MEAN[0] * e + MEAN[1] * (d + f) + MEAN[2] * (c + g) + MEAN[3] * (b + h) + MEAN[4] * (a + i)
+}
+
+/// Stresses by uniform loads on an element, at places one element apart in x, by point forces at Gauss points.
+pub(super) fn by_gauss(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> Values {
+    let (dx, dy) = body.element();
+    let mut values: Values = [[[0.0; LANES]; 6]; 3];
+    for (sx, wx) in GAUSS {
+        let x: Lanes = std::array::from_fn(|i| x + (i as f64 - sx) * dx);
+        for (sy, wy) in GAUSS {
+            point_force::add(body, loaded, (&x, y - sy * dy, z), dx * dy * wx * wy, &mut values);
+        }
+    }
+    values
+}
+
+/// Stresses by unit loads on an element, at one place.
+pub(super) fn at(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> [[f64; 6]; 3] {
+    if x * x + y * y + z * z < NEAR * NEAR {
+        return element::stresses(body, loaded, (x, y, z), body.element());
+    }
+    by_gauss(body, loaded, (x, y, z)).map(|of_load| of_load.map(|lanes| lanes[0]))
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/stress_kernels.rs"]
+mod tests;

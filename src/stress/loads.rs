@@ -1,0 +1,62 @@
+//! What acts on the surface of a body.
+
+use super::Loaded;
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+
+/// Pressures and tractions, `[my][mx]`; none: not there. Tractions act on the body considered, in the directions of x and y.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Loads<'a> {
+    /// p: positive presses.
+    pub pressure: Option<&'a [f64]>,
+    /// qx.
+    pub traction_x: Option<&'a [f64]>,
+    /// qy.
+    pub traction_y: Option<&'a [f64]>,
+}
+
+impl<'a> Loads<'a> {
+    /// Pressures alone.
+    pub fn pressure(pressure: &'a [f64]) -> Loads<'a> {
+        Loads { pressure: Some(pressure), ..Loads::default() }
+    }
+
+    /// All three.
+    pub(super) fn list(&self) -> [Option<&'a [f64]>; 3] {
+        [self.pressure, self.traction_x, self.traction_y]
+    }
+
+    pub(super) fn loaded(&self) -> Loaded {
+        self.list().map(|load| load.is_some())
+    }
+
+    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+        for (name, load) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.list()) {
+            let Some(load) = load else { continue };
+            if load.len() != grid.len() {
+                return invalid(format!("{name} has {} values; the grid has {} elements", load.len(), grid.len()));
+            }
+            if let Some(i) = load.iter().position(|value| !value.is_finite()) {
+                return Err(Error::NotFinite(format!(
+                    "{name} of {} is {}; it must be finite",
+                    grid.element(i),
+                    load[i]
+                )));
+            }
+        }
+        match self.loaded().contains(&true) {
+            true => Ok(()),
+            false => invalid("there is neither a pressure nor a traction; give at least one of them".into()),
+        }
+    }
+
+    /// A power of two near the largest load: what is computed of loads of about 1 neither overflows nor fades away.
+    pub(super) fn scale(&self) -> f64 {
+        let values = self.list().into_iter().flatten().flatten();
+        let largest = values.fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        if largest == 0.0 {
+            return 1.0;
+        }
+        largest.log2().floor().clamp(-1000.0, 1000.0).exp2()
+    }
+}

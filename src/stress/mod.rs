@@ -1,0 +1,135 @@
+//! Stresses below the surface of a half-space, from the pressures and tractions on its elements.
+//!
+//! Six components, positive in tension, at the centres of the elements and any depth `z >= 0` below them, z into the body considered; the
+//! pressure p and the tractions `(qx, qy)` that act ON this body are constant on each element:
+//!
+//! ```text
+//! stress_I(z) = sum over J of  K_p(I - J, z) p_J + K_x(I - J, z) qx_J + K_y(I - J, z) qy_J
+//! szz = -p,  sxz = -qx,  syz = -qy    at z = 0
+//! ```
+//!
+//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form ([`element`]), which
+//! cancels far away, where point forces serve ([`point_force`]); [`kernels`] puts them together. At each depth sums over elements are
+//! products by FFT ([`product`]); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
+//! tabulated. At places off the centres the sum is direct ([`points`]).
+//!
+//! Where the loads repeat themselves, kernels are sums over waves ([`periodic`]).
+//!
+//! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
+
+mod depth;
+mod element;
+mod kernels;
+mod loads;
+mod periodic;
+mod point_force;
+mod points;
+mod product;
+mod tensor;
+
+pub use depth::{Depth, Maximum, Wanted};
+pub use loads::Loads;
+pub use points::stress_at_points;
+pub use tensor::{principal, von_mises, Principal, Tensor};
+
+use std::time::Instant;
+
+use crate::error::{require, Result};
+use crate::grid::Grid;
+use crate::progress::{Progress, ProgressCallback};
+use crate::threads::Threads;
+use depth::DepthMemory;
+use periodic::Waves;
+use product::Product;
+
+/// Names of the components, in their order.
+pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
+
+/// Which loads there are: pressure, traction in x, traction in y.
+type Loaded = [bool; 3];
+
+/// A half-space with loads on the elements of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// The elements.
+    pub grid: Grid,
+    /// nu, in (-1, 0.5].
+    pub poisson_ratio: f64,
+    /// Whether all repeats itself after a grid's length in x and in y. Lateral strains have mean zero.
+    pub periodic: bool,
+}
+
+impl Body {
+    fn check(&self) -> Result<()> {
+        let nu = self.poisson_ratio;
+        require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
+    }
+
+    /// The unit of lengths inside: the longer side of an element. Kernels depend on ratios of lengths only.
+    fn unit(&self) -> f64 {
+        self.grid.dx.max(self.grid.dy)
+    }
+
+    /// An element's sides in that unit.
+    fn element(&self) -> (f64, f64) {
+        (self.grid.dx / self.unit(), self.grid.dy / self.unit())
+    }
+
+    /// A length in that unit. Where its square would vanish it is 0, and where that would overflow it is cut off: stresses are 0 there.
+    fn in_units(&self, length: f64) -> f64 {
+        let ratio = (length / self.unit()).clamp(-1e150, 1e150);
+        if ratio.abs() < 1e-100 {
+            0.0
+        } else {
+            ratio
+        }
+    }
+}
+
+/// The stresses at all depths: `each(k, depth)` is told what is wanted at `depths[k]`, in their order, on the calling thread, and after
+/// it `progress`, where a cycle is a depth. True: all were done; false: the caller cancelled.
+///
+/// # Errors
+/// `NotFinite`: a load or a depth is no number; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
+/// Poisson ratio out of range; `Unsupported`: a period, very slender elements, and a depth of less than their longer side; `OutOfMemory`.
+pub fn subsurface_stress(
+    body: &Body,
+    loads: &Loads<'_>,
+    depths: &[f64],
+    wanted: &Wanted,
+    threads: &Threads,
+    mut progress: Option<ProgressCallback<'_>>,
+    mut each: impl FnMut(usize, &Depth),
+) -> Result<bool> {
+    let began = Instant::now();
+    body.check()?;
+    loads.check(&body.grid)?;
+    for (k, &z) in depths.iter().enumerate() {
+        require(z >= 0.0 && z.is_finite(), &format!("depths[{k}]"), z, "a depth must be finite and not negative")?;
+        if body.periodic {
+            Waves::check(body, z)?;
+        }
+    }
+    let near = body.periodic && depths.iter().any(|&z| Waves::is_near(body.in_units(z)));
+    let product = Product::new(body, loads, near)?;
+    let at_once = threads.count().min(depths.len());
+    let mut memory = Vec::new();
+    for _ in 0..at_once {
+        memory.push(DepthMemory::new(&product, wanted)?);
+    }
+    let mut done = 0;
+    for round in depths.chunks(at_once.max(1)) {
+        threads.for_each(&mut memory[..round.len()], |k, memory| memory.compute(&product, wanted, round[k]));
+        for memory in &memory[..round.len()] {
+            each(done, &memory.depth);
+            done += 1;
+            if let Some(told) = &mut progress {
+                let seconds = began.elapsed().as_secs_f64();
+                if told(&Progress::of_depth(&body.grid, done as u64, seconds)) {
+                    return Ok(false);
+                }
+            }
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,74 @@
+//! Stresses of concentrated forces on the surface (Boussinesq, Cerruti; Johnson, Contact Mechanics, eqs. 3.18 and 3.76).
+//!
+//! At distance R from the force, `(l, m, n) = (x, y, z)/R`, `w = 1/(1 + n)`, `h = 1 - 2 nu`; all times `1/(2 pi R^2)`:
+//!
+//! ```text
+//!       force by pressure (into the body)         force in x
+//! xx    h (n - w + l^2 (2 + n) w^2) - 3 l^2 n      h (l - 3 l w^2 + l^3 (3 + n) w^3) - 3 l^3
+//! yy    h (n - w + m^2 (2 + n) w^2) - 3 m^2 n      h (l - l w^2 + l m^2 (3 + n) w^3) - 3 l m^2
+//! zz    -3 n^3                                     -3 l n^2
+//! xy    h l m (2 + n) w^2 - 3 l m n                h (-m w^2 + l^2 m (3 + n) w^3) - 3 l^2 m
+//! xz    -3 l n^2                                   -3 l^2 n
+//! yz    -3 m n^2                                   -3 l m n
+//! ```
+//!
+//! A force in y is one in x with x and y exchanged. In direction cosines nothing overflows, at any distance.
+
+use super::{Body, Loaded};
+
+/// Places that are computed at a time: a loop over them is vectorised.
+pub const LANES: usize = 8;
+
+/// One value per place.
+pub type Lanes = [f64; LANES];
+
+/// `[load][component][place]`.
+pub type Values = [[Lanes; 6]; 3];
+
+/// Adds to `sum` the stresses by forces of size `force` of the loads wanted, at places `(x, y, z)` from them.
+pub fn add(body: &Body, loaded: Loaded, (x, y, z): (&Lanes, f64, f64), force: f64, sum: &mut Values) {
+    let h = 1.0 - 2.0 * body.poisson_ratio;
+    let scale = force / (2.0 * std::f64::consts::PI);
+    let [mut l, mut m, mut n, mut w, mut s] = [[0.0; LANES]; 5];
+    for i in 0..LANES {
+        let inverse = 1.0 / (x[i] * x[i] + y * y + z * z).sqrt();
+        (l[i], m[i], n[i]) = (x[i] * inverse, y * inverse, z * inverse);
+        w[i] = 1.0 / (1.0 + n[i]);
+        s[i] = scale * inverse * inverse;
+    }
+    if loaded[0] {
+        for i in 0..LANES {
+            let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);
+            let g = (2.0 + n) * w * w;
+            let out = &mut sum[0];
+            out[0][i] += s * (h * (n - w + l * l * g) - 3.0 * l * l * n);
+            out[1][i] += s * (h * (n - w + m * m * g) - 3.0 * m * m * n);
+            out[2][i] += s * (-3.0 * n * n * n);
+            out[3][i] += s * (l * m * (h * g - 3.0 * n));
+            out[4][i] += s * (-3.0 * l * n * n);
+            out[5][i] += s * (-3.0 * m * n * n);
+        }
+    }
+    if loaded[1] {
+        in_x(h, (&l, &m, &n, &w, &s), [0, 1, 2, 3, 4, 5], &mut sum[1]);
+    }
+    if loaded[2] {
+        in_x(h, (&m, &l, &n, &w, &s), [1, 0, 2, 3, 5, 4], &mut sum[2]);
+    }
+}
+
+/// A force along the first of two directions; `place` says where its components stand.
+#[inline]
+fn in_x(h: f64, (l, m, n, w, s): (&Lanes, &Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], out: &mut [Lanes; 6]) {
+    for i in 0..LANES {
+        let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);
+        let w2 = w * w;
+        let g = (3.0 + n) * w2 * w;
+        out[place[0]][i] += s * l * (h * (1.0 - 3.0 * w2 + l * l * g) - 3.0 * l * l);
+        out[place[1]][i] += s * l * (h * (1.0 - w2 + m * m * g) - 3.0 * m * m);
+        out[place[2]][i] += s * (-3.0 * l * n * n);
+        out[place[3]][i] += s * m * (h * (l * l * g - w2) - 3.0 * l * l);
+        out[place[4]][i] += s * (-3.0 * l * l * n);
+        out[place[5]][i] += s * (-3.0 * l * m * n);
+    }
+}

@@ -1,0 +1,422 @@
+//! Stresses below the surface: against direct sums, closed forms of elasticity, equilibrium, and the exact stresses under a ball.
+
+use std::f64::consts::PI;
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::stress::{
+    principal, stress_at_points, subsurface_stress, von_mises, Body, Depth, Loads, Maximum, Tensor, Wanted,
+};
+use contact_normal::threads::Threads;
+
+const ALL: Wanted =
+    Wanted { components: [true; 6], von_mises: true, maximum_shear: true, principal: true, directions: true };
+const TENSOR: Wanted =
+    Wanted { components: [true; 6], von_mises: false, maximum_shear: false, principal: false, directions: false };
+
+/// Numbers in [-1, 1], the same each time.
+fn noise(seed: u64, n: usize) -> Vec<f64> {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    (0..n)
+        .map(|_| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        })
+        .collect()
+}
+
+fn body(mx: usize, my: usize, dx: f64, dy: f64, poisson_ratio: f64) -> Body {
+    Body { grid: Grid::new(mx, my, dx, dy).unwrap(), poisson_ratio, periodic: false }
+}
+
+fn all_depths(body: &Body, loads: &Loads<'_>, depths: &[f64], wanted: &Wanted, threads: usize) -> Vec<Depth> {
+    let mut found = Vec::new();
+    let threads = Threads::new(threads).unwrap();
+    let done = subsurface_stress(body, loads, depths, wanted, &threads, None, |k, depth| {
+        assert_eq!(k, found.len());
+        found.push(depth.clone());
+    });
+    assert!(done.unwrap());
+    found
+}
+
+fn tensor(depth: &Depth, i: usize) -> Tensor {
+    std::array::from_fn(|c| depth.stress[c][i])
+}
+
+fn at(body: &Body, loads: &Loads<'_>, points: &[[f64; 3]]) -> Vec<Tensor> {
+    let mut out = vec![[f64::NAN; 6]; points.len()];
+    stress_at_points(body, loads, points, &Threads::One, &mut out).unwrap();
+    out
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |l: f64, v| l.max(v.abs()))
+}
+
+/// Random loads on all grids, slender ones and single elements among them: by FFT as by the direct sum.
+#[test]
+fn products_are_direct_sums() {
+    let depths = [0.0, 1e-12, 0.3, 2.0, 17.0, 1e6];
+    for (mx, my, dx, dy) in
+        [(13, 8, 1.0, 0.7), (1, 1, 1.0, 1.0), (40, 1, 1.0, 1.0), (2, 37, 0.1, 0.1), (9, 9, 1.0, 6.0)]
+    {
+        let body = body(mx, my, dx, dy, 0.3);
+        let [p, qx, qy] = [1, 2, 3].map(|seed| noise(seed, mx * my));
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+        for (depth, z) in all_depths(&body, &loads, &depths, &TENSOR, 1).iter().zip(depths) {
+            let centre = |i: usize| [((i % mx) as f64 + 0.5) * dx, ((i / mx) as f64 + 0.5) * dy, z];
+            let points: Vec<_> = (0..mx * my).map(centre).collect();
+            for (i, exact) in at(&body, &loads, &points).iter().enumerate() {
+                for (found, exact) in tensor(depth, i).iter().zip(exact) {
+                    let error = (found - exact).abs();
+                    // Loads of 1; the two sum kernels that differ by 1e-12 of the largest far away, where they are small.
+                    assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn at_the_surface_stresses_are_the_loads() {
+    let body = body(33, 20, 0.2, 0.3, 0.28);
+    let [p, qx, qy] = [4, 5, 6].map(|seed| noise(seed, 33 * 20));
+    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+    let surface = &all_depths(&body, &loads, &[0.0], &TENSOR, 1)[0];
+    for (c, load) in [(2, &p), (4, &qx), (5, &qy)] {
+        for (stress, load) in surface.stress[c].iter().zip(load) {
+            assert!((stress + load).abs() <= 1e-13, "component {c}: {stress} for {}", -load);
+        }
+    }
+}
+
+/// Love (1929): on the axis of a rectangle; and plane strain under a long strip (Johnson, section 2.5).
+#[test]
+fn a_rectangle_and_a_strip_have_their_closed_forms() {
+    let (a, b) = (1.5, 0.5);
+    let rectangle = body(1, 1, 2.0 * a, 2.0 * b, 0.3);
+    for z in [0.01, 0.4, 1.0, 3.0, 20.0] {
+        let found = at(&rectangle, &Loads::pressure(&[1.0]), &[[a, b, z]])[0];
+        let r = (a * a + b * b + z * z).sqrt();
+        let sum = (a * b / (z * r)).atan() + a * b * z / r * (1.0 / (a * a + z * z) + 1.0 / (b * b + z * z));
+        assert!((found[2] + 2.0 / PI * sum).abs() <= 2e-14, "z {z}: {}", found[2]);
+    }
+    // Half-width 1, length 2e4: by angles, and corrections of about 1/length.
+    let strip = body(1, 1, 2.0, 2e4, 0.3);
+    for (x, z) in [(0.0, 1.0), (0.7, 0.5), (1.4, 0.3)] {
+        let [xx, yy, zz, ..] = at(&strip, &Loads::pressure(&[1.0]), &[[x + 1.0, 1e4, z]])[0];
+        let (one, two) = (f64::atan2(z, x - 1.0), f64::atan2(z, x + 1.0));
+        let (sum, difference) = (2.0 * (one - two), (2.0 * one).sin() - (2.0 * two).sin());
+        let exact = [-(sum + difference) / (2.0 * PI), -(sum - difference) / (2.0 * PI)];
+        assert!((xx - exact[0]).abs() <= 1e-4 && (zz - exact[1]).abs() <= 1e-4, "{x}, {z}: {xx} {zz} for {exact:?}");
+        assert!((yy - 0.3 * (xx + zz)).abs() <= 1e-4);
+    }
+}
+
+/// Equilibrium, `d sij/dxj = 0`, by central differences of step 1e-3: second order, and what is left of 1e-16 over 2e-3.
+#[test]
+fn stresses_are_in_equilibrium() {
+    let body = body(5, 4, 1.0, 0.8, 0.3);
+    let [p, qx, qy] = [7, 8, 9].map(|seed| noise(seed, 20));
+    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+    let step = 1e-3;
+    for point in [[2.3, 1.1, 0.4], [0.2, 3.0, 1.5], [7.1, -2.0, 0.7], [30.0, 11.0, 4.0]] {
+        let moved = |axis: usize, by: f64| {
+            let mut point = point;
+            point[axis] += by;
+            point
+        };
+        let places: Vec<_> = (0..3).flat_map(|axis| [moved(axis, step), moved(axis, -step)]).collect();
+        let found = at(&body, &loads, &places);
+        let slope = |axis: usize, c: usize| (found[2 * axis][c] - found[2 * axis + 1][c]) / (2.0 * step);
+        // xx xy xz, xy yy yz, xz yz zz
+        for row in [[0, 3, 4], [3, 1, 5], [4, 5, 2]] {
+            let sum: f64 = row.into_iter().enumerate().map(|(axis, c)| slope(axis, c)).sum();
+            assert!(sum.abs() <= 2e-5, "{point:?}: {sum:e}");
+        }
+    }
+}
+
+/// What goes in at the surface goes through each depth: over a window of half-width 60 all but the tail, of the order z/60.
+#[test]
+fn forces_pass_through_each_depth() {
+    let m = 121;
+    let body = body(m, m, 1.0, 1.0, 0.3);
+    let one = |on: bool| (0..m * m).map(|i| if on && i == (m * m) / 2 { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+    let load = one(true);
+    let loads = Loads { pressure: Some(&load), traction_x: Some(&load), traction_y: Some(&load) };
+    for (depth, z) in all_depths(&body, &loads, &[0.5, 2.0, 8.0], &TENSOR, 1).iter().zip([0.5, 2.0, 8.0]) {
+        for (c, tail) in [(2, (z / 60.0f64).powi(3)), (4, z / 60.0), (5, z / 60.0)] {
+            let sum: f64 = depth.stress[c].iter().sum();
+            // The kernel of a point beyond a square lies between those of its inner and outer circle.
+            assert!((sum + 1.0).abs() <= 1.5 * tail, "z {z}, component {c}: {sum}");
+        }
+    }
+}
+
+/// A ball on a half-space: pressures p0 sqrt(1 - (r/a)^2) at the centres, a = 1, n elements to it.
+fn ball(n: usize, more: usize) -> (Body, Vec<f64>) {
+    let m = 2 * (n + more) + 1;
+    let d = 1.0 / n as f64;
+    let body = body(m, m, d, d, 0.3);
+    let place = |k: usize| (k as f64 - (n + more) as f64) * d;
+    let pressure = (0..m * m).map(|i| (1.0 - place(i % m).powi(2) - place(i / m).powi(2)).max(0.0).sqrt()).collect();
+    (body, pressure)
+}
+
+#[test]
+fn under_a_ball_are_the_stresses_of_hertz() {
+    // The largest error is of second order in a/dx, 1.4e-4 p0 at 32; the shear at .48 a is 0.310020 (Johnson, eq. 3.45 and 4.24).
+    for (n, tolerance, of_shear) in [(16, 6e-4, 2e-4), (32, 2e-4, 5e-5)] {
+        let (body, pressure) = ball(n, 0);
+        let depths: Vec<f64> = (1..=100).map(|k| 0.02 * k as f64).collect();
+        let found = all_depths(&body, &Loads::pressure(&pressure), &depths, &ALL, 1);
+        let centre = body.grid.len() / 2;
+        for (depth, z) in found.iter().zip(&depths) {
+            let zz = -1.0 / (1.0 + z * z);
+            let radial = -1.3 * (1.0 - z * (1.0 / z).atan()) - 0.5 * zz;
+            let [xx, yy, now, xy, xz, yz] = tensor(depth, centre);
+            assert!((now - zz).abs() <= tolerance && (xx - radial).abs() <= tolerance, "z {z}: {now} {xx}");
+            assert!((yy - xx).abs() <= 1e-13 && largest(&[xy, xz, yz]) <= 1e-13);
+        }
+        let (shear, mises) = (found[23].maximum_shear[centre], found[23].von_mises[centre]);
+        assert!((shear - 0.310020).abs() <= of_shear, "{shear}");
+        assert!((mises - 2.0 * shear).abs() <= 1e-13, "{mises}");
+    }
+}
+
+/// The reference is a polar quadrature of point forces over the disc, without a grid: von Mises maximum .647593 p0 at x = .2703 a, z = .4441 a.
+#[test]
+fn a_sliding_ball_yields_first_where_it_should() {
+    let n = 32;
+    let (body, pressure) = ball(n, 0);
+    let traction: Vec<f64> = pressure.iter().map(|p| 0.25 * p).collect();
+    let depths: Vec<f64> = (40..50).map(|k| 0.01 * k as f64).collect();
+    let wanted = Wanted { von_mises: true, ..Wanted::default() };
+    let loads = Loads { pressure: Some(&pressure), traction_x: Some(&traction), traction_y: None };
+    let mut maximum = None;
+    for (k, depth) in all_depths(&body, &loads, &depths, &wanted, 2).iter().enumerate() {
+        Maximum::join(&mut maximum, &depth.von_mises, k, &body.grid);
+    }
+    let Maximum { value, depth, ix, iy } = maximum.unwrap();
+    let (x, z) = ((ix as f64 - n as f64) / n as f64, depths[depth]);
+    assert!((value - 0.647593).abs() <= 5e-4, "{value}");
+    assert!((x - 0.2703).abs() <= 1.0 / n as f64 && iy == n && (z - 0.4441).abs() <= 0.02, "({x}, {iy}, {z})");
+}
+
+#[test]
+fn principal_stresses_turn_the_tensor_into_a_diagonal() {
+    let mut tensors: Vec<Tensor> = (0..200).map(|k| noise(k, 6).try_into().unwrap()).collect();
+    tensors.extend([[0.0; 6], [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], [2.0, 2.0, -1.0, 1e-9, 0.0, 1e-12]]);
+    tensors.extend([
+        [1e-200, 0.0, 0.0, 1e-200, 0.0, 0.0],
+        [1e200, -1e200, 3.0, 1e200, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    ]);
+    for tensor in tensors {
+        let [xx, yy, zz, xy, xz, yz] = tensor;
+        let (matrix, scale) = ([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], largest(&tensor));
+        let found = principal(tensor);
+        let [one, two, three] = found.stresses;
+        assert!(one >= two && two >= three, "{found:?}");
+        for k in 0..3 {
+            let v = found.directions[k];
+            for i in 0..3 {
+                let product: f64 = (0..3).map(|j| matrix[i][j] * v[j]).sum();
+                assert!((product - found.stresses[k] * v[i]).abs() <= 4e-15 * scale, "{tensor:?}: {found:?}");
+                let dot: f64 = (0..3).map(|j| found.directions[i][j] * v[j]).sum();
+                assert!((dot - f64::from(i == k)).abs() <= 4e-15, "{tensor:?}: {found:?}");
+            }
+        }
+        let by_principal = (0.5 * ((one - two).powi(2) + (two - three).powi(2) + (three - one).powi(2))).sqrt();
+        let mises = von_mises(tensor);
+        assert!(!by_principal.is_normal() || (mises - by_principal).abs() <= 1e-14 * scale, "{mises} {by_principal}");
+    }
+}
+
+#[test]
+fn what_is_not_wanted_is_not_computed_and_does_not_change_what_is() {
+    let body = body(12, 9, 1.0, 1.0, 0.3);
+    let pressure = noise(1, 108);
+    let loads = Loads::pressure(&pressure);
+    let all = &all_depths(&body, &loads, &[0.7], &ALL, 1)[0];
+    let only = Wanted { components: [false, false, true, false, false, false], ..Wanted::default() };
+    let one = &all_depths(&body, &loads, &[0.7], &only, 1)[0];
+    assert_eq!(one.stress[2], all.stress[2]);
+    assert!([0, 1, 3, 4, 5].into_iter().all(|c| one.stress[c].is_empty()));
+    assert!(one.von_mises.is_empty() && one.maximum_shear.is_empty() && one.principal[0].is_empty());
+}
+
+#[test]
+fn threads_units_and_depths_in_any_order_change_no_bit() {
+    let [p, q] = [1, 2].map(|seed| noise(seed, 35 * 21));
+    let loads = Loads { pressure: Some(&p), traction_x: None, traction_y: Some(&q) };
+    let depths = [3.0, 0.0, 0.4, 40.0, 0.1];
+    let one = all_depths(&body(35, 21, 1.0, 0.5, 0.3), &loads, &depths, &ALL, 1);
+    let two = all_depths(&body(35, 21, 1.0, 0.5, 0.3), &loads, &depths, &ALL, 2);
+    let (large_p, large_q) =
+        (p.iter().map(|p| p * 1024.0).collect::<Vec<_>>(), q.iter().map(|q| q * 1024.0).collect::<Vec<_>>());
+    let larger = Loads { pressure: Some(&large_p), traction_x: None, traction_y: Some(&large_q) };
+    let scaled = all_depths(&body(35, 21, 4.0, 2.0, 0.3), &larger, &depths.map(|z| 4.0 * z), &ALL, 1);
+    for k in 0..depths.len() {
+        assert_eq!(one[k].stress, two[k].stress);
+        assert_eq!(one[k].principal, two[k].principal);
+        for (value, scaled) in one[k].von_mises.iter().zip(&scaled[k].von_mises) {
+            assert_eq!(value * 1024.0, *scaled);
+        }
+    }
+}
+
+#[test]
+fn hard_cases_are_numbers() {
+    for (mx, my, dx, dy, nu) in
+        [(4099, 7, 1.0, 1.0, 0.5), (1, 1, 1e-9, 1e9, 0.3), (3, 2, 1e150, 1e150, -0.9), (3, 2, 1e-150, 2e-150, 0.0)]
+    {
+        let body = body(mx, my, dx, dy, nu);
+        let p = vec![1e300; mx * my];
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&p), traction_y: Some(&p) };
+        let unit = dx.max(dy);
+        for depth in
+            all_depths(&body, &loads, &[0.0, 1e-12 * unit, f64::MIN_POSITIVE, unit, 1e6 * unit, 1e300], &ALL, 1)
+        {
+            for c in 0..6 {
+                assert!(depth.stress[c].iter().all(|s| s.is_finite()), "{mx} x {my}, component {c}");
+            }
+            assert!(depth.von_mises.iter().chain(&depth.maximum_shear).all(|s| s.is_finite()));
+            assert!(depth.directions.iter().flatten().flatten().all(|s| s.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn what_is_no_question_is_refused_by_name() {
+    let body = body(3, 2, 1.0, 1.0, 0.3);
+    let (p, short, nan) = ([1.0; 6], [1.0; 5], [1.0, 1.0, f64::NAN, 1.0, 1.0, 1.0]);
+    let ask = |body: &Body, loads: &Loads<'_>, z: f64| {
+        subsurface_stress(body, loads, &[0.0, z], &TENSOR, &Threads::One, None, |_, _| {}).unwrap_err()
+    };
+    let message = |error: Error, part: &str| assert!(error.to_string().contains(part), "{error}");
+    message(ask(&body, &Loads::default(), 1.0), "neither a pressure nor a traction");
+    message(ask(&body, &Loads::pressure(&short), 1.0), "pressure has 5 values");
+    message(
+        ask(&body, &Loads { traction_y: Some(&nan), ..Loads::pressure(&p) }, 1.0),
+        "traction_y of element (2, 0) is NaN",
+    );
+    message(ask(&body, &Loads::pressure(&p), -0.5), "depths[1] is -0.5");
+    message(ask(&body, &Loads::pressure(&p), f64::NAN), "depths[1] is NaN");
+    message(ask(&Body { poisson_ratio: 0.51, ..body }, &Loads::pressure(&p), 1.0), "poisson_ratio is 0.51");
+    let at = |point: [f64; 3]| stress_at_points(&body, &Loads::pressure(&p), &[point], &Threads::One, &mut [[0.0; 6]]);
+    message(at([1.0, 0.5, 0.0]).unwrap_err(), "on the edge of an element");
+    message(at([0.5, 2.0, 0.0]).unwrap_err(), "on the edge of an element");
+    message(at([0.5, 0.5, -1.0]).unwrap_err(), "z of point 0 is -1");
+    message(at([0.5, f64::INFINITY, 1.0]).unwrap_err(), "y of point 0 is inf");
+    for point in [[1.0, 0.5, 1e-9], [-1.0, 2.0, 0.0], [3.0, 5.0, 0.0], [0.5, 0.5, 0.0]] {
+        let mut out = [[f64::NAN; 6]];
+        stress_at_points(
+            &body,
+            &Loads { traction_x: Some(&p), ..Loads::pressure(&p) },
+            &[point],
+            &Threads::One,
+            &mut out,
+        )
+        .unwrap();
+        assert!(out[0].iter().all(|s| s.is_finite()), "{point:?}: {out:?}");
+    }
+}
+
+#[test]
+fn progress_counts_depths_and_cancels() {
+    let body = body(3, 2, 1.0, 1.0, 0.3);
+    let (mut told, mut kept) = (Vec::new(), 0);
+    let mut progress = |progress: &contact_normal::progress::Progress| {
+        told.push(progress.cycles);
+        progress.cycles == 2
+    };
+    let loads = Loads::pressure(&[1.0; 6]);
+    let depths = [0.0, 1.0, 2.0, 3.0];
+    let done = subsurface_stress(&body, &loads, &depths, &TENSOR, &Threads::One, Some(&mut progress), |_, _| kept += 1);
+    assert_eq!((done, told, kept), (Ok(false), vec![1, 2], 2));
+}
+
+/// The waves of element-wise constant loads that vary in x alone, summed term by term: xx, yy, zz, xz by a pressure and by a traction.
+fn waves(load: &[f64], d: f64, nu: f64, i: usize, z: f64) -> [[f64; 4]; 2] {
+    let m = load.len();
+    let mean = load.iter().sum::<f64>() / m as f64;
+    let sideways = -nu / (1.0 - nu) * mean;
+    let (mut p, mut q) = ([sideways, sideways, -mean, 0.0], [0.0, 0.0, 0.0, -mean]);
+    for wave in 1.. {
+        let number = 2.0 * PI * wave as f64 / (m as f64 * d);
+        let kz = number * z;
+        if kz > 40.0 {
+            break;
+        }
+        let fade = (-kz).exp() * (0.5 * number * d).sin() / (0.5 * number * d) * 2.0 / m as f64;
+        let phase = |j: usize| number * d * (i as f64 - j as f64);
+        let cos: f64 = (0..m).map(|j| load[j] * phase(j).cos()).sum::<f64>() * fade;
+        let sin: f64 = (0..m).map(|j| load[j] * phase(j).sin()).sum::<f64>() * fade;
+        let of_pressure = [-(1.0 - kz) * cos, -2.0 * nu * cos, -(1.0 + kz) * cos, -kz * sin];
+        let of_traction = [-(2.0 - kz) * sin, -2.0 * nu * sin, -kz * sin, -(1.0 - kz) * cos];
+        p.iter_mut().zip(of_pressure).for_each(|(sum, value)| *sum += value);
+        q.iter_mut().zip(of_traction).for_each(|(sum, value)| *sum += value);
+    }
+    [p, q]
+}
+
+#[test]
+fn a_periodic_load_is_a_sum_of_waves() {
+    let (m, rows, d, nu) = (6, 4, 0.5, 0.3);
+    let load = noise(11, m);
+    let body = Body { periodic: true, ..body(m, rows, d, 0.7, nu) };
+    let everywhere: Vec<f64> = (0..rows).flat_map(|_| load.iter().copied()).collect();
+    let depths = [0.0, 0.05, 0.3, 0.65, 0.71, 2.0, 30.0];
+    let pressed = all_depths(&body, &Loads::pressure(&everywhere), &depths, &TENSOR, 1);
+    let traction = Loads { traction_x: Some(&everywhere), ..Loads::default() };
+    let sheared = all_depths(&body, &traction, &depths, &TENSOR, 1);
+    let mean = load.iter().sum::<f64>() / m as f64;
+    for (k, z) in depths.into_iter().enumerate() {
+        for (i, p) in everywhere.iter().enumerate() {
+            // At the surface exactly: sxx = -p and syy = -2 nu p but for the mean, szz = -p, sxz = -q.
+            let sideways = -nu / (1.0 - nu) * mean;
+            let surface = [sideways - (p - mean), sideways - 2.0 * nu * (p - mean), -p, 0.0];
+            let exact = if z > 0.0 { waves(&load, d, nu, i % m, z) } else { [surface, [f64::NAN, f64::NAN, 0.0, -p]] };
+            for (found, exact) in [&pressed[k], &sheared[k]].into_iter().zip(exact) {
+                for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact).filter(|(_, exact)| !exact.is_nan()) {
+                    // A tenth difference: its weights, of up to 252, times round-off, and what is left beyond its reach.
+                    let found = found.stress[c][i];
+                    assert!((found - exact).abs() <= 1e-11, "z {z}, element {i}, component {c}: {found} for {exact}");
+                }
+                assert!(found.stress[3][i].abs() <= 1e-11 && found.stress[5][i].abs() <= 1e-11);
+            }
+        }
+    }
+}
+
+/// In two dimensions: near the surface as by the waves that are left there, which another grid of a quarter of the element sums.
+#[test]
+fn periodic_stresses_are_those_of_finer_elements() {
+    let coarse = Body { periodic: true, ..body(5, 4, 1.0, 0.8, 0.25) };
+    let fine = Body { periodic: true, ..body(15, 12, 1.0 / 3.0, 0.8 / 3.0, 0.25) };
+    let loads: [Vec<f64>; 3] = [1, 2, 3].map(|seed| noise(seed, 20));
+    let refined =
+        loads.each_ref().map(|load| (0..180).map(|i| load[(i / 15) / 3 * 5 + (i % 15) / 3]).collect::<Vec<f64>>());
+    let of = |loads: &[Vec<f64>; 3]| {
+        let [p, qx, qy] = loads.each_ref().map(|load| load.as_slice());
+        let depths = [0.0, 0.1, 0.5, 0.9, 1.5];
+        let loads = Loads { pressure: Some(p), traction_x: Some(qx), traction_y: Some(qy) };
+        if p.len() == 20 {
+            all_depths(&coarse, &loads, &depths, &TENSOR, 2)
+        } else {
+            all_depths(&fine, &loads, &depths, &TENSOR, 1)
+        }
+    };
+    for (depth, (one, other)) in of(&loads).iter().zip(&of(&refined)).enumerate() {
+        for i in 0..20 {
+            let middle = (3 * (i / 5) + 1) * 15 + 3 * (i % 5) + 1;
+            for c in 0..6 {
+                let (one, other) = (one.stress[c][i], other.stress[c][middle]);
+                assert!((one - other).abs() <= 1e-11, "depth {depth}, element {i}, component {c}: {one} {other}");
+            }
+        }
+    }
+}
