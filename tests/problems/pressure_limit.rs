@@ -230,3 +230,30 @@ fn what_is_no_limit_is_refused_by_name() {
     let error = solver.solve(&scene, &fixed, Some(guess), None).unwrap_err().to_string();
     assert!(error.contains("FIXED") && error.contains("pressure_limit"), "{error}");
 }
+
+/// A limit is a bound inside the iteration: no more than three times the products of the plain scene. Counts, not times. What it
+/// costs on 140 scenes prints `examples/pressure_limits`.
+#[test]
+fn a_limit_costs_at_most_three_times_the_plain_scene() {
+    for m in [64, 128, 256, 512] {
+        let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).unwrap();
+        for h in [ball(&grid), rough(&grid)].into_iter().take(if m < 512 { 2 } else { 1 }) {
+            let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.3));
+            let (_, stop, found) = solve(&plain, &Options::default()).unwrap();
+            assert_eq!(stop, Stop::Converged);
+            for load in [plain.load, Load::Force(found.measures.force)] {
+                let scene = Scene { load, ..plain.clone() };
+                let (_, _, alone) = solve(&scene, &Options::default()).unwrap();
+                for share in [0.9, 0.75, 0.6] {
+                    let limit = PressureLimit::Uniform(share * found.measures.max_pressure);
+                    let limited = Scene { pressure_limit: Some(limit), ..scene.clone() };
+                    let (solver, stop, report) = solve(&limited, &Options::default()).unwrap();
+                    let what = format!("{m}, {load:?}, {share}: {} for {}", report.work_units, alone.work_units);
+                    assert_eq!(stop, Stop::Converged, "{what}");
+                    assert!(solver.state().at_limit.contains(&true), "{what}: no limit is reached");
+                    assert!(report.work_units <= 3.0 * alone.work_units, "{what}");
+                }
+            }
+        }
+    }
+}

@@ -92,7 +92,7 @@ impl<T: Real> Iteration<T> {
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {
-            (self.limits.missing, self.limits.shift) = (0.0, 0.0);
+            self.limits.forget();
             state.fit_approach();
             self.update_displacements(state, set, &Update::default());
             self.find_contact(state);
@@ -156,7 +156,7 @@ impl<T: Real> Iteration<T> {
         self.debts.clear();
         self.find_contact(state);
         let mut update = Update::default();
-        (self.limits.missing, self.limits.shift) = (0.0, 0.0);
+        self.limits.forget();
         if self.update_pressures(state, set, 0.0, None) > 0 {
             update.factor = self.carry_force::<S>(state);
         } else if S::LIMITED {

@@ -74,6 +74,7 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
+        self.limits.residual = rr;
         if rr == 0.0 {
             0.0
         } else {
@@ -280,12 +281,14 @@ impl<T: Real> Iteration<T> {
             }
             entering[0] = any;
         });
+        let waits = S::LIMITED && self.limits.waits(h, u, at_limit, approach);
         let mut entered = 0;
         for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| any) {
             self.runs.change(iy * mx);
             for i in iy * mx..(iy + 1) * mx {
                 let held = S::LIMITED && at_limit[i];
-                if !contact[i] && set.enters(held, h[i] - approach + u[i]) {
+                let stays = contact[i] || held && waits;
+                if !stays && set.enters(held, h[i] - approach + u[i]) {
                     contact[i] = true;
                     entered += 1;
                     if held {

@@ -18,6 +18,10 @@ pub(super) struct Beyond {
     pub(super) missing: f64,
     /// How far the approach moves on for that.
     pub(super) shift: f64,
+    /// The sum of e^2 over C, of the last iteration.
+    pub(super) residual: f64,
+    /// Whether the step before went back to the least energy.
+    pub(super) went_back: bool,
     /// The pressures that u knows of: those of before the iteration without what was owed then.
     pub(super) known: Vec<f64>,
 }
