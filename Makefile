@@ -27,7 +27,7 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy install tools clean
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy install tools notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -140,6 +140,11 @@ install:
 		'Name: contact-normal' 'Description: The elastic normal contact problem by full multigrid' \
 		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lcontact_normal' \
 		'Libs.private: $(STATIC_LIBS)' > $(LIBDIR)/pkgconfig/contact-normal.pc
+
+# The licences of what is linked, anew: after a change of Cargo.lock.
+notices:
+	$(CARGO) about --version >/dev/null 2>&1 || $(CARGO) install --locked cargo-about --no-default-features --features cli
+	$(CARGO) about generate --locked --fail -o THIRD_PARTY_NOTICES about.hbs
 
 clean:
 	$(CARGO) clean
