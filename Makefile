@@ -3,31 +3,15 @@
 CARGO ?= cargo
 CC = gcc
 FC = gfortran
-PREFIX ?= /usr/local
-override PREFIX := $(abspath $(PREFIX))
-DESTDIR ?=
-INSTALL ?= install
+include packaging/install.mk
 
-VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-# The soname changes when the ABI breaks, not with every version: build.rs links with it.
-SONAME := libcontact_normal.so.0
-
-# Where the built libraries are: a packager (or a test) may have them elsewhere.
-LIBDIR_BUILT ?= target/release
-LIBRARIES := $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR_BUILT)/libcontact_normal.a
-# What the static library needs of the system, as `cargo rustc --release --lib --crate-type staticlib -- --print
-# native-static-libs` says; tests/clients/installed_package.rs links with it.
-STATIC_LIBS := -lgcc_s -lutil -lrt -lpthread -lm -ldl -lc
-
-INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
-LIBDIR := $(DESTDIR)$(PREFIX)/lib
 WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 
 # The first Python that has numpy and matplotlib: a python3 of the user's own may lack what /usr/bin/python3 has.
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy install tools notices clean
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -126,20 +110,6 @@ accuracy: tools
 	@mkdir -p build
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY) > build/accuracy.csv
 	"$(find_python)" benches/accuracy.py build/accuracy.csv docs
-
-install:
-	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all
-	$(INSTALL) -d $(INCLUDEDIR) $(LIBDIR)/pkgconfig
-	$(INSTALL) -m 644 $(addprefix include/contact_normal,.h .f90 _exports.inc _norm_solve.inc) $(INCLUDEDIR)
-	$(INSTALL) -m 755 $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR)/$(SONAME).$(VERSION:0.%=%)
-	ln -sfn $(SONAME).$(VERSION:0.%=%) $(LIBDIR)/$(SONAME)
-	ln -sfn $(SONAME) $(LIBDIR)/libcontact_normal.so
-	$(INSTALL) -m 644 $(LIBDIR_BUILT)/libcontact_normal.a $(LIBDIR)
-	@printf '%s\n' \
-		'prefix=$(PREFIX)' 'includedir=$${prefix}/include' 'libdir=$${prefix}/lib' '' \
-		'Name: contact-normal' 'Description: The elastic normal contact problem by full multigrid' \
-		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lcontact_normal' \
-		'Libs.private: $(STATIC_LIBS)' > $(LIBDIR)/pkgconfig/contact-normal.pc
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:
