@@ -11,26 +11,31 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools notices clean
+# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so.
+apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them: $(1)" >&2; exit 1; }; \
+	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
+	echo "Missing here: $(1). Installing with: $$sudo apt-get install --no-install-recommends"; \
+	$$sudo apt-get update -qq && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
+
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools demo-tools wheel package-test notices clean
 .DEFAULT_GOAL := all
 
 all:
 	$(CARGO) build --release --locked
 
-# Installs those Debian packages whose tool is missing, with sudo unless we are root; says so.
-tools:
+# Installs those Debian packages whose tool is missing: for the demo fewer than for the tests. Without sudo: have them installed
+# before, then nothing is done here.
+tools demo-tools:
 	@missing=''; \
 	need() { command -v "$$1" >/dev/null 2>&1 || missing="$$missing $$2"; }; \
-	need gcc gcc; need g++ g++; need gfortran gfortran; need valgrind valgrind; need pkg-config pkg-config; \
+	need gcc gcc; need gfortran gfortran; \
+	if test $@ = tools; then need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
 	echo 'int main(void) { return 0; }' | gcc -x c - -o /dev/null 2>/dev/null || missing="$$missing gcc libc6-dev"; \
 	if test -z "$(find_python)"; then missing="$$missing python3 python3-numpy python3-matplotlib"; fi; \
-	test -z "$$missing" && exit 0; \
-	command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them:$$missing" >&2; exit 1; }; \
-	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
-	echo "Missing here:$$missing. Installing with: $$sudo apt-get install"; \
-	$$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $$missing
+	test -z "$$missing" || { $(call apt_get,$$missing); }
 
-demo: tools all
+demo: demo-tools all
 	@mkdir -p build
 	@ln -sfn ../target/release/libcontact_normal.so build/$(SONAME)
 	$(CC) -std=c99 -O2 -Iinclude c_examples/hertz.c -o build/hertz_c -Ltarget/release -lcontact_normal -lm
@@ -88,12 +93,7 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 	command -v cmake >/dev/null || missing="$$missing cmake"; \
 	test -d /usr/include/eigen3 || missing="$$missing libeigen3-dev"; \
 	python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; \
-	if test -n "$$missing"; then \
-		command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them:$$missing" >&2; exit 1; }; \
-		sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
-		echo "Missing here:$$missing. Installing with: $$sudo apt-get install"; \
-		$$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $$missing; \
-	fi
+	test -z "$$missing" || { $(call apt_get,$$missing); }
 	python3 -m venv build/peers
 	CFLAGS="-O3 -march=native" CXXFLAGS="-O3 -march=native" build/peers/bin/pip install --quiet --no-binary aspher \
 		-r benches/peers/requirements.txt
@@ -110,6 +110,28 @@ accuracy: tools
 	@mkdir -p build
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY) > build/accuracy.csv
 	"$(find_python)" benches/accuracy.py build/accuracy.csv docs
+
+# The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
+wheel: all build/tools/bin/python
+	rm -rf build/wheel
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
+		build/tools/bin/python -m build --wheel --no-isolation --outdir build/wheel >build/wheel.log || { cat build/wheel.log >&2; exit 1; }
+
+# Installs the library into an empty prefix and the wheel into an empty environment, and uses them without Rust in PATH.
+package-test: tools wheel build/tools/bin/python
+	rm -rf build/prefix
+	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	@ls -l build/prefix/lib/libcontact_normal.so.*.* build/prefix/lib/libcontact_normal.a build/wheel/*.whl
+	build/tools/bin/python -m mypy
+	@test $$(stat -c %s build/wheel/*.whl) -le 5000000 || { echo "the wheel is larger than 5 MB" >&2; exit 1; }
+	FPM=$(abspath build/tools/bin/fpm) packaging/test.sh build/prefix build/wheel/*.whl build/consumers
+
+# What builds wheels and the site: an environment of Python, apart from the user's.
+build/tools/bin/python: packaging/requirements.txt
+	@python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }
+	python3 -m venv build/tools
+	build/tools/bin/pip install --quiet --disable-pip-version-check -r packaging/requirements.txt
+	touch $@
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:

@@ -13,7 +13,7 @@ SONAME := libcontact_normal.so.0
 REALNAME := $(SONAME).$(VERSION:0.%=%)
 
 # Where the built libraries are: a packager (or a test) may have them elsewhere.
-LIBDIR_BUILT ?= target/release
+LIBDIR_BUILT ?= $(or $(CARGO_TARGET_DIR),target)/release
 # What the static library needs of the system, as `cargo rustc --release --lib --crate-type staticlib -- --print
 # native-static-libs` says, with the static unwinder of gcc in place of the shared one, so that `cc -static` works, too.
 STATIC_LIBS := -lgcc_eh -lutil -lrt -lpthread -lm -ldl -lc
