@@ -18,7 +18,7 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools demo-tools wheel package-test notices clean
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -125,6 +125,17 @@ package-test: tools wheel build/tools/bin/python
 	build/tools/bin/python -m mypy
 	@test $$(stat -c %s build/wheel/*.whl) -le 5000000 || { echo "the wheel is larger than 5 MB" >&2; exit 1; }
 	FPM=$(abspath build/tools/bin/fpm) packaging/test.sh build/prefix build/wheel/*.whl build/consumers
+
+# The site, in build/docs/html. Warnings are errors; links and code blocks are checked.
+docs: tools all build/tools/bin/python
+	rm -rf build/docs
+	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
+		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
+	build/tools/bin/python docs/check_links.py
+	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/libcontact_normal.so) PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/check_code.py build/prefix build/docs/code
+	@echo "The site: build/docs/html/index.html"
 
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/bin/python: packaging/requirements.txt

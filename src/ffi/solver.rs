@@ -98,7 +98,7 @@ pub unsafe extern "C" fn contact_normal_solver_new(
 /// for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
 /// solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
 /// `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
-/// without coefficients to compare (README, "Many solves"). Since 0.1.
+/// without coefficients to compare (docs/conventions.md, "Many solves"). Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(
     solver: *mut contact_normal_solver,

@@ -1,0 +1,91 @@
+"""Draws the pages of the C and the Fortran reference from include/contact_normal.h and include/contact_normal.f90.
+
+Both files are regular: a comment stands before what it is about. The header is generated; a test compares it with src/ffi.
+"""
+
+import re
+from pathlib import Path
+
+
+def write(include: Path, folder: Path) -> None:
+    """Writes c.md and fortran.md into `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "c.md").write_text(c_page((include / "contact_normal.h").read_text()))
+    parts = ("contact_normal.f90", "contact_normal_exports.inc", "contact_normal_norm_solve.inc")
+    (folder / "fortran.md").write_text(fortran_page([(include / part).read_text() for part in parts]))
+
+
+def escaped(text: str) -> str:
+    """Text for a cell of a table: formulas with bars and underscores stay as they are."""
+    return text.replace("|", "\\|").replace("*", "\\*").replace("$", "\\$")
+
+
+def joined(comment: str) -> str:
+    """A comment in one line."""
+    return " ".join(comment.split())
+
+
+def paragraphs(comment: str) -> str:
+    """A comment as paragraphs."""
+    lines = [line.strip() for line in comment.strip().splitlines()]
+    text = "\n".join(lines)
+    return "\n\n".join(joined(part) for part in text.split("\n\n")).replace("*", "\\*")
+
+
+def c_page(header: str) -> str:
+    """The page of the C reference."""
+    out = ["# C", "", "Drawn from `include/contact_normal.h`. [Conventions](../../conventions.md) has what holds for every call.", ""]
+    functions, structs, constants, others = [], [], [], []
+    for comment, code in re.findall(r"/\*\n(.*?)\*/\n(.*?)(?=\n\n|\n/\*)", header, re.DOTALL):
+        if code.startswith("#define"):
+            constants.append((comment, *code.split()[1:3]))
+        elif re.match(r"typedef struct \w+ \{", code):
+            structs.append((comment, code.split()[2]))
+        elif code.startswith("typedef"):
+            others.append((comment, code))
+        elif re.match(r"[\w ]+\*?contact_normal_\w+\(", code):
+            functions.append((comment, code))
+    out += ["## Functions", ""]
+    for comment, code in functions:
+        name = re.search(r"(contact_normal_\w+)\(", code).group(1)
+        out += [f"### {name}", "", "```c", code, "```", "", paragraphs(comment), ""]
+    out += ["## Structs", ""]
+    for comment, name in structs:
+        body = re.search(rf"typedef struct {name} \{{\n(.*?)\n\}} {name};", header, re.DOTALL).group(1)
+        out += [f"### {name}", "", paragraphs(comment), "", "| member | |", "|---|---|"]
+        for told, code in re.findall(r"/\*\n(.*?)\*/\n(.*?);", body, re.DOTALL):
+            out.append(f"| `{joined(code)}` | {escaped(joined(told))} |")
+        out.append("")
+    out += ["## Callbacks and handles", ""]
+    for comment, code in others:
+        out += ["```c", code, "```", "", paragraphs(comment), ""]
+    out += ["## Constants", "", "| constant | value | |", "|---|---:|---|"]
+    out += [f"| `{name}` | {value} | {escaped(joined(comment))} |" for comment, name, value in constants]
+    if len(functions) < 20 or len(structs) < 10 or len(constants) < 30:
+        raise ValueError(f"the header was not understood: {len(functions)} functions, {len(structs)} structs")
+    return "\n".join(out) + "\n"
+
+
+def fortran_page(parts: list[str]) -> str:
+    """The page of the Fortran reference."""
+    module = "\n".join(parts)
+    out = ["# Fortran", "", "Drawn from `include/contact_normal.f90`. What a structure's components mean is said in the",
+           "[C reference](c.md), whose names are the same; `use contact_normal` gives all of it.", ""]
+    head = re.match(r"((?:!.*\n)+)", module).group(1)
+    out += [re.sub(r"^! ?", "", line) for line in head.splitlines()[3:] if not line.startswith("!   gfortran")] + [""]
+    found = re.findall(r"((?:^ *!.*\n)+)^ *((?:pure |elemental )*(?:subroutine|function) .*?\))((?: bind| result).*?)?$",
+                       re.sub(r" *&\n *", " ", module), re.MULTILINE)
+    named = set()
+    out += ["## Procedures", ""]
+    for comment, code, _rest in found:
+        name = re.search(r"(?:subroutine|function) (\w+)", code).group(1)
+        public = name.startswith(("contact_normal_", "norm_solve")) and name not in named
+        if public:
+            named.add(name)
+            told = "\n".join(re.sub(r"^ *! ?", "", line) for line in comment.splitlines())
+            aligned = re.search(r"^ {2,}\S", told, re.MULTILINE)
+            text = f"```text\n{told}\n```" if aligned else paragraphs(told)
+            out += [f"### {name}", "", "```fortran", re.sub(r"\s+", " ", code), "```", "", text, ""]
+    if len(named) < 20 or "norm_solve" not in named:
+        raise ValueError(f"the module was not understood: {sorted(named)}")
+    return "\n".join(out) + "\n"
