@@ -31,4 +31,4 @@ html_theme = "furo"
 html_title = f"contact-normal {release}"
 
 # The C and the Fortran reference are drawn from the header and from the module.
-reference_pages.write(root / "include", here / "reference" / "generated")
+reference_pages.write(root, here / "reference" / "generated")

@@ -7,12 +7,27 @@ import re
 from pathlib import Path
 
 
-def write(include: Path, folder: Path) -> None:
+def write(root: Path, folder: Path) -> None:
     """Writes c.md and fortran.md into `folder`."""
+    include = root / "include"
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "c.md").write_text(c_page((include / "contact_normal.h").read_text()))
+    page = c_page((include / "contact_normal.h").read_text(), Examples(root, "c_examples", "*.c"))
+    (folder / "c.md").write_text(page)
     parts = ("contact_normal.f90", "contact_normal_exports.inc", "contact_normal_norm_solve.inc")
-    (folder / "fortran.md").write_text(fortran_page([(include / part).read_text() for part in parts]))
+    page = fortran_page([(include / part).read_text() for part in parts], Examples(root, "fortran_examples", "*.f90"))
+    (folder / "fortran.md").write_text(page)
+
+
+class Examples:
+    """The example programs of a language."""
+
+    def __init__(self, root: Path, folder: str, files: str) -> None:
+        self.texts = {f"{folder}/{path.name}": path.read_text() for path in sorted((root / folder).glob(files))}
+
+    def of(self, name: str) -> list[str]:
+        """A line that names up to three examples in which a procedure is called."""
+        using = [path for path, text in self.texts.items() if re.search(rf"\b{name}\b *\(", text)][:3]
+        return ["Example: " + ", ".join(f"[`{path}`](../../../{path})" for path in using) + ".", ""] if using else []
 
 
 def escaped(text: str) -> str:
@@ -32,7 +47,7 @@ def paragraphs(comment: str) -> str:
     return "\n\n".join(joined(part) for part in text.split("\n\n")).replace("*", "\\*")
 
 
-def c_page(header: str) -> str:
+def c_page(header: str, examples: Examples) -> str:
     """The page of the C reference."""
     out = ["# C", "", "Drawn from `include/contact_normal.h`. [Conventions](../../conventions.md) has what holds for every call.", ""]
     functions, structs, constants, others = [], [], [], []
@@ -48,7 +63,7 @@ def c_page(header: str) -> str:
     out += ["## Functions", ""]
     for comment, code in functions:
         name = re.search(r"(contact_normal_\w+)\(", code).group(1)
-        out += [f"### {name}", "", "```c", code, "```", "", paragraphs(comment), ""]
+        out += [f"### {name}", "", "```c", code, "```", "", paragraphs(comment), "", *examples.of(name)]
     out += ["## Structs", ""]
     for comment, name in structs:
         body = re.search(rf"typedef struct {name} \{{\n(.*?)\n\}} {name};", header, re.DOTALL).group(1)
@@ -66,7 +81,7 @@ def c_page(header: str) -> str:
     return "\n".join(out) + "\n"
 
 
-def fortran_page(parts: list[str]) -> str:
+def fortran_page(parts: list[str], examples: Examples) -> str:
     """The page of the Fortran reference."""
     module = "\n".join(parts)
     out = ["# Fortran", "", "Drawn from `include/contact_normal.f90`. What a structure's components mean is said in the",
@@ -75,17 +90,18 @@ def fortran_page(parts: list[str]) -> str:
     out += [re.sub(r"^! ?", "", line) for line in head.splitlines()[3:] if not line.startswith("!   gfortran")] + [""]
     found = re.findall(r"((?:^ *!.*\n)+)^ *((?:pure |elemental )*(?:subroutine|function) .*?\))((?: bind| result).*?)?$",
                        re.sub(r" *&\n *", " ", module), re.MULTILINE)
-    named = set()
-    out += ["## Procedures", ""]
+    named: dict[str, tuple[str, str]] = {}
     for comment, code, _rest in found:
         name = re.search(r"(?:subroutine|function) (\w+)", code).group(1)
-        public = name.startswith(("contact_normal_", "norm_solve")) and name not in named
-        if public:
-            named.add(name)
-            told = "\n".join(re.sub(r"^ *! ?", "", line) for line in comment.splitlines())
-            aligned = re.search(r"^ {2,}\S", told, re.MULTILINE)
-            text = f"```text\n{told}\n```" if aligned else paragraphs(told)
-            out += [f"### {name}", "", "```fortran", re.sub(r"\s+", " ", code), "```", "", text, ""]
+        # norm_solve is there twice: the module's has the longer comment.
+        if name.startswith(("contact_normal_", "norm_solve")) and len(comment) > len(named.get(name, ("", ""))[0]):
+            named[name] = (comment, code)
+    out += ["## Procedures", ""]
+    for name, (comment, code) in named.items():
+        told = "\n".join(re.sub(r"^ *! ?", "", line) for line in comment.splitlines())
+        aligned = re.search(r"^ {2,}\S", told, re.MULTILINE)
+        text = f"```text\n{told}\n```" if aligned else paragraphs(told)
+        out += [f"### {name}", "", "```fortran", re.sub(r"\s+", " ", code), "```", "", text, "", *examples.of(name)]
     if len(named) < 20 or "norm_solve" not in named:
         raise ValueError(f"the module was not understood: {sorted(named)}")
     return "\n".join(out) + "\n"
