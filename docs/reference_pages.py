@@ -1,14 +1,16 @@
-"""Draws the pages of the C and the Fortran reference from include/contact_normal.h and include/contact_normal.f90.
+"""Draws the pages of the reference: C and Fortran from include/, Python's list of names from the package.
 
-Both files are regular: a comment stands before what it is about. The header is generated; a test compares it with src/ffi.
+The header and the module are regular: a comment stands before what it is about. The header is generated; a test compares it with src/ffi.
 """
 
+import importlib
+import inspect
 import re
 from pathlib import Path
 
 
 def write(root: Path, folder: Path) -> None:
-    """Writes c.md and fortran.md into `folder`."""
+    """Writes c.md, fortran.md and python_members.txt into `folder`."""
     include = root / "include"
     folder.mkdir(parents=True, exist_ok=True)
     page = c_page((include / "contact_normal.h").read_text(), Examples(root, "c_examples", "*.c"))
@@ -16,6 +18,7 @@ def write(root: Path, folder: Path) -> None:
     parts = ("contact_normal.f90", "contact_normal_exports.inc", "contact_normal_norm_solve.inc")
     page = fortran_page([(include / part).read_text() for part in parts], Examples(root, "fortran_examples", "*.f90"))
     (folder / "fortran.md").write_text(page)
+    (folder / "python_members.txt").write_text(python_members())
 
 
 class Examples:
@@ -105,3 +108,20 @@ def fortran_page(parts: list[str], examples: Examples) -> str:
     if len(named) < 20 or "norm_solve" not in named:
         raise ValueError(f"the module was not understood: {sorted(named)}")
     return "\n".join(out) + "\n"
+
+
+def python_members() -> str:
+    """Directives for every public name of the package: functions, the solver, and what they take, return and raise."""
+    package = importlib.import_module("contact_normal")
+    functions, classes = [], []
+    for name in package.__all__:
+        member = getattr(package, name)
+        if inspect.isclass(member):
+            members = "" if issubclass(member, (tuple, dict, Exception)) else "   :members:\n"
+            classes.append((name, f".. autoclass:: {name}\n{members}\n"))
+        elif inspect.isfunction(member) and member.__name__ == name:
+            functions.append((name, f".. autofunction:: {name}\n\n"))
+    first = ["solve", "Solver", "Result", "SolveOptions"]
+    order = {name: place for place, name in enumerate(first)}
+    listed = sorted([*functions, *classes], key=lambda each: order.get(each[0], len(first) + (each in classes)))
+    return ".. py:module:: contact_normal\n\n" + "".join(directive for _, directive in listed)
