@@ -14,7 +14,7 @@ find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 # $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so.
 apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them: $(1)" >&2; exit 1; }; \
 	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
-	echo "Missing here: $(1). Installing with: $$sudo apt-get install --no-install-recommends"; \
+	echo "Missing here: $(1). Installing by $$sudo apt-get install --no-install-recommends; to do without, install them before."; \
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 

@@ -172,8 +172,8 @@
 #define CONTACT_NORMAL_CRITERION_RESIDUAL 0
 
 /*
- `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. As a stalled iterate has a small last change, too, OK
- also asks for residual, violation and complementarity within the larger of 1e-2 and the tolerance.
+ `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. OK also needs residual, violation and
+ complementarity within the larger of 1e-2 and the tolerance, because a stalled iterate has a small last change, too.
  */
 #define CONTACT_NORMAL_CRITERION_UPDATE 1
 
@@ -218,7 +218,7 @@
 #define CONTACT_NORMAL_LIMITED_BY_GRID 1
 
 /*
- `limited_by`: the tolerance; the residual may hide a larger error than the grid's.
+ `limited_by`: the tolerance; it allows a larger error than that of the grid.
  */
 #define CONTACT_NORMAL_LIMITED_BY_TOLERANCE 2
 
@@ -279,7 +279,7 @@ typedef struct contact_normal_influence {
 } contact_normal_influence;
 
 /*
- Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain what the layer gives way.
+ Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
  */
 typedef struct contact_normal_layer {
   /*
@@ -1119,20 +1119,21 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Sets up a solver for the grid, the bodies and the influence coefficients of `scene`, whose undeformed distance and load do not
- matter yet but must be valid, with the smoother, sweeps, relaxation, coarsest and threads of `options` (NULL: the defaults).
- `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`. Since 0.1.
+ Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
+ relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+ valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+ Since 0.1.
  */
 contact_normal_status contact_normal_solver_new(const struct contact_normal_scene *scene,
                                                 const struct contact_normal_options *options,
                                                 struct contact_normal_solver **solver);
 
 /*
- Solves for the undeformed distance, the load and the pressure limit of `scene`. The rest of it must be what the solver was set up
- for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
- solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
- `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
- without coefficients to compare (docs/conventions.md, "Many solves"). Since 0.1.
+ Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies, layer, period and patches must be those
+ of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
+ are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
+ NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and without coefficients to
+ compare (docs/conventions.md, "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,
