@@ -2,17 +2,21 @@
 # Uses what `make install` and `make wheel` have made, as somebody who has no Rust: programs by pkg-config, CMake, fpm, and Python from
 # the wheel in an empty environment. Each prints the force of the paper's problem. Usage: packaging/test.sh PREFIX WHEEL FOLDER
 set -euo pipefail
+shopt -s inherit_errexit
 prefix=$(realpath "$1") wheel=$(realpath "$2") folder=$3
 consumers=$(realpath "$(dirname "$0")/consumers") data=$(realpath "$(dirname "$0")/../data/wheel_rail")
 rm -rf "$folder" && mkdir -p "$folder" && cd "$folder"
 
-# Without cargo: the folders of PATH that have it are left out. What else they have comes back by a link.
+# Without Rust: the folders of PATH that have cargo are left out. Where it lies beside the compilers, one that fails stands before it.
 without=$PWD/without_rust && mkdir "$without"
-ln -s "$(command -v python3)" "$without/python3"
 path=$without
-for entry in ${PATH//:/ }; do test -x "$entry/cargo" || path=$path:$entry; done
+for entry in ${PATH//:/ }; do test -x "$entry/cargo" -a ! -x "$entry/gcc" || path=$path:$entry; done
 export PATH=$path
-! command -v cargo >/dev/null || { echo "cargo is still in PATH" >&2; exit 1; }
+if command -v cargo >/dev/null; then
+    for tool in cargo rustc; do printf '#!/bin/sh\necho "no Rust here" >&2\nexit 1\n' > "$without/$tool"; done
+    chmod +x "$without"/*
+    ! cargo --version 2>/dev/null || { echo "cargo is still in PATH" >&2; exit 1; }
+fi
 unset CARGO_TARGET_DIR CONTACT_NORMAL_LIBRARY PYTHONPATH LD_LIBRARY_PATH
 
 # The exact force is 81986.8 N; on 128 x 128 elements it is 81989 N (cxx_examples/hertz.expected).
@@ -32,7 +36,10 @@ export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 by_pkg_config() { # compiler, source, flags of pkg-config, further flags
     # shellcheck disable=SC2046
     "$1" "$consumers/c/$2" -o program $4 $(pkg-config --cflags --libs $3 contact-normal) 2>link.log || { cat link.log >&2; return 1; }
-    if test -n "$3"; then ! readelf -d program | grep -q 'NEEDED.*contact_normal'; fi
+    if test -n "$3" && readelf -d program | grep 'NEEDED.*contact_normal' >&2; then
+        echo "linked with --static, and yet it needs the shared library" >&2
+        return 1
+    fi
     LD_LIBRARY_PATH=$prefix/lib ./program
 }
 consumer "C, shared" by_pkg_config gcc force.c "" "-std=c99"
