@@ -12,7 +12,9 @@ import sys
 from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent
-PYTHON = """import numpy as np
+PYTHON = """import contact_normal
+import numpy as np
+dx = dy = 0.2
 x, y = (np.arange(95) - 47) * 0.2, (np.arange(88) - 43.5) * 0.2
 h = 0.001 * x[None, :] ** 2 + 0.002 * y[:, None] ** 2
 """
