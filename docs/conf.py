@@ -25,7 +25,6 @@ napoleon_use_ivar = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 autodoc_preserve_defaults = True
-suppress_warnings = ["toc.empty_glob"]  # pages of effects that a version may not have
 exclude_patterns = ["reference/generated/.*"]
 
 html_theme = "furo"
