@@ -3,50 +3,39 @@
 CARGO ?= cargo
 CC = gcc
 FC = gfortran
-PREFIX ?= /usr/local
-override PREFIX := $(abspath $(PREFIX))
-DESTDIR ?=
-INSTALL ?= install
+include packaging/install.mk
 
-VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-# The soname changes when the ABI breaks, not with every version: build.rs links with it.
-SONAME := libcontact_normal.so.0
-
-# Where the built libraries are: a packager (or a test) may have them elsewhere.
-LIBDIR_BUILT ?= target/release
-LIBRARIES := $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR_BUILT)/libcontact_normal.a
-# What the static library needs of the system, as `cargo rustc --release --lib --crate-type staticlib -- --print
-# native-static-libs` says; tests/clients/installed_package.rs links with it.
-STATIC_LIBS := -lgcc_s -lutil -lrt -lpthread -lm -ldl -lc
-
-INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
-LIBDIR := $(DESTDIR)$(PREFIX)/lib
 WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 
 # The first Python that has numpy and matplotlib: a python3 of the user's own may lack what /usr/bin/python3 has.
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy install tools clean
+# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so.
+apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them: $(1)" >&2; exit 1; }; \
+	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
+	echo "Missing here: $(1). Installing by $$sudo apt-get install --no-install-recommends; to do without, install them before."; \
+	$$sudo apt-get update -qq && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
+
+.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
 	$(CARGO) build --release --locked
 
-# Installs those Debian packages whose tool is missing, with sudo unless we are root; says so.
-tools:
+# Installs those Debian packages whose tool is missing: for the demo fewer than for the tests. Without sudo: have them installed
+# before, then nothing is done here.
+tools demo-tools:
 	@missing=''; \
 	need() { command -v "$$1" >/dev/null 2>&1 || missing="$$missing $$2"; }; \
-	need gcc gcc; need g++ g++; need gfortran gfortran; need valgrind valgrind; need pkg-config pkg-config; \
+	need gcc gcc; need gfortran gfortran; \
+	if test $@ = tools; then need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
 	echo 'int main(void) { return 0; }' | gcc -x c - -o /dev/null 2>/dev/null || missing="$$missing gcc libc6-dev"; \
 	if test -z "$(find_python)"; then missing="$$missing python3 python3-numpy python3-matplotlib"; fi; \
-	test -z "$$missing" && exit 0; \
-	command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them:$$missing" >&2; exit 1; }; \
-	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
-	echo "Missing here:$$missing. Installing with: $$sudo apt-get install"; \
-	$$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $$missing
+	test -z "$$missing" || { $(call apt_get,$$missing); }
 
-demo: tools all
+demo: demo-tools all
 	@mkdir -p build
 	@ln -sfn ../target/release/libcontact_normal.so build/$(SONAME)
 	$(CC) -std=c99 -O2 -Iinclude c_examples/hertz.c -o build/hertz_c -Ltarget/release -lcontact_normal -lm
@@ -104,12 +93,7 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 	command -v cmake >/dev/null || missing="$$missing cmake"; \
 	test -d /usr/include/eigen3 || missing="$$missing libeigen3-dev"; \
 	python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; \
-	if test -n "$$missing"; then \
-		command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them:$$missing" >&2; exit 1; }; \
-		sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
-		echo "Missing here:$$missing. Installing with: $$sudo apt-get install"; \
-		$$sudo apt-get update -qq && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $$missing; \
-	fi
+	test -z "$$missing" || { $(call apt_get,$$missing); }
 	python3 -m venv build/peers
 	CFLAGS="-O3 -march=native" CXXFLAGS="-O3 -march=native" build/peers/bin/pip install --quiet --no-binary aspher \
 		-r benches/peers/requirements.txt
@@ -127,19 +111,43 @@ accuracy: tools
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY) > build/accuracy.csv
 	"$(find_python)" benches/accuracy.py build/accuracy.csv docs
 
-install:
-	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all
-	$(INSTALL) -d $(INCLUDEDIR) $(LIBDIR)/pkgconfig
-	$(INSTALL) -m 644 $(addprefix include/contact_normal,.h .f90 _exports.inc _norm_solve.inc) $(INCLUDEDIR)
-	$(INSTALL) -m 755 $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR)/$(SONAME).$(VERSION:0.%=%)
-	ln -sfn $(SONAME).$(VERSION:0.%=%) $(LIBDIR)/$(SONAME)
-	ln -sfn $(SONAME) $(LIBDIR)/libcontact_normal.so
-	$(INSTALL) -m 644 $(LIBDIR_BUILT)/libcontact_normal.a $(LIBDIR)
-	@printf '%s\n' \
-		'prefix=$(PREFIX)' 'includedir=$${prefix}/include' 'libdir=$${prefix}/lib' '' \
-		'Name: contact-normal' 'Description: The elastic normal contact problem by full multigrid' \
-		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lcontact_normal' \
-		'Libs.private: $(STATIC_LIBS)' > $(LIBDIR)/pkgconfig/contact-normal.pc
+# The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
+wheel: all build/tools/bin/python
+	rm -rf build/wheel
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
+		build/tools/bin/python -m build --wheel --no-isolation --outdir build/wheel >build/wheel.log || { cat build/wheel.log >&2; exit 1; }
+
+# Installs the library into an empty prefix and the wheel into an empty environment, and uses them without Rust in PATH.
+package-test: tools wheel build/tools/bin/python
+	rm -rf build/prefix
+	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	@ls -l build/prefix/lib/libcontact_normal.so.*.* build/prefix/lib/libcontact_normal.a build/wheel/*.whl
+	build/tools/bin/python -m mypy
+	@test $$(stat -c %s build/wheel/*.whl) -le 5000000 || { echo "the wheel is larger than 5 MB" >&2; exit 1; }
+	FPM=$(abspath build/tools/bin/fpm) packaging/test.sh build/prefix build/wheel/*.whl build/consumers
+
+# The site, in build/docs/html. Warnings are errors; links and code blocks are checked.
+docs: tools all build/tools/bin/python
+	rm -rf build/docs
+	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
+		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
+	build/tools/bin/python docs/check_links.py
+	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/libcontact_normal.so) PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/check_code.py build/prefix build/docs/code
+	@echo "The site: build/docs/html/index.html"
+
+# What builds wheels and the site: an environment of Python, apart from the user's.
+build/tools/bin/python: packaging/requirements.txt
+	@python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }
+	python3 -m venv build/tools
+	build/tools/bin/pip install --quiet --disable-pip-version-check -r packaging/requirements.txt
+	touch $@
+
+# The licences of what is linked, anew: after a change of Cargo.lock.
+notices:
+	$(CARGO) about --version >/dev/null 2>&1 || $(CARGO) install --locked cargo-about --no-default-features --features cli
+	$(CARGO) about generate --locked --fail -o THIRD_PARTY_NOTICES about.hbs
 
 clean:
 	$(CARGO) clean

@@ -23,6 +23,14 @@ pub struct Grid {
 const MOST_ELEMENTS: usize = i32::MAX as usize;
 
 impl Grid {
+    /// The first size that is another one than that of the grid of a set-up; none if all are the same.
+    pub fn differs(&self, of_set_up: &Grid) -> Option<String> {
+        let sizes = |grid: &Grid| [("mx", grid.mx as f64), ("my", grid.my as f64), ("dx", grid.dx), ("dy", grid.dy)];
+        let pairs = sizes(self).into_iter().zip(sizes(of_set_up));
+        let (now, then) = pairs.into_iter().find(|(now, then)| now.1 != then.1)?;
+        Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
+    }
+
     /// A grid, after a check of its sizes.
     pub fn new(mx: usize, my: usize, dx: f64, dy: f64) -> Result<Grid> {
         for (name, m) in [("mx", mx), ("my", my)] {

@@ -40,7 +40,7 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     _outline(axes, result.contact, x_edges, y_edges)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label="pressure")
     axes.set(xlabel="x", ylabel="y", aspect="equal")
-    axes.set_title(f"force {result.force:.4g}, approach {result.approach:.4g}, {mx} × {my} elements", fontsize=10)
+    axes.set_title(f"force {result.force:.5g}, approach {result.approach:.5g}, {mx} × {my} elements", fontsize=10)
     return axes
 
 

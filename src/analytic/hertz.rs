@@ -51,7 +51,9 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let found = [long, short, area, max_pressure, exact.force];
     if !found.iter().all(|value| *value > 0.0 && value.is_finite()) {
         return invalid(format!(
-            "curvature_x {curvature_x}, curvature_y {curvature_y} and approach {approach} give a contact out of range: {exact:?}"
+            "curvature_x {curvature_x:e}, curvature_y {curvature_y:e} and approach {approach:e} give a contact out of range: semi-axes \
+             {semi_axis_x:e} and {semi_axis_y:e}, largest pressure {max_pressure:e}, force {:e}",
+            exact.force
         ));
     }
     Ok(exact)

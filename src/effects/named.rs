@@ -80,7 +80,7 @@ impl Named {
     /// What of another scene is not as at the set-up; none if all is.
     pub fn differs(&self, scene: &Scene<'_>) -> Option<String> {
         if let Some(bodies) = self.bodies.filter(|bodies| !replace_bodies(scene) && *bodies != scene.bodies) {
-            return Some(format!("the bodies are {:?}; this solver was set up for {bodies:?}", scene.bodies));
+            return scene.bodies.differs(&bodies);
         }
         for pair in self.effects.into_iter().zip(list(scene).map(name_of_set_up)) {
             match pair {

@@ -21,7 +21,7 @@ pub struct contact_normal_period {
 
 versioned! { contact_normal_period, 16 }
 
-/// Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain what the layer gives way.
+/// Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_layer {

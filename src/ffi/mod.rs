@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 #![allow(clippy::doc_lazy_continuation)] // comments of members are those of the header
-#![allow(clippy::missing_safety_doc)] // the rules for all exports stand in README, "Conventions of the C ABI"
+#![allow(clippy::missing_safety_doc)] // the rules for all exports stand in docs/conventions.md
 
 mod accuracy;
 mod arguments;

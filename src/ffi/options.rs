@@ -45,8 +45,8 @@ pub const CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS: i32 = 2;
 
 /// `criterion`: `||h - approach + A p|| <= tolerance ||h - approach||`, 2-norms over C.
 pub const CONTACT_NORMAL_CRITERION_RESIDUAL: i32 = 0;
-/// `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. As a stalled iterate has a small last change, too, OK
-/// also asks for residual, violation and complementarity within the larger of 1e-2 and the tolerance.
+/// `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. OK also needs residual, violation and
+/// complementarity within the larger of 1e-2 and the tolerance, because a stalled iterate has a small last change, too.
 pub const CONTACT_NORMAL_CRITERION_UPDATE: i32 = 1;
 
 /// `precision`: whichever is faster.

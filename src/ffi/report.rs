@@ -33,7 +33,7 @@ pub const CONTACT_NORMAL_UNTRUSTED_PRESSURE: i32 = 4;
 pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
 /// `limited_by`: the grid; a smaller tolerance would change nothing.
 pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
-/// `limited_by`: the tolerance; the residual may hide a larger error than the grid's.
+/// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
 
 /// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not

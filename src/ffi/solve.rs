@@ -8,8 +8,9 @@ use super::outputs::{Buffers, Outputs};
 use super::report::{contact_normal_fields, contact_normal_progress, contact_normal_report};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
+use crate::contact::State;
 use crate::scene::Scene;
-use crate::solver::{Options, Progress, ProgressCallback, Report, Solver, Stop};
+use crate::solver::{Method, Options, Progress, ProgressCallback, Report, Solver, Stop};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -122,11 +123,12 @@ pub(super) fn run(
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, buffers)?, progress)?;
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;
-    let message = if stop == Stop::Converged { String::new() } else { explain(stop, &report) };
+    let message =
+        if stop == Stop::Converged { String::new() } else { explain(stop, &report, options.method, solver.state()) };
     Ok(Outcome { status: stop.into(), message })
 }
 
-fn explain(stop: Stop, report: &Report) -> String {
+fn explain(stop: Stop, report: &Report, method: Method, state: &State) -> String {
     let (cycles, residual) = (report.cycles, report.measures.certificate.residual);
     let why = match stop {
         Stop::Converged => "solved",
@@ -134,5 +136,28 @@ fn explain(stop: Stop, report: &Report) -> String {
         Stop::Cancelled => "the progress callback cancelled",
         Stop::Stagnated => "no further progress",
     };
-    format!("{why} after {cycles} cycles; the residual is {residual:e}")
+    let mut message = format!("{why} after {cycles} cycles; the residual is {residual:e}");
+    if stop == Stop::Stagnated {
+        let (largest, round_off) = round_off(state);
+        // What the products and the distances lose together is some multiples of it.
+        if residual <= 100.0 * round_off {
+            message += &format!(
+                ", about the round-off of distances of order {largest:.0e}: a larger tolerance, or distances measured from nearer"
+            );
+        } else if method != Method::Auto {
+            message += ": another method may go on; AUTO tries them all";
+        }
+    }
+    message
+}
+
+/// The largest undeformed distance in contact, or of h - approach = -u there, and its round-off relative to the rms of u.
+fn round_off(state: &State) -> (f64, f64) {
+    let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
+    for i in (0..state.h.len()).filter(|&i| state.contact[i]) {
+        largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
+        squares += state.u[i] * state.u[i];
+        count += 1;
+    }
+    (largest, f64::EPSILON * largest / (squares / count.max(1) as f64).sqrt())
 }

@@ -69,9 +69,10 @@ impl Drop for InUse<'_> {
     }
 }
 
-/// Sets up a solver for the grid, the bodies and the influence coefficients of `scene`, whose undeformed distance and load do not
-/// matter yet but must be valid, with the smoother, sweeps, relaxation, coarsest and threads of `options` (NULL: the defaults).
-/// `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`. Since 0.1.
+/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
+/// relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+/// valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+/// Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_new(
     scene: *const contact_normal_scene,
@@ -94,11 +95,11 @@ pub unsafe extern "C" fn contact_normal_solver_new(
     })
 }
 
-/// Solves for the undeformed distance, the load and the pressure limit of `scene`. The rest of it must be what the solver was set up
-/// for, or is refused: grid, bodies, layer, period, patches. `scene->influence` and `scene->row_tables` may be NULL: those of the
-/// solver; if they are not, they are read and compared, every time. Other coefficients need `contact_normal_solver_set_influence`.
-/// `fields`, `report` NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and
-/// without coefficients to compare (README, "Many solves"). Since 0.1.
+/// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies, layer, period and patches must be those
+/// of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
+/// are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
+/// NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and without coefficients to
+/// compare (docs/conventions.md, "Many solves"). Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(
     solver: *mut contact_normal_solver,

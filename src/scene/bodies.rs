@@ -22,6 +22,17 @@ impl Bodies {
         (0..2).map(|i| (1.0 - self.poisson_ratio[i]) / (2.0 * self.shear_modulus[i])).sum()
     }
 
+    /// The first elastic constant that is another one than that of the bodies of a set-up; none if all are the same.
+    pub fn differs(&self, of_set_up: &Bodies) -> Option<String> {
+        let constants = |bodies: &Bodies| {
+            let ([g0, g1], [nu0, nu1]) = (bodies.shear_modulus, bodies.poisson_ratio);
+            [("shear_modulus[0]", g0), ("shear_modulus[1]", g1), ("poisson_ratio[0]", nu0), ("poisson_ratio[1]", nu1)]
+        };
+        let pairs = constants(self).into_iter().zip(constants(of_set_up));
+        let (now, then) = pairs.into_iter().find(|(now, then)| now.1 != then.1)?;
+        Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
+    }
+
     /// Refuses what is no material.
     pub fn check(&self) -> Result<()> {
         for i in 0..2 {
@@ -42,7 +53,10 @@ impl Bodies {
         }
         let compliance = self.compliance();
         if !(compliance.is_normal() && (1.0 / compliance).is_normal()) {
-            return invalid(format!("shear_modulus is {:?}; 1/E* = {compliance} is out of range", self.shear_modulus));
+            let [one, other] = self.shear_modulus;
+            return invalid(format!(
+                "shear_modulus is {one:e} and {other:e}, so that 1/E* is {compliance:e}; it is out of range: choose other units"
+            ));
         }
         Ok(())
     }

@@ -11,8 +11,8 @@ impl SetUp {
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         scene.check_distance_and_load()?;
         self.check_options(options)?;
-        if scene.grid != problem.grid {
-            return invalid(format!("the grid is {:?}; this solver was set up for {:?}", scene.grid, problem.grid));
+        if let Some(difference) = scene.grid.differs(&problem.grid) {
+            return invalid(difference);
         }
         effects::check_effects(scene)?;
         // Own coefficients know no bodies.
@@ -47,16 +47,21 @@ impl SetUp {
     pub fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
         let (now, then) = (options.cycle_shape(), self.options.cycle_shape());
-        let names = [
+        let numbers = [
+            ("pre_sweeps", now.pre_sweeps, then.pre_sweeps),
+            ("post_sweeps", now.post_sweeps, then.post_sweeps),
+            ("coarsest", now.coarsest, then.coarsest),
+            ("threads", options.threads, self.options.threads),
+        ];
+        if let Some((name, now, then)) = numbers.into_iter().find(|(_, now, then)| now != then) {
+            return invalid(format!("{name} is {now}; this solver was set up for {then}"));
+        }
+        let others = [
             ("smoother", now.smoother != then.smoother),
-            ("pre_sweeps", now.pre_sweeps != then.pre_sweeps),
-            ("post_sweeps", now.post_sweeps != then.post_sweeps),
             ("relaxation", now.relaxation != then.relaxation),
-            ("coarsest", now.coarsest != then.coarsest),
-            ("threads", options.threads != self.options.threads),
             ("precision", options.precision != self.options.precision),
         ];
-        if let Some((name, _)) = names.into_iter().find(|(_, differs)| *differs) {
+        if let Some((name, _)) = others.into_iter().find(|(_, differs)| *differs) {
             return invalid(format!("{name} is not that of the set-up: set up another solver for it"));
         }
         Ok(())

@@ -8,12 +8,12 @@
 //! szz = -p,  sxz = -qx,  syz = -qy    at z = 0
 //! ```
 //!
-//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form ([`element`]), which
-//! cancels far away, where point forces serve ([`point_force`]); [`kernels`] puts them together. At each depth sums over elements are
-//! products by FFT ([`product`]); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
-//! tabulated. At places off the centres the sum is direct ([`points`]).
+//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form (`element`), which
+//! cancels far away, where point forces serve (`point_force`); `kernels` puts them together. At each depth sums over elements are
+//! products by FFT (`product`); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
+//! tabulated. At places off the centres the sum is direct (`points`).
 //!
-//! Where the loads repeat themselves, kernels are sums over waves ([`periodic`]).
+//! Where the loads repeat themselves, kernels are sums over waves (`periodic`).
 //!
 //! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
 

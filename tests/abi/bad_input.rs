@@ -16,7 +16,22 @@ fn refused(row: &Row, through: Through, handle: *mut contact_normal_solver) {
     for word in *words {
         assert!(message.contains(word), "{words:?} through {through:?}: \"{message}\" does not say {word}");
     }
+    // As `{:?}` of Rust prints a struct, or an enumerator behind a colon.
+    assert!(!message.contains(['{', '}']), "{message}");
     assert!(call.outputs() == before, "{words:?} through {through:?}: outputs were written");
+}
+
+/// A stagnation by round-off says so; one of a method does not.
+#[test]
+fn a_stagnation_says_what_limits() {
+    let mut call = Call::new();
+    call.h.iter_mut().for_each(|h| *h += 1e9);
+    // The approach is found, so it has the rounding of 1e9.
+    (call.scene.known.load, call.scene.known.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, 100.0);
+    call.options.known.tolerance = 1e-12;
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_STAGNATED, "{message}");
+    assert!(message.contains("round-off of distances of order 1e9"), "{message}");
 }
 
 #[test]
@@ -256,17 +271,18 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
     #[rustfmt::skip]
     let rows: &[Row] = &[
         (&["solver"], NULL, |_| {}),
-        (&["grid", "mx: 5", "mx: 6"], INVALID, |c| c.scene.known.mx = 5),
-        (&["grid", "my: 4", "my: 5"], INVALID, |c| c.scene.known.my = 4),
-        (&["grid", "dx: 0.75"], INVALID, |c| c.scene.known.dx = 0.75),
-        (&["bodies", "80000"], INVALID, |c| c.scene.known.shear_modulus[1] = 80000.0),
+        (&["mx is 5", "set up for 6"], INVALID, |c| c.scene.known.mx = 5),
+        (&["my is 4", "set up for 5"], INVALID, |c| c.scene.known.my = 4),
+        (&["dx is 0.75", "set up for 0.5"], INVALID, |c| c.scene.known.dx = 0.75),
+        (&["shear_modulus[1] is 80000", "set up for"], INVALID, |c| c.scene.known.shear_modulus[1] = 80000.0),
         (&["influence"], INVALID, |c| { c.use_table(); }),
         (&["row_tables", "without"], INVALID, |c| { c.use_row_tables(); }),
         (&["layer", "without"], INVALID, |c| c.use_layer().compliance = 1e-6),
         (&["period"], INVALID, |c| c.use_period(1, 0)),
         (&["patches", "without"], INVALID, |c| { c.use_patches(HALF); }),
         (&["smoother"], INVALID, |c| c.options.known.smoother = CONTACT_NORMAL_SMOOTHER_JACOBI),
-        (&["threads"], INVALID, |c| c.options.known.threads = 2),
+        (&["threads is 2", "set up for 1"], INVALID, |c| c.options.known.threads = 2),
+        (&["coarsest is 3", "set up for 4"], INVALID, |c| c.options.known.coarsest = 3),
     ];
     let handle = Call::new().new_handle();
     for through in [Through::SolverSolve, Through::SolverSolveBatch] {

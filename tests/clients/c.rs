@@ -197,6 +197,20 @@ fn a_cxx11_client() {
     assert_eq!(run_linked(&program, &[], &folder), "C++ client: all as expected\n");
 }
 
+#[test]
+fn the_cxx_header_keeps_its_promises() {
+    let folder = scratch("cxx_header");
+    for standard in ["c++17", "c++20"] {
+        let mut with_shadow = compiler("g++", standard);
+        with_shadow.arg("-Wshadow");
+        let program = compile(with_shadow, "tests/clients/cxx_header.cpp", &folder);
+        assert_eq!(run_under_valgrind(&program, &[], &folder), "0 of 21 checks failed\n", "{standard}");
+    }
+    let program = compile(compiler("g++", "c++17"), "cxx_examples/hertz.cpp", &folder);
+    let expected = std::fs::read_to_string(root().join("cxx_examples/hertz.expected")).expect("hertz.expected");
+    assert_eq!(run_linked(&program, &[], &folder), expected);
+}
+
 /// Lines "struct size" and "struct.member offset", as tests/clients/abi_sizes.c prints them.
 macro_rules! layout {
     ($($name:ident { $($member:ident),+ $(,)? })+) => {{

@@ -146,6 +146,19 @@ fn norm_solve_keeps_its_promises() {
 }
 
 #[test]
+fn the_optional_arguments_of_norm_solve_do_what_they_say() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O3", "-ffast-math"]].into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_norm_solve_options_{i}"));
+        let program = compile("tests/clients/norm_solve_options.f90", flags, &folder);
+        let output = run_linked(&program, &[], &folder);
+        assert_eq!(output.lines().last(), Some("handles"), "{flags:?}\n{output}");
+        if i == 0 {
+            run_under_valgrind(&program, &[], &folder);
+        }
+    }
+}
+
+#[test]
 fn the_wrappers_of_the_module_work() {
     let folder = scratch("fortran_module");
     let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);

@@ -6,5 +6,6 @@ mod fortran;
 mod header;
 mod host_environment;
 mod installed_package;
+mod papers;
 mod python;
 mod support;

@@ -1,5 +1,5 @@
 //! The Python package: its own tests pass; the examples print what is expected and their solutions hold; structs have the layout of
-//! the library's; a process forked after a solve with threads solves too.
+//! the library's.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -67,7 +67,7 @@ fn recomputed(arrays: &Path) -> Recomputed {
     recompute(&grid, &influence, &column(0), numbers[4], &column(1), &contact)
 }
 
-/// The package's own tests, in Python: arguments, handles, batches, pictures.
+/// The package's own tests, in Python: arguments, handles, batches, pictures, processes and threads.
 #[test]
 fn the_tests_of_the_package_pass() {
     let mut command = python_in(&scratch("python_package"));
@@ -521,87 +521,4 @@ target is -1; it must be positive and finite
     let compliance = Bodies::same(82000.0, 0.28).compliance();
     let exact = contact_normal::analytic::hertz(0.0016681, 0.0030671, 0.1091, compliance).expect("a contact");
     assert_eq!(hertz.trim(), format!("{:.0} {:.0}", exact.force, exact.max_pressure));
-}
-
-#[test]
-fn a_forked_process_solves_after_a_threaded_solve() {
-    // The child has none of the parent's threads: waiting for them would never end. The parent gives it 60 s, hundreds of
-    // times what the solve takes, so that a hang fails instead of hanging the tests.
-    let script = "
-import multiprocessing, sys
-import numpy as np, contact_normal as cn
-x = np.arange(64) - 31.5
-h = 0.001 * (x[None, :] ** 2 + x[:, None] ** 2)
-def solve(threads):
-    return cn.solve(h, 0.2, 0.2, force=1e4, shear_modulus=82000.0, poisson_ratio=0.28, threads=threads).pressure.tobytes()
-def child(ends, threads):
-    ends.send(solve(threads))
-before = solve(2)
-handle = cn.Solver(64, 64, 0.2, 0.2, shear_modulus=82000.0, poisson_ratio=0.28, threads=2)
-def with_handle(ends):
-    ends.send([handle.solve(h, force=1e4).pressure.tobytes()]
-              + [found.pressure.tobytes() for found in handle.solve_batch([h, h, h], force=1e4)])
-everything = [before] * 4
-fork = multiprocessing.get_context('fork')
-for threads in (1, 2):
-    near, far = fork.Pipe(duplex=False)
-    process = fork.Process(target=child, args=(far, threads))
-    process.start()
-    found = near.recv() if near.poll(60) else None
-    process.kill() if found is None else process.join()
-    print(threads, 'hangs' if found is None else found == before)
-# A handle that was set up, and has solved a batch, before the fork.
-print(len(handle.solve_batch([h, h], force=1e4)))
-near, far = fork.Pipe(duplex=False)
-process = fork.Process(target=with_handle, args=(far,))
-process.start()
-found = near.recv() if near.poll(60) else None
-process.kill() if found is None else process.join()
-print('handle', 'hangs' if found is None else found == everything)
-print(solve(2) == before)
-";
-    let printed = run(python_in(&scratch("python_fork")).args(["-c", script]));
-    assert_eq!(printed, "1 True\n2 True\n2\nhandle True\nTrue\n");
-}
-
-#[test]
-fn threads_of_python_solve_at_once_while_python_goes_on() {
-    // ctypes releases the interpreter's lock around a call: another thread counts on while one call lasts.
-    let script = "
-import threading
-import numpy as np, contact_normal as cn
-x = np.arange(200) - 99.5
-h = 0.0001 * (x[None, :] ** 2 + x[:, None] ** 2)
-def solve(force):
-    return cn.solve(h, 0.2, 0.2, force=force, shear_modulus=82000.0, poisson_ratio=0.28, tolerance=1e-10).pressure.tobytes()
-forces = [1e4 * (k + 1) for k in range(6)]
-expected = [solve(force) for force in forces]
-found = [None] * len(forces)
-def run(k):
-    for _ in range(5):
-        found[k] = solve(forces[k])
-        if found[k] != expected[k]:
-            return
-threads = [threading.Thread(target=run, args=(k,)) for k in range(len(forces))]
-for thread in threads: thread.start()
-for thread in threads: thread.join()
-print(found == expected)
-counted = 0
-inside = threading.Event()
-def one():
-    inside.set()
-    for _ in range(10):
-        solve(1e5)
-    inside.clear()
-thread = threading.Thread(target=one)
-thread.start()
-inside.wait()
-while inside.is_set():
-    counted += 1
-thread.join()
-# Ten calls hand the lock over some ten times if they keep it, and a thread without it counts nothing.
-print(counted > 1000)
-";
-    let printed = run(python_in(&scratch("python_threads")).args(["-c", script]));
-    assert_eq!(printed, "True\nTrue\n");
 }

@@ -1,0 +1,39 @@
+"""Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #."""
+
+import re
+import sys
+from pathlib import Path
+
+root = Path(__file__).resolve().parent.parent
+GENERATED = ("generated/c.md", "generated/fortran.md")
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as GitHub and MyST make them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def broken() -> list[str]:
+    """One line per link that leads nowhere."""
+    found = []
+    pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").rglob("*.md"))]
+    count = 0
+    for page in pages:
+        text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+        for target in re.findall(r"\]\(([^)\s]+)\)", text):
+            if re.match(r"https?://", target):
+                continue
+            count += 1
+            path, _, anchor = target.partition("#")
+            to = (page.parent / path).resolve() if path else page
+            if not to.exists():
+                found.append(f"{page.relative_to(root)}: {target} does not exist")
+            elif anchor and anchor not in anchors(to):
+                found.append(f"{page.relative_to(root)}: {target} has no such heading")
+    print(f"{count} links checked")
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit("\n".join(broken()) or None)

@@ -1,0 +1,11 @@
+"""The same in Python, from the installed wheel. Prints the force."""
+
+import numpy as np
+
+import contact_normal
+
+x, y = (np.arange(128) + 0.5) * 20 / 128 - 10, (np.arange(128) + 0.5) * 12 / 128 - 6
+h = 0.0016681 * x[None, :] ** 2 + 0.0030671 * y[:, None] ** 2
+result = contact_normal.solve(h, 20 / 128, 12 / 128, approach=0.1091, shear_modulus=82000.0, poisson_ratio=0.28)
+assert result.status == contact_normal.OK, result.message
+print(f"force {result.force:.0f} N")

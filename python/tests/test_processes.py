@@ -1,0 +1,103 @@
+"""Processes that are forked after a solve with threads solve, too; threads of Python solve at once while Python goes on."""
+
+import multiprocessing
+import threading
+import unittest
+
+import numpy as np
+
+import contact_normal as cn
+
+STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
+# The child has none of the parent's threads: waiting for them would never end. This is hundreds of times what the solve takes, so that
+# a hang fails instead of hanging the tests.
+PATIENCE = 60
+
+
+def ball(m, curvature):
+    x = np.arange(m) - 0.5 * (m - 1)
+    return curvature * (x[None, :] ** 2 + x[:, None] ** 2)
+
+
+def forked(work):
+    """What `work()` returns in a forked process; None if it hangs."""
+    near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
+    process = multiprocessing.get_context("fork").Process(target=lambda: far.send(work()))
+    process.start()
+    found = near.recv() if near.poll(PATIENCE) else None
+    process.kill() if found is None else process.join()
+    return found
+
+
+class Forks(unittest.TestCase):
+    H = ball(64, 0.001)
+
+    def solve(self, threads):
+        return cn.solve(self.H, 0.2, 0.2, force=1e4, threads=threads, **STEEL).pressure.tobytes()
+
+    def test_a_forked_process_solves_after_a_threaded_solve(self):
+        before = self.solve(2)
+        for threads in (1, 2):
+            self.assertEqual(forked(lambda: self.solve(threads)), before, threads)
+        self.assertEqual(self.solve(2), before)
+
+    def test_a_handle_of_before_the_fork_solves_after_it(self):
+        before = self.solve(2)
+        handle = cn.Solver(64, 64, 0.2, 0.2, threads=2, **STEEL)
+        self.assertEqual(len(handle.solve_batch([self.H, self.H], force=1e4)), 2)
+
+        def with_handle():
+            batch = handle.solve_batch([self.H, self.H, self.H], force=1e4)
+            return [handle.solve(self.H, force=1e4).pressure.tobytes()] + [found.pressure.tobytes() for found in batch]
+
+        self.assertEqual(forked(with_handle), [before] * 4)
+        self.assertEqual(self.solve(2), before)
+
+
+class Threads(unittest.TestCase):
+    H = ball(200, 0.0001)
+
+    def solve(self, force):
+        return cn.solve(self.H, 0.2, 0.2, force=force, tolerance=1e-10, **STEEL).pressure.tobytes()
+
+    def test_threads_of_python_solve_at_once(self):
+        forces = [1e4 * (k + 1) for k in range(6)]
+        expected = [self.solve(force) for force in forces]
+        found = [None] * len(forces)
+
+        def run(k):
+            for _ in range(5):
+                found[k] = self.solve(forces[k])
+                if found[k] != expected[k]:
+                    return
+
+        threads = [threading.Thread(target=run, args=(k,)) for k in range(len(forces))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found, expected)
+
+    def test_python_goes_on_while_a_thread_solves(self):
+        # ctypes releases the interpreter's lock around a call: another thread counts on while one call lasts.
+        inside = threading.Event()
+
+        def ten():
+            inside.set()
+            for _ in range(10):
+                self.solve(1e5)
+            inside.clear()
+
+        thread = threading.Thread(target=ten)
+        thread.start()
+        inside.wait()
+        counted = 0
+        while inside.is_set():
+            counted += 1
+        thread.join()
+        # Ten calls hand the lock over some ten times if they keep it, and a thread without it counts nothing.
+        self.assertGreater(counted, 1000)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,157 @@
+// contact_normal.hpp: what its classes promise. Prints one line per check that fails, and the number of checks.
+#include <contact_normal.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+namespace cn = contact_normal;
+
+static int failed = 0, checked = 0;
+
+static void expect(bool holds, const char *what)
+{
+    checked++;
+    if (!holds) {
+        failed++;
+        std::printf("FAILED: %s\n", what);
+    }
+}
+
+static const cn::grid GRID{32, 24, 0.1, 0.1};
+static const cn::body STEEL{82000.0, 0.28};
+
+static std::vector<double> ball(double curvature)
+{
+    std::vector<double> h;
+    for (int iy = 0; iy < GRID.my; iy++) {
+        for (int ix = 0; ix < GRID.mx; ix++) {
+            const double x = (ix - 15.5) * GRID.dx, y = (iy - 11.5) * GRID.dy;
+            h.push_back(curvature * (x * x + y * y));
+        }
+    }
+    return h;
+}
+
+template <class Call> static contact_normal_status thrown_by(Call call, const char *named)
+{
+    try {
+        call();
+    } catch (const cn::error &refused) {
+        return std::string(refused.what()).find(named) == std::string::npos ? 1000 : refused.status();
+    }
+    return CONTACT_NORMAL_OK;
+}
+
+static void scenes()
+{
+    const std::vector<double> h = ball(0.01);
+    cn::scene scene(GRID, STEEL);
+    scene.undeformed_distance(h).force(500.0);
+    const cn::result found = cn::solve(scene);
+    expect(static_cast<bool>(found) && found.message.empty(), "a plain solve is OK");
+    expect(std::abs(found.report.force - 500.0) < 1e-9 * 500.0, "the prescribed force");
+    double sum = 0.0;
+    for (double p : found.pressure) sum += p * GRID.dx * GRID.dy;
+    expect(std::abs(sum - 500.0) < 1e-9 * 500.0, "the pressures add up to the force");
+    expect(!found.ledger.empty() && found.ledger.back().mx == GRID.mx, "the ledger ends with the grid of the scene");
+
+    // The plain C call, to the last bit.
+    std::vector<double> p(h.size());
+    contact_normal_scene plain = scene.get();
+    contact_normal_fields fields;
+    contact_normal_fields_init(&fields);
+    fields.pressure = p.data();
+    expect(contact_normal_solve(&plain, nullptr, &fields, nullptr) == CONTACT_NORMAL_OK && p == found.pressure, "as in C");
+
+    // A copy has effects of its own.
+    cn::scene limited = scene;
+    limited.pressure_limit(0.5 * found.report.max_pressure);
+    cn::scene copy = limited;
+    const cn::result at_limit = cn::solve(copy);
+    expect(at_limit.report.max_pressure == 0.5 * found.report.max_pressure, "a copy keeps the limit");
+    expect(cn::solve(scene).pressure == found.pressure, "the original has none");
+
+    const std::vector<double> compliances(h.size(), 1e-5);
+    const double one = cn::solve(cn::scene(scene).layer(1e-5)).report.approach;
+    const double many = cn::solve(cn::scene(scene).layer(compliances)).report.approach;
+    // The tolerance is 1e-6, of the residual; without the layer the approach is 40 percent less.
+    expect(std::abs(many / one - 1.0) < 1e-5 && one > 1.1 * found.report.approach, "a layer of one number or of many");
+    const std::vector<std::int32_t> patch(h.size(), 0);
+    const std::array<double, 1> factors{1.0};
+    expect(std::abs(cn::solve(cn::scene(scene).patches(1, patch, factors)).report.approach / found.report.approach - 1.0) < 1e-5,
+           "one patch changes nothing");
+    expect(cn::solve(cn::scene(scene).period(true, false)).report.approach != found.report.approach, "a period");
+    const cn::body rigid{std::numeric_limits<double>::infinity(), 0.0};
+    expect(cn::solve(cn::scene(GRID, STEEL, rigid).undeformed_distance(h).force(500.0)).report.max_pressure > found.report.max_pressure,
+           "a rigid body");
+
+    const double modulus[2] = {82000.0, 82000.0}, ratio[2] = {0.28, 0.28};
+    std::vector<double> table(4 * 32 * 24);
+    cn::check(contact_normal_influence_half_space(32, 24, 0.1, 0.1, modulus, ratio, table.data()));
+    const cn::result own = cn::solve(cn::scene(scene).influence(32, 24, table));
+    expect(std::abs(own.report.approach / found.report.approach - 1.0) < 1e-5, "own coefficients, those of the half-space");
+}
+
+static void refusals()
+{
+    const std::vector<double> h = ball(0.01), half(h.begin(), h.begin() + 100);
+    cn::scene scene(GRID, STEEL);
+    expect(thrown_by([&] { scene.undeformed_distance(half); }, "undeformed_distance has 100 values; it must have 768") ==
+               CONTACT_NORMAL_INVALID_ARGUMENT,
+           "a wrong size");
+    scene.undeformed_distance(h).force(-1.0);
+    expect(thrown_by([&] { cn::solve(scene); }, "force is -1") == CONTACT_NORMAL_INVALID_ARGUMENT, "a refused force");
+    cn::result found;
+    expect(cn::solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT && found.status < 0 &&
+               found.message.find("force is -1") == 0 && found.ledger.empty(),
+           "the same without an exception");
+    cn::options one_cycle;
+    one_cycle.max_cycles = 1, one_cycle.tolerance = 1e-14, one_cycle.method = CONTACT_NORMAL_METHOD_NORM;
+    const cn::result early = cn::solve(scene.force(500.0), one_cycle);
+    expect(!early && early.status == CONTACT_NORMAL_ITERATION_LIMIT && !early.message.empty(), "stopped early, and why");
+    expect(thrown_by([] { cn::hertz(-1.0, 1.0, STEEL, STEEL, CONTACT_NORMAL_PRESCRIBED_FORCE, 1.0); }, "curvature_x is -1") ==
+               CONTACT_NORMAL_INVALID_ARGUMENT,
+           "hertz");
+}
+
+static void handles()
+{
+    const std::vector<double> h = ball(0.01);
+    cn::scene scene(GRID, STEEL);
+    scene.force(500.0);
+    cn::solver first(scene);
+    cn::solver solver = std::move(first);
+    scene.undeformed_distance(h);
+    cn::result found = solver.solve(scene);
+    expect(found.pressure == cn::solve(scene).pressure, "a handle has the bits of a single call");
+    cn::options from_here;
+    from_here.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
+    found.contact.clear(); // it follows from the pressures
+    expect(solver.solve_into(scene, found, from_here) == CONTACT_NORMAL_OK, "a start from a result");
+
+    int calls = 0;
+    const cn::result cancelled = solver.solve(scene, {}, [&](const contact_normal_progress &told) {
+        calls++;
+        return told.mx > 0;
+    });
+    expect(calls == 1 && cancelled.status == CONTACT_NORMAL_CANCELLED, "progress cancels");
+    bool came_through = false;
+    try {
+        solver.solve(scene, {}, [](const contact_normal_progress &) -> bool { throw std::runtime_error("mine"); });
+    } catch (const std::runtime_error &mine) {
+        came_through = std::string(mine.what()) == "mine";
+    }
+    expect(came_through, "what progress throws comes through");
+}
+
+int main()
+{
+    scenes();
+    refusals();
+    handles();
+    std::printf("%d of %d checks failed\n", failed, checked);
+    return failed != 0;
+}
