@@ -6,7 +6,7 @@
 //! ```
 //!
 //! [`Coefficients`] is this product. The kernel depends on the offset only, so that A is block Toeplitz: it is the elastic half-space's
-//! ([`HalfSpace`]), its sum over all images of a scene that repeats itself ([`Periodic`]), or a table of the caller's own ([`Table`], of
+//! ([`HalfSpace`]), that of bodies with coatings ([`Coated`]), the sum over all images of a scene that repeats itself ([`Periodic`]), or a table of the caller's own ([`Table`], of
 //! which nothing is assumed). [`RowTables`] are Toeplitz in x only: their [`Kernel::at`] is a mean over rows. The diagonal is a
 //! compliant [`Layer`], the coupling that of contact [`Patches`]; a plain scene has neither.
 
@@ -25,7 +25,7 @@ mod table;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-pub use coated::{radial, Coated, CoatedBody, Radial, Transfer};
+pub use coated::{radial, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub use half_space::HalfSpace;

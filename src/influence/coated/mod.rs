@@ -19,6 +19,7 @@
 //!
 //! which is smooth for any ratio of element and thickness.
 
+mod periodic;
 mod quadrature;
 mod radial;
 mod transfer;
@@ -26,6 +27,7 @@ mod transfer;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
+pub use periodic::CoatedPeriodic;
 pub use radial::Radial;
 pub use transfer::Transfer;
 

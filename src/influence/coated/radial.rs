@@ -6,8 +6,8 @@
 //! ```
 //!
 //! with b = 1, the layer's own half-space, or b = B0 = B(0), the substrate's. F_1 is smooth at 0; F_B0 falls off as `1/rho^3`. Of both,
-//! all singularities lie at `w = 4 + rho^2 <= 0`. So on `[2^k, 1.5 2^k]` and `[1.5 2^k, 2^(k+1)]` of w polynomials of degree 14 have
-//! `(5 + sqrt 24)^-15 = 1e-15`; which one is in the bits of w, and M is an integral of it, `rho drho = dw/2`. Below rho = 2 they are those of
+//! all singularities lie at `w = 4 + rho^2 <= 0`. So on `[2^k, 1.5 2^k]` and `[1.5 2^k, 2^(k+1)]` of w polynomials of degree 17 have
+//! `(5 + sqrt 24)^-18 = 1e-18`, of a function that is `w^-5/2` near 0; which one is in the bits of w, and M is an integral of it, `rho drho = dw/2`. Below rho = 2 they are those of
 //! F_1, beyond of F_B0.
 //!
 //! The values come from coarser panels, in `v = asinh(rho/2)`: near 0 by Gauss-Legendre in s, beyond by Ogata's rule. At
@@ -23,8 +23,9 @@
 use super::quadrature::{gauss_legendre, hankel_rule};
 use super::transfer::{Transfer, TERMS};
 
-/// Coefficients of a polynomial of degree 14, and nodes of a panel.
-const N: usize = 15;
+/// Coefficients of a polynomial in w, of degree 17, and nodes of a panel in v.
+const P: usize = 18;
+const N: usize = 16;
 /// Panels in v are at most that wide: singularities at `Im v = pi/2` are six half-widths away.
 const PANEL: f64 = 0.5;
 /// B - 1 is below 1e-16 from there on, for layers up to 1e4 times stiffer: `4 s^2 exp(-2 s)`.
@@ -48,7 +49,7 @@ pub struct Radial {
     pub transfer: Transfer,
     taylor: [f64; TERMS],
     /// Polynomials in [-1, 1] of F and of M, of the panels of w from 4 on.
-    panels: Vec<([f64; N], [f64; N + 1])>,
+    panels: Vec<([f64; P], [f64; P + 1])>,
     /// Where they end.
     far: f64,
 }
@@ -166,7 +167,7 @@ impl Radial {
 const LANES: usize = 8;
 
 /// `polynomial(((x + k dx)^2 + shift) scale)`.
-fn fill_run(polynomial: &[f64; N], (x, dx, shift, scale): (f64, f64, f64, f64), run: &mut [f64]) {
+fn fill_run(polynomial: &[f64; P], (x, dx, shift, scale): (f64, f64, f64, f64), run: &mut [f64]) {
     let lanes = |first: usize| {
         let start = x + first as f64 * dx;
         let mut at = [0.0; LANES];
@@ -200,19 +201,19 @@ fn evaluate<const M: usize>(polynomial: &[f64; M], x: f64) -> f64 {
 }
 
 /// The polynomial through the Chebyshev nodes of [-1, 1], as coefficients of powers.
-fn polynomial(value: impl Fn(f64) -> f64) -> [f64; N] {
-    let chebyshev = chebyshev(value);
+fn polynomial(value: impl Fn(f64) -> f64) -> [f64; P] {
+    let chebyshev: [f64; P] = chebyshev(value);
     // T_k by its recursion, added up.
-    let (mut before, mut now) = ([0.0; N], [0.0; N]);
+    let (mut before, mut now) = ([0.0; P], [0.0; P]);
     (before[0], now[1]) = (1.0, 1.0);
-    let mut sum = [0.0; N];
+    let mut sum = [0.0; P];
     sum[0] = chebyshev[0];
     for c in &chebyshev[1..] {
         for (sum, now) in sum.iter_mut().zip(now) {
             *sum += c * now;
         }
-        let mut next = [0.0; N];
-        for k in 0..N {
+        let mut next = [0.0; P];
+        for k in 0..P {
             next[k] = if k > 0 { 2.0 * now[k - 1] } else { 0.0 } - before[k];
         }
         (before, now) = (now, next);
@@ -221,21 +222,21 @@ fn polynomial(value: impl Fn(f64) -> f64) -> [f64; N] {
 }
 
 /// `start + factor * integral from -1 to x`.
-fn integral(polynomial: &[f64; N], factor: f64, start: f64) -> [f64; N + 1] {
-    let mut integral = [0.0; N + 1];
-    for k in 0..N {
+fn integral(polynomial: &[f64; P], factor: f64, start: f64) -> [f64; P + 1] {
+    let mut integral = [0.0; P + 1];
+    for k in 0..P {
         integral[k + 1] = factor * polynomial[k] / (k + 1) as f64;
     }
     integral[0] = start - evaluate(&integral, -1.0);
     integral
 }
 
-fn chebyshev(value: impl Fn(f64) -> f64) -> [f64; N] {
-    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / N as f64;
-    let values: [f64; N] = std::array::from_fn(|i| value(angle(i).cos()));
+fn chebyshev<const M: usize>(value: impl Fn(f64) -> f64) -> [f64; M] {
+    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / M as f64;
+    let values: [f64; M] = std::array::from_fn(|i| value(angle(i).cos()));
     std::array::from_fn(|k| {
-        let sum: f64 = (0..N).map(|i| values[i] * (k as f64 * angle(i)).cos()).sum();
-        sum * if k == 0 { 1.0 } else { 2.0 } / N as f64
+        let sum: f64 = (0..M).map(|i| values[i] * (k as f64 * angle(i)).cos()).sum();
+        sum * if k == 0 { 1.0 } else { 2.0 } / M as f64
     })
 }
 
