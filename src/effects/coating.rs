@@ -71,6 +71,15 @@ impl Coating {
     }
 }
 
+impl Coating {
+    /// What both bodies give way to a pressure wave of wave number k > 0, after a check.
+    pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
+        self.check(&scene.grid)?;
+        scene.bodies.check()?;
+        Ok((self.body(0, scene)?.of_wave(k)) + self.body(1, scene)?.of_wave(k))
+    }
+}
+
 impl Effect for Coating {
     fn name(&self) -> &'static str {
         "coating"
@@ -108,10 +117,16 @@ impl Effect for Coating {
     }
 
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
-        for (layer, names) in self.layers.iter().zip(NAMES) {
-            let Some(layer) = layer.filter(|layer| layer.thickness > 0.0) else { continue };
-            for (name, value) in names.into_iter().zip([layer.thickness, layer.shear_modulus, layer.poisson_ratio]) {
-                tell(name, Value::Number(value));
+        let layers = self.layers.map(|layer| layer.filter(|layer| layer.thickness > 0.0));
+        if layers == [None, None] {
+            return;
+        }
+        // That a body has none is told, too.
+        for (layer, [t, g, nu]) in layers.into_iter().zip(NAMES) {
+            tell(t, Value::Number(layer.map_or(0.0, |layer| layer.thickness)));
+            if let Some(layer) = layer {
+                tell(g, Value::Number(layer.shear_modulus));
+                tell(nu, Value::Number(layer.poisson_ratio));
             }
         }
     }

@@ -25,7 +25,7 @@ mod table;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-pub use coated::{radial, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
+pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub use half_space::HalfSpace;

@@ -230,9 +230,13 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_row_tables {
             struct_size, cx, rows, coefficients, scale
         }
+        contact_normal_coating {
+            struct_size, thickness, shear_modulus, poisson_ratio
+        }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
-            approach, force, influence, layer, pressure_limit, period, patches, row_tables
+            approach, force, influence, layer, pressure_limit, period, patches, row_tables,
+            coating
         }
         contact_normal_progress {
             struct_size, mx, my, cycles, active_set_changes, seconds, work_units, update, residual

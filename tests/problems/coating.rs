@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use astro_float::{BigFloat, Consts, RoundingMode};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{radial, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Transfer};
+use contact_normal::influence::{radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Transfer};
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
-use contact_normal::solver::{solve, Method, Options, Solver, Stop};
+use contact_normal::solver::{Method, Options, Solver, Stop};
 use contact_normal::threads::Threads;
 
 use crate::support::{assert_conditions, run};
@@ -228,4 +228,189 @@ fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
         println!("{mu} {t}: {found:?} for ({smooth}, {rough})");
         assert!(found.0 <= smooth + 2 && found.1 <= rough + 2, "mu {mu} t {t}: {found:?} for ({smooth}, {rough})");
     }
+}
+
+/// F_1 by 30 digits (mpmath: composite quadrature of `(B - 1) J0`): `(G1/G2, nu1, nu2, rho, F)`.
+const RADIAL: [(f64, f64, f64, f64, f64); 35] = [
+    (1e-4, 0.3, 0.3, 0.0, -1.3766917667552365),
+    (1e-4, 0.3, 0.3, 0.01, -1.3766290230613736),
+    (1e-4, 0.3, 0.3, 0.7, -1.1230244283336073),
+    (1e-4, 0.3, 0.3, 1.9, -0.538762588539679),
+    (1e-4, 0.3, 0.3, 2.1, -0.48514596209687782),
+    (1e-4, 0.3, 0.3, 5.0, -0.20011773076526434),
+    (1e-4, 0.3, 0.3, 13.0, -0.076915432543476023),
+    (1e-4, 0.3, 0.3, 60.0, -0.016664999886491944),
+    (1e-4, 0.3, 0.3, 300.0, -0.0033329999990929003),
+    (0.01, 0.5, 0.25, 0.0, -1.7461482226213492),
+    (0.01, 0.5, 0.25, 0.01, -1.7460540107467198),
+    (0.01, 0.5, 0.25, 0.7, -1.3710556539435291),
+    (0.01, 0.5, 0.25, 1.9, -0.57980815792837877),
+    (0.01, 0.5, 0.25, 2.1, -0.51575046768237687),
+    (0.01, 0.5, 0.25, 5.0, -0.20012983363098895),
+    (0.01, 0.5, 0.25, 13.0, -0.075775429864726004),
+    (0.01, 0.5, 0.25, 60.0, -0.016416667554492244),
+    (0.01, 0.5, 0.25, 300.0, -0.00328333333900267),
+    (0.5, 0.3, 0.3, 0.0, -0.64045881767000878),
+    (0.5, 0.3, 0.3, 0.01, -0.64043234189633903),
+    (0.5, 0.3, 0.3, 0.7, -0.53239637424704712),
+    (0.5, 0.3, 0.3, 1.9, -0.26913564755199882),
+    (0.5, 0.3, 0.3, 2.1, -0.24305702973069844),
+    (0.5, 0.3, 0.3, 5.0, -0.099677106560315953),
+    (0.5, 0.3, 0.3, 13.0, -0.038416715110213133),
+    (0.5, 0.3, 0.3, 60.0, -0.0083328612656036157),
+    (0.5, 0.3, 0.3, 300.0, -0.0016666628874830663),
+    (2.0, 0.3, 0.5, 0.0, 0.83136587131854406),
+    (2.0, 0.3, 0.5, 0.01, 0.83133108235492018),
+    (2.0, 0.3, 0.5, 0.7, 0.68797295618993147),
+    (2.0, 0.3, 0.5, 1.9, 0.32058662723055409),
+    (2.0, 0.3, 0.5, 2.1, 0.28241082350202272),
+    (2.0, 0.3, 0.5, 5.0, 0.090003592011004321),
+    (2.0, 0.3, 0.5, 13.0, 0.033130639773596529),
+    (2.0, 0.3, 0.5, 60.0, 0.0071444792721844983),
+];
+
+#[test]
+fn radial_functions_have_fourteen_digits() {
+    for (mu, nu1, nu2, rho, exact) in RADIAL {
+        let found = radial(mu, [nu1, nu2]).f(rho, Base::Layer);
+        // Sums of some 500 terms of order 1.
+        assert!((found - exact).abs() <= 2e-14 * exact.abs().max(1.0), "mu {mu} rho {rho}: {found} for {exact}");
+    }
+}
+
+/// A surface with several contact areas, one place without a surface.
+fn bumps(m: usize, d: f64) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(m, m, d, d).unwrap();
+    let mut h: Vec<f64> = (0..m * m)
+        .map(|i| {
+            let (x, y) = ((i % m) as f64 * d, (i / m) as f64 * d);
+            0.02 * (2.0 - (2.1 * x).cos() - (1.7 * y).cos())
+        })
+        .collect();
+    h[m + 3] = f64::INFINITY;
+    (grid, h)
+}
+
+fn soft_and_stiff() -> Coating {
+    let layer =
+        |thickness, shear_modulus, poisson_ratio| Some(CoatingLayer { thickness, shear_modulus, poisson_ratio });
+    Coating { layers: [layer(0.3, 0.2, 0.4), layer(0.15, 6.0, 0.2)] }
+}
+
+/// The conditions of contact, with u by direct summation over coefficients.
+#[test]
+fn a_coating_goes_with_other_effects_and_methods() {
+    let (m, d) = (32, 0.2);
+    let (grid, h) = bumps(m, d);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let plain = Scene { coating: Some(soft_and_stiff()), ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let patch: Vec<i32> = (0..m * m).map(|i| i32::from(i % m >= m / 2)).collect();
+    let patches = Patches { count: 2, patch: &patch, factors: &[1.0, 0.5, 0.5, 1.0] };
+    let compliances: Vec<f64> = (0..m * m).map(|i| 0.01 * (i % 7) as f64).collect();
+    let scenes = [
+        ("alone", plain.clone()),
+        ("approach", Scene { load: Load::Approach(0.03), ..plain.clone() }),
+        ("layer", Scene { layer: Some(Layer::Uniform(0.02)), ..plain.clone() }),
+        ("layers", Scene { layer: Some(Layer::PerElement(&compliances)), ..plain.clone() }),
+        ("patches", Scene { patches: Some(patches), ..plain.clone() }),
+        ("period", Scene { period: Some(Period { x: true, y: true }), ..plain.clone() }),
+    ];
+    for (name, scene) in &scenes {
+        for method in [Method::Auto, Method::ProjectedCg, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
+            if matches!(method, Method::Multigrid | Method::FullMultigrid)
+                && ["layers", "patches", "period"].contains(name)
+            {
+                continue;
+            }
+            let (solver, report) = run(scene, &Options { method, ..Options::default() });
+            let p = &solver.state().p;
+            let mut u = vec![0.0; p.len()];
+            dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
+            assert_conditions(&h, report.measures.approach, p, &u, &format!("{name} {method:?}"));
+        }
+    }
+    let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(0.08)), ..plain.clone() };
+    let (solver, _) = run(&limited, &Options::default());
+    let state = solver.state();
+    assert!(state.p.iter().all(|p| *p <= 0.08) && state.at_limit.iter().any(|at| *at));
+    assert!((state.p.iter().sum::<f64>() * d * d / 0.2 - 1.0).abs() <= 1e-9);
+}
+
+#[test]
+fn no_coating_in_effect_is_the_plain_scene() {
+    let (grid, h) = bumps(32, 0.2);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let plain = Scene::new(grid, &h, bodies, Load::Force(0.2));
+    let (without, _) = run(&plain, &Options::default());
+    let layer =
+        |thickness, shear_modulus, poisson_ratio| Some(CoatingLayer { thickness, shear_modulus, poisson_ratio });
+    for layers in [[None, None], [layer(0.0, 5.0, 0.1), None], [layer(0.7, 1.0, 0.3), layer(1.0, 2.0, 0.25)]] {
+        let (with, _) = run(&Scene { coating: Some(Coating { layers }), ..plain.clone() }, &Options::default());
+        assert_eq!(with.state().p, without.state().p);
+    }
+    // So thick that it is the body.
+    let thick = Coating { layers: [layer(1e15, 1.0, 0.3), None] };
+    let bodies = Bodies { shear_modulus: [3.0, 2.0], poisson_ratio: [0.1, 0.25] };
+    let scene = Scene { coating: Some(thick), bodies, ..plain.clone() };
+    let (with, _) = run(&scene, &Options { tolerance: 1e-12, ..Options::default() });
+    let (without, _) = run(&plain, &Options { tolerance: 1e-12, ..Options::default() });
+    let largest = without.state().p.iter().copied().fold(0.0, f64::max);
+    for (one, other) in with.state().p.iter().zip(&without.state().p) {
+        assert!((one - other).abs() <= 1e-10 * largest, "{one} {other}");
+    }
+}
+
+/// A wave of pressure, constant on elements, displaces by the sum over its aliases.
+#[test]
+fn periodic_coefficients_have_the_transform_of_the_layer() {
+    let grid = Grid::new(12, 9, 0.3, 0.5).unwrap();
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let h = vec![0.0; grid.len()];
+    let period = Some(Period { x: true, y: true });
+    let scene = Scene { coating: Some(soft_and_stiff()), period, ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let coefficients = scene.coefficients().unwrap();
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+    for (i, j) in [(1, 0), (0, 2), (3, 1), (6, 4)] {
+        let mut found = 0.0;
+        for (kx, ky) in (0..9).flat_map(|ky| (0..12).map(move |kx| (kx, ky))) {
+            found += coefficients.at(kx, ky)
+                * (2.0 * PI * (i * kx) as f64 / 12.0).cos()
+                * (2.0 * PI * (j * ky) as f64 / 9.0).cos();
+        }
+        // Beyond n aliases are 1/n^2 of the sum: twice as many leave a quarter.
+        let sum = |n: i64| -> f64 {
+            let aliases = (-n..=n).flat_map(|a| (-n..=n).map(move |b| (a, b)));
+            aliases
+                .map(|(a, b)| {
+                    let kx = 2.0 * PI * (i as f64 / 12.0 + a as f64) / 0.3;
+                    let ky = 2.0 * PI * (j as f64 / 9.0 + b as f64) / 0.5;
+                    let k = kx.hypot(ky);
+                    let of = |g: f64, nu: f64, t: f64, mu: f64, below: f64| {
+                        (1.0 - nu) / (g * k) * Transfer::new(mu, [nu, below]).at(k * t)
+                    };
+                    (of(0.2, 0.4, 0.3, 0.2, 0.3) + of(6.0, 0.2, 0.15, 3.0, 0.25)) * sinc(0.15 * kx) * sinc(0.25 * ky)
+                })
+                .sum()
+        };
+        let (less, more) = (sum(100), sum(200));
+        let exact = more + (more - less) / 3.0;
+        assert!((found / exact - 1.0).abs() <= 2e-5, "({i}, {j}): {found} for {exact}");
+    }
+}
+
+#[test]
+fn a_handle_refuses_another_coating_and_tables() {
+    let (grid, h) = bumps(16, 0.2);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let scene = Scene { coating: Some(soft_and_stiff()), ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let mut solver = Solver::new(&scene, &Options::default()).unwrap();
+    let (stop, _) = solver.solve(&scene, &Options::default(), None, None).unwrap();
+    assert_eq!(stop, Stop::Converged);
+    let mut other = scene.clone();
+    other.coating = Some(Coating::of_body_1(0.3, 0.2, 0.4));
+    let refused = solver.solve(&other, &Options::default(), None, None).unwrap_err();
+    assert!(matches!(refused, Error::InvalidArgument(_)), "{refused}");
+    other.coating = None;
+    let refused = solver.solve(&other, &Options::default(), None, None).unwrap_err();
+    assert!(refused.to_string().contains("coating is not given"), "{refused}");
 }

@@ -28,7 +28,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
 pub use periodic::CoatedPeriodic;
-pub use radial::Radial;
+pub use radial::{Base, Radial};
 pub use transfer::Transfer;
 
 use super::{means, HalfSpace, Kernel};
@@ -36,14 +36,13 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 use quadrature::gauss_legendre;
-use radial::Base;
 
 /// Beyond this the stencil serves.
 const FAR: f64 = 32.0;
 /// Diagonals of an element up to which corner differences serve.
-const CORNERS: f64 = 4.5;
+const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss, below these distances.
-const POINTS: [(f64, usize); 2] = [(12.0, 7), (FAR, 5)];
+const POINTS: [(f64, usize); 2] = [(12.0, 9), (FAR, 5)];
 /// What memory is for.
 const COATED: &str = "the coefficients of a coating";
 
