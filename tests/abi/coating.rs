@@ -37,7 +37,8 @@ fn a_coating_is_refused_by_name() {
 #[test]
 fn pairs_that_are_not_solved_are_refused_by_name() {
     let layer = coating(0.1, 1e3, 0.3);
-    let spoils: [(fn(&mut Call), &str); 3] = [
+    type Spoil = fn(&mut Call);
+    let spoils: [(Spoil, &str); 3] = [
         (|c| _ = c.use_table(), "influence"),
         (|c| _ = c.use_row_tables(), "row_tables"),
         (|c| c.use_period(1, 0), "a period in one direction"),
