@@ -90,6 +90,14 @@ module contact_normal
     type(c_ptr) :: patch = c_null_ptr, factors = c_null_ptr
   end type
 
+  ! A coating of one body; filled by contact_normal_set_coating. Since 0.1.
+  type, bind(C), public :: contact_normal_coating
+    integer(c_int64_t) :: struct_size = 0
+    real(c_double) :: thickness = 0
+    real(c_double) :: shear_modulus = 0
+    real(c_double) :: poisson_ratio = 0
+  end type
+
   ! Own coefficients, one table per loaded row; filled by contact_normal_set_row_tables. Since 0.1.
   type, bind(C), public :: contact_normal_row_tables
     integer(c_int64_t) :: struct_size = 0
@@ -115,6 +123,7 @@ module contact_normal
     type(c_ptr) :: period = c_null_ptr                    ! contact_normal_set_period
     type(c_ptr) :: patches = c_null_ptr                   ! contact_normal_set_patches
     type(c_ptr) :: row_tables = c_null_ptr                ! contact_normal_set_row_tables
+    type(c_ptr) :: coating(2) = c_null_ptr                ! contact_normal_set_coating
   end type
 
   ! How it is solved. Since 0.1.
@@ -314,7 +323,7 @@ module contact_normal
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
     contact_normal_solver_free, norm_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
-    contact_normal_set_row_tables
+    contact_normal_set_row_tables, contact_normal_set_coating
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
@@ -436,6 +445,19 @@ contains
     row_tables%rows = size(coefficients, 3, kind=c_int32_t)
     row_tables%coefficients = c_loc(coefficients)
     scene%row_tables = c_loc(row_tables)
+  end subroutine
+
+  ! Body 1 or 2 has a coating; the elastic constants of the scene are those of the body below. Since 0.1.
+  subroutine contact_normal_set_coating(scene, body, coating, thickness, shear_modulus, poisson_ratio)
+    type(contact_normal_scene), intent(inout) :: scene
+    integer, intent(in) :: body
+    type(contact_normal_coating), pointer, intent(in) :: coating
+    real(c_double), intent(in) :: thickness, shear_modulus, poisson_ratio
+    call contact_normal_coating_init(coating)
+    coating%thickness = thickness
+    coating%shear_modulus = shear_modulus
+    coating%poisson_ratio = poisson_ratio
+    scene%coating(body) = c_loc(coating)
   end subroutine
 
   ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.

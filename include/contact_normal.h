@@ -392,6 +392,28 @@ typedef struct contact_normal_row_tables {
 } contact_normal_row_tables;
 
 /*
+ Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+ */
+typedef struct contact_normal_coating {
+  /*
+   Set by `contact_normal_coating_init`.
+   */
+  int64_t struct_size;
+  /*
+   Its thickness, a length >= 0; default 0: no coating.
+   */
+  double thickness;
+  /*
+   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+   */
+  double shear_modulus;
+  /*
+   Its nu, in (-1, 0.5]; default 0.
+   */
+  double poisson_ratio;
+} contact_normal_coating;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -468,6 +490,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
    */
   const struct contact_normal_row_tables *row_tables;
+  /*
+   Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
+   */
+  const struct contact_normal_coating *coating[2];
 } contact_normal_scene;
 
 /*
@@ -1076,6 +1102,22 @@ void contact_normal_influence_init(struct contact_normal_influence *influence);
 void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
 
 /*
+ Fills a coating with no thickness. Since 0.1.
+ */
+void contact_normal_coating_init(struct contact_normal_coating *coating);
+
+/*
+ What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+ displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
+ one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.1.
+ */
+contact_normal_status contact_normal_coating_compliance(const struct contact_normal_coating *coating,
+                                                        double shear_modulus,
+                                                        double poisson_ratio,
+                                                        double wave_number,
+                                                        double *compliance);
+
+/*
  Fills patches with none. Since 0.1.
  */
 void contact_normal_patches_init(struct contact_normal_patches *patches);
@@ -1240,7 +1282,7 @@ void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *ou
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
  tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
  this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
- `period` in both directions matter. With `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
+ `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
  (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
  left alone. Since 0.1.
  */

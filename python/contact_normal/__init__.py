@@ -16,6 +16,7 @@ from ._result import Ledger, Result
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
 from ._special import HertzSolution, hertz, influence_half_space
+from ._stress import SubsurfaceStress
 
 __version__ = VERSION
 
@@ -28,6 +29,7 @@ __all__ = [
     "Result",
     "SolveOptions",
     "Solver",
+    "SubsurfaceStress",
     "VERSION",
     "hertz",
     "influence_half_space",

@@ -14,6 +14,7 @@ from ._constants import ABI_VERSION
 from ._structs import (
     SIZED,
     Accuracy,
+    Coating,
     Fields,
     HertzSolution,
     Influence,
@@ -68,6 +69,8 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
     ),
+    "coating_init": (None, [POINTER(Coating)]),
+    "coating_compliance": (c_int32, [POINTER(Coating), c_double, c_double, c_double, POINTER(c_double)]),
     "stress_outputs_init": (None, [POINTER(StressOutputs)]),
     "subsurface_stress": (
         c_int32,

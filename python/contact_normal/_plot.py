@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ._result import Ledger, Result
+    from ._stress import SubsurfaceStress
 
 
 def _new_axes(size: tuple[float, float]) -> Axes:
@@ -83,4 +84,54 @@ def plot_ledger(ledger: Ledger, axes: Axes | None) -> Axes:
     axes.set(xlabel="seconds", ylabel="estimated relative error", title="What accuracy costs: the ledger of one solve")
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower left", fontsize="small")
+    return axes
+
+
+def _nearest(place: float, d: float, m: int, name: str) -> int:
+    """The element at a place from the middle of the grid."""
+    k = int(np.floor(place / d + 0.5 * m))
+    if not 0 <= k < m:
+        raise ValueError(f"{name} is {place}; it must lie within the grid, at most {0.5 * m * d} from its middle")
+    return k
+
+
+def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
+    """See `SubsurfaceStress.plot_section`."""
+    if x is not None and y is not None:
+        raise TypeError("give either x or y: the plane of the section")
+    field = getattr(stress, of)
+    my, mx = field.shape[1:]
+    axes = axes or _new_axes((8.0, 4.5))
+    if x is None:
+        where, across, m, d, name = y or 0.0, "x", mx, stress.dx, "y"
+        shown = field[:, _nearest(where, stress.dy, my, "y"), :]
+    else:
+        where, across, m, d, name = x, "y", my, stress.dy, "x"
+        shown = field[:, :, _nearest(where, stress.dx, mx, "x")]
+    order = np.argsort(stress.depths)
+    places, depths = (np.arange(m) + 0.5 - 0.5 * m) * d, stress.depths[order]
+    filled = axes.contourf(places, depths, shown[order], 24, cmap="magma")
+    row, column = np.unravel_index(np.argmax(np.abs(shown[order])), shown.shape)
+    axes.plot(places[column], depths[row], "+", color="white", markersize=12, markeredgewidth=2)
+    axes.figure.colorbar(filled, ax=axes, label=of.replace("_", " "))
+    axes.set(xlabel=across, ylabel="depth z", aspect="equal")
+    axes.set_title(f"{name} = {where:.4g}: largest {shown[order][row, column]:.4g} at {across} = {places[column]:.4g}, z = {depths[row]:.4g}",
+                   fontsize=10)
+    axes.set_ylim(depths[-1], depths[0])
+    return axes
+
+
+def plot_depth(stress: SubsurfaceStress, x: float, y: float, axes: Axes | None) -> Axes:
+    """See `SubsurfaceStress.plot_depth`."""
+    axes = axes or _new_axes((6.0, 4.5))
+    my, mx = stress.zz.shape[1:]
+    element = (slice(None), _nearest(y, stress.dy, my, "y"), _nearest(x, stress.dx, mx, "x"))
+    order = np.argsort(stress.depths)
+    for name, label in (("xx", "$\\sigma_{xx}$"), ("yy", "$\\sigma_{yy}$"), ("zz", "$\\sigma_{zz}$"), ("von_mises", "von Mises"),
+                        ("maximum_shear", "largest shear")):
+        axes.plot(getattr(stress, name)[element][order], stress.depths[order], label=label)
+    axes.invert_yaxis()
+    axes.axvline(0.0, color="0.8", zorder=0)
+    axes.set(xlabel="stress", ylabel="depth z")
+    axes.legend(fontsize="small")
     return axes

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from ._arguments import Doubles
     from ._scene import Scene
+    from ._stress import SubsurfaceStress
 
 _LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
 
@@ -83,6 +84,7 @@ class Result:
         self.pressure, self.deformed_distance, self.displacement = outputs.doubles
         self.contact: npt.NDArray[np.bool_] = outputs.contact != 0
         self.at_limit: npt.NDArray[np.bool_] = outputs.contact == 2
+        self._scene = scene
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         hidden = ("struct_size", "ledger", "ledger_capacity")
@@ -123,6 +125,49 @@ class Result:
         from ._plot import plot_pressure
 
         return plot_pressure(self, axes)
+
+
+    def subsurface(
+        self,
+        depths: npt.ArrayLike,
+        *,
+        traction: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        body: int = 1,
+        principal: bool = False,
+        threads: int = 1,
+    ) -> SubsurfaceStress:
+        """The stresses below the surface of one body, from these pressures.
+
+        Parameters
+        ----------
+        depths : array_like, (n,)
+            Depths into the body, in any order.
+        traction : (array_like (my, mx), array_like (my, mx)), optional
+            Tractions that act on this body, in x and in y.
+        body : {1, 2}
+            Which one: its Poisson ratio matters.
+        principal : bool
+            Whether principal stresses and their directions are wanted, too.
+        threads : int
+            0: all cores.
+
+        Returns
+        -------
+        SubsurfaceStress
+
+        Examples
+        --------
+        >>> import numpy as np, contact_normal
+        >>> x = (np.arange(64) - 31.5) * 0.05
+        >>> h = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * 50.0)
+        >>> result = contact_normal.solve(h, 0.05, 0.05, force=1000.0, shear_modulus=82000.0, poisson_ratio=0.3)
+        >>> stress = result.subsurface(np.linspace(0.0, 2.0, 41))
+        >>> round(stress.largest_shear["value"] / result.report["max_pressure"], 2)
+        0.31
+        """
+        from ._stress import subsurface
+
+        return subsurface(self._scene, self.pressure, depths, traction, body, principal, threads)
 
 
 class Outputs:

@@ -47,7 +47,9 @@ class Scene:
         self.struct.load, amount = load(approach, force)
         setattr(self.struct, "approach" if force is None else "force", amount)
         for name, value in effects.items():
-            if value is not None:
+            if name == "coating" and value is not None:
+                self._coat(value)
+            elif value is not None:
                 self._name(name, value)
 
     @property
@@ -55,6 +57,16 @@ class Scene:
         """(my, mx)."""
         my, mx = self.h.shape
         return my, mx
+
+    def _coat(self, value: Any) -> None:
+        """Names the coatings of both bodies, None: none."""
+        if len(value) != 2:
+            raise ValueError(f"coating has {len(value)} parts; it must be a pair: that of body 1 and of body 2, None where there is none")
+        for body, coating in enumerate(value):
+            if coating is not None:
+                effect = coating_of(coating, f"coating[{body}]")
+                self.struct.coating[body] = ctypes.pointer(effect)
+                self._kept.append(effect)
 
     def _name(self, name: str, value: Any) -> None:
         """Names the effect `name` in the scene."""
@@ -66,6 +78,15 @@ class Scene:
             )(value)
         setattr(self.struct, name, ctypes.pointer(effect))
         self._kept += [effect, arrays]
+
+
+def coating_of(value: Any, name: str = "coating") -> Any:
+    """A `contact_normal_coating` of `(thickness, shear_modulus, poisson_ratio)`."""
+    if len(value) != 3:
+        raise ValueError(f"{name} has {len(value)} parts; it must be (thickness, shear_modulus, poisson_ratio)")
+    coating = initialised("coating")
+    coating.thickness, coating.shear_modulus, coating.poisson_ratio = value
+    return coating
 
 
 def load(approach: float | None, force: float | None) -> tuple[int, float]:

@@ -44,6 +44,7 @@ def solve(
     period: str | None = None,
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     row_tables: Any = None,
+    coating: Any = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
@@ -73,6 +74,9 @@ def solve(
         The patch of each element, from 0 on, and the factors of their interaction.
     row_tables : array_like, (my, my, 2 cx), or (array_like, scale), optional
         Own coefficients of each loaded row, row and offset in x.
+    coating : (of body 1, of body 2), optional
+        Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
+        are then those of the body below.
     pressure, contact : array_like, (my, mx), optional
         Initial guess; `contact` (booleans or integers) is the contact area with `active_set="FIXED"`.
     progress : callable or bool, optional
@@ -104,7 +108,7 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables}
+               "row_tables": row_tables, "coating": coating}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
     struct = options(given)
     outputs = Outputs(scene.shape, pressure, contact, struct)

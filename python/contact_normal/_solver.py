@@ -38,7 +38,7 @@ class Solver:
         Elements in y and x.
     dx, dy : float
         Element sizes.
-    shear_modulus, poisson_ratio, influence, layer, period, patches, row_tables, **given
+    shear_modulus, poisson_ratio, influence, layer, period, patches, row_tables, coating, **given
         As for `solve`: for all later solves.
 
     Examples
@@ -67,12 +67,13 @@ class Solver:
         period: str | None = None,
         patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         row_tables: Any = None,
+        coating: Any = None,
         **given: Unpack[SolveOptions],
     ) -> None:
         self._shape = integer("my", my), integer("mx", mx)
         self._size = dx, dy
         self._bodies = shear_modulus, poisson_ratio
-        self._effects = {"layer": layer, "period": period, "patches": patches}
+        self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.

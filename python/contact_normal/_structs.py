@@ -57,6 +57,17 @@ class RowTables(ctypes.Structure):
     ]
 
 
+class Coating(ctypes.Structure):
+    """contact_normal_coating."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("thickness", c_double),
+        ("shear_modulus", c_double),
+        ("poisson_ratio", c_double),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -79,6 +90,7 @@ class Scene(ctypes.Structure):
         ("period", POINTER(Period)),
         ("patches", POINTER(Patches)),
         ("row_tables", POINTER(RowTables)),
+        ("coating", POINTER(Coating) * 2),
     ]
 
 
@@ -286,6 +298,7 @@ SIZED: dict[str, type[ctypes.Structure]] = {
     "period": Period,
     "patches": Patches,
     "row_tables": RowTables,
+    "coating": Coating,
     "options": Options,
     "fields": Fields,
     "report": Report,

@@ -53,8 +53,13 @@ pub trait Effect {
         None
     }
 
-    /// Its own kernel, in place of the half-space's.
-    fn kernel(&self, _scene: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    /// In which directions it makes the scene repeat itself.
+    fn repeats(&self) -> (bool, bool) {
+        (false, false)
+    }
+
+    /// Its own kernel, in place of the half-space's; others may have a say in it.
+    fn kernel(&self, _scene: &Plain<'_>, _others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(None)
     }
 

@@ -8,7 +8,7 @@ use crate::influence::{Coefficients, HalfSpace};
 use crate::scene::Scene;
 
 /// Number of effects.
-pub(super) const COUNT: usize = 6;
+pub(super) const COUNT: usize = 7;
 
 /// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients.
 pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
@@ -18,6 +18,7 @@ pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] 
     [
         of(&scene.influence),
         of(&scene.row_tables),
+        of(&scene.coating),
         of(&scene.period),
         of(&scene.patches),
         of(&scene.layer),
@@ -59,7 +60,9 @@ impl Scene<'_> {
     pub fn coefficients(&self) -> Result<Coefficients> {
         let (plain, mut kernel) = (self.plain(), None);
         for effect in effects(self) {
-            kernel = kernel.or(effect.kernel(&plain)?);
+            if kernel.is_none() {
+                kernel = effect.kernel(&plain, &list(self))?;
+            }
         }
         let half_space = || Arc::new(HalfSpace::new(self.grid.dx, self.grid.dy, self.bodies.compliance()));
         let coefficients = Coefficients::new(kernel.unwrap_or_else(|| half_space()));

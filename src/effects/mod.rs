@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | influence | period, row_tables | yes | not named: that of the set-up; named: the same |
 //! | row_tables | influence, period | no | the same as influence |
+//! | coating | influence, row_tables, a period in one direction | yes | that of the set-up |
 //! | period | influence, row_tables, patches | no | that of the set-up |
 //! | patches | period | no | those of the set-up |
 //! | layer | | a uniform one | that of the set-up |
@@ -11,6 +12,7 @@
 //!
 //! A new effect is a file with an `impl Effect`, a field of [`Scene`](crate::scene::Scene), and a line in the list (`list.rs`).
 
+mod coating;
 mod effect;
 mod layer;
 mod list;
@@ -20,6 +22,7 @@ mod period;
 mod pressure_limit;
 mod tables;
 
+pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};
 pub use layer::Layer;
 pub use list::{check_effects, excluded_method, replace_bodies};

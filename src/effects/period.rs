@@ -53,7 +53,11 @@ impl Effect for Period {
         Some(self.name())
     }
 
-    fn kernel(&self, scene: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn repeats(&self) -> (bool, bool) {
+        (self.x, self.y)
+    }
+
+    fn kernel(&self, scene: &Plain<'_>, _others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         let half_space = HalfSpace::new(scene.grid.dx, scene.grid.dy, scene.bodies.compliance());
         Ok(Some(Arc::new(Periodic::new(half_space, (self.x, self.y), &scene.grid)?)))
     }

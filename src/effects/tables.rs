@@ -32,7 +32,7 @@ impl Effect for Table {
         true
     }
 
-    fn kernel(&self, _: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
 
@@ -67,7 +67,7 @@ impl Effect for RowTables {
         Some(self.name())
     }
 
-    fn kernel(&self, _: &Plain<'_>) -> Result<Option<Arc<dyn Kernel>>> {
+    fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
 

@@ -7,6 +7,7 @@
 mod accuracy;
 mod arguments;
 mod batch;
+mod coating;
 mod effects;
 mod floating_point;
 mod guard;
@@ -26,6 +27,7 @@ mod structs;
 pub use self::log::*;
 pub use accuracy::*;
 pub use batch::*;
+pub use coating::*;
 pub use effects::*;
 pub use influence::*;
 pub use options::*;

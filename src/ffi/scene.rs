@@ -1,6 +1,7 @@
 //! `contact_normal_scene`.
 
 use super::arguments::{self, add, Regions};
+use super::coating::contact_normal_coating;
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
@@ -9,7 +10,7 @@ use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::memory::collected;
-use crate::scene::{Bodies, Load, Scene};
+use crate::scene::{Bodies, Coating, Load, Scene};
 
 /// `load`: the approach of the bodies is given.
 pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 0;
@@ -57,6 +58,8 @@ pub struct contact_normal_scene {
     pub patches: *const contact_normal_patches,
     /// Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
     pub row_tables: *const contact_normal_row_tables,
+    /// Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
+    pub coating: [*const contact_normal_coating; 2],
 }
 
 versioned! { contact_normal_scene, 144 }
@@ -90,6 +93,7 @@ pub(super) struct Named {
     period: Option<contact_normal_period>,
     patches: Option<contact_normal_patches>,
     row_tables: Option<contact_normal_row_tables>,
+    coating: [Option<contact_normal_coating>; 2],
 }
 
 impl Named {
@@ -106,6 +110,10 @@ impl Named {
                 period: structs::read_optional(scene.period, "scene->period")?,
                 patches: structs::read_optional(scene.patches, "scene->patches")?,
                 row_tables: structs::read_optional(scene.row_tables, "scene->row_tables")?,
+                coating: [
+                    structs::read_optional(scene.coating[0], "scene->coating[0]")?,
+                    structs::read_optional(scene.coating[1], "scene->coating[1]")?,
+                ],
                 scene,
             })
         }
@@ -126,7 +134,9 @@ impl Named {
         add(regions, grid, scene.pressure_limit, &self.pressure_limit)?;
         add(regions, grid, scene.period, &self.period)?;
         add(regions, grid, scene.patches, &self.patches)?;
-        add(regions, grid, scene.row_tables, &self.row_tables)
+        add(regions, grid, scene.row_tables, &self.row_tables)?;
+        add(regions, grid, scene.coating[0], &self.coating[0])?;
+        add(regions, grid, scene.coating[1], &self.coating[1])
     }
 
     /// A copy of the undeformed distance.
@@ -162,6 +172,9 @@ impl Named {
                 period: self.period.map(|period| period.translate()).transpose()?,
                 patches: self.patches.map(|patches| patches.translate(grid)).transpose()?,
                 row_tables: self.row_tables.map(|tables| tables.translate(grid)).transpose()?,
+                coating: self.coating.iter().any(Option::is_some).then(|| Coating {
+                    layers: self.coating.map(|coating| coating.map(|coating| coating.translate())),
+                }),
                 ..Scene::new(*grid, undeformed_distance, bodies, load)
             })
         }

@@ -74,7 +74,7 @@ pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contac
 /// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
 /// tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
 /// this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
-/// `period` in both directions matter. With `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
+/// `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
 /// (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
 /// left alone. Since 0.1.
 #[no_mangle]
@@ -169,7 +169,12 @@ impl Load {
                 1 | 2 => scene.bodies.poisson_ratio[self.body as usize - 1],
                 other => return Err(Refusal::invalid(format!("body is {other}; it must be 1 or 2"))),
             };
-            let refused = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
+            let coated = scene.coating.is_some_and(|coating| coating.layers[self.body as usize - 1].is_some());
+            let refused = [
+                ("coating", coated),
+                ("influence", scene.influence.is_some()),
+                ("row_tables", scene.row_tables.is_some()),
+            ];
             if let Some((name, _)) = refused.into_iter().find(|(_, given)| *given) {
                 let why = "subsurface stresses are those of a half-space";
                 return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, format!("{name} is given; {why}")));

@@ -97,6 +97,12 @@ impl Coefficients {
         }
     }
 
+    /// What a pressure wave displaces, where that and not coefficients makes a preconditioner: with a typical layer.
+    pub fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
+        let layer = self.diagonal.as_ref().map_or(0.0, |layer| layer.typical);
+        self.kernel.wave(grid, kx, ky).map(|value| value + layer)
+    }
+
     /// The largest coefficient within `grid`, whatever its sign.
     pub fn largest(&self, grid: &Grid) -> f64 {
         self.kernel.largest(grid) + self.diagonal.as_ref().map_or(0.0, Layer::most)

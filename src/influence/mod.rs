@@ -6,14 +6,16 @@
 //! ```
 //!
 //! [`Coefficients`] is this product. The kernel depends on the offset only, so that A is block Toeplitz: it is the elastic half-space's
-//! ([`HalfSpace`]), its sum over all images of a scene that repeats itself ([`Periodic`]), or a table of the caller's own ([`Table`], of
+//! ([`HalfSpace`]), that of bodies with coatings ([`Coated`]), the sum over all images of a scene that repeats itself ([`Periodic`]), or a table of the caller's own ([`Table`], of
 //! which nothing is assumed). [`RowTables`] are Toeplitz in x only: their [`Kernel::at`] is a mean over rows. The diagonal is a
 //! compliant [`Layer`], the coupling that of contact [`Patches`]; a plain scene has neither.
 
+mod coated;
 mod coefficients;
 mod diagonal;
 mod half_space;
 mod images;
+pub(crate) mod means;
 mod patches;
 mod periodic;
 mod row_tables;
@@ -23,6 +25,7 @@ mod table;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub use half_space::HalfSpace;
@@ -83,6 +86,12 @@ pub trait Kernel: Debug + Send + Sync {
     /// Added to all coefficients, this gives A an inverse where a uniform pressure displaces nothing; 0 where A has one.
     fn constant_for_inverse(&self) -> f64 {
         0.0
+    }
+
+    /// For preconditioners, where coefficients wrapped to a period would not be positive: what a pressure wave `(kx, ky)` of
+    /// amplitude 1, constant on elements, displaces. None: the coefficients do.
+    fn wave(&self, _grid: &Grid, _kx: f64, _ky: f64) -> Option<f64> {
+        None
     }
 
     /// The tables of loaded rows, if that is what this is.

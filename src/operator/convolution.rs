@@ -201,6 +201,20 @@ impl<T: Real> Convolution<T> {
         Ok(())
     }
 
+    /// Takes a spectrum of even coefficients, `value(x, y)` of the bins >= 0; `px` is the period in x.
+    pub fn set_values(&mut self, (nb, px): (usize, usize), value: impl Fn(usize, usize) -> f64) -> Result<()> {
+        let py = self.columns.length();
+        let half = py / 2 + 1;
+        let scale = 1.0 / (px as f64 * py as f64);
+        let mut spectrum = Vec::new();
+        resize(&mut spectrum, (nb + nb % 2) * half, SPECTRUM)?;
+        for (i, out) in spectrum[..nb * half].iter_mut().enumerate() {
+            *out = T::of(scale * value(i / half, i % half));
+        }
+        self.spectrum = Spectrum::Even(spectrum);
+        Ok(())
+    }
+
     /// Computes the spectrum of coefficients that are not even, of which period px is kept in x.
     pub fn set_general(
         &mut self,

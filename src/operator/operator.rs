@@ -167,6 +167,12 @@ impl<T: Real> Operator<T> {
         convolution.set_even(even, rows.transform.length(), &rows.threads, set_up)
     }
 
+    /// A spectrum of even coefficients that is known: `value(x, y)` of bins >= 0.
+    pub(super) fn set_values(&mut self, value: impl Fn(usize, usize) -> f64) -> Result<()> {
+        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
+        convolution.set_values((rows.transform.bins(), rows.transform.length()), value)
+    }
+
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
         let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;

@@ -5,7 +5,7 @@ mod load;
 mod plain;
 mod refine;
 
-pub use crate::effects::{Layer, Patches, Period, PressureLimit};
+pub use crate::effects::{Coating, CoatingLayer, Layer, Patches, Period, PressureLimit};
 pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
@@ -27,6 +27,8 @@ pub struct Scene<'a> {
     pub load: Load,
     /// Effect: own coefficients instead of the half-space.
     pub influence: Option<Table>,
+    /// Effect: bonded elastic layers on the bodies.
+    pub coating: Option<Coating>,
     /// Effect: the scene repeats itself.
     pub period: Option<Period>,
     /// Effect: a thin compliant layer.
@@ -48,6 +50,7 @@ impl<'a> Scene<'a> {
             bodies,
             load,
             influence: None,
+            coating: None,
             period: None,
             layer: None,
             pressure_limit: None,

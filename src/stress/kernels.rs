@@ -4,41 +4,20 @@
 //!
 //! * below [`NEAR`] the closed form of [`element`](super::element), whose corner differences lose digits as the distance grows;
 //! * below [`FAR`] point forces at 4 x 4 Gauss points of the element;
-//! * beyond, point forces at the centres of the elements. The mean over an element, which is asked for, follows from the values at it and
-//!   its neighbours: with `d` the central difference between neighbours
-//!
-//! ```text
-//! mean f = (d/2)/asinh(d/2) f = (1 + d^2/24 - 17 d^4/5760 + 367 d^6/967680 - 27859 d^8/464486400 + ...) f
-//! ```
-//!
-//! in x, then in y: one evaluation per element, and no cancellation however far it is.
+//! * beyond, point forces at the centres of the elements, of which means over elements are made (see [`means`](crate::influence::means)):
+//!   one evaluation per element, and no cancellation however far it is.
 
 use super::element;
 use super::point_force::{self, Lanes, Values, LANES};
 use super::{Body, Loaded};
 use crate::error::Result;
+use crate::influence::means::{in_x, in_y, HALO, ROWS};
 use crate::memory::zeros;
 
 /// Up to this distance the closed form.
 const NEAR: f64 = 12.0;
 /// Up to this distance Gauss points.
 const FAR: f64 = 32.0;
-/// Neighbours on either side that a mean takes.
-const HALO: usize = 4;
-const ROWS: usize = 2 * HALO + 1;
-
-/// The weights of an element and of its neighbours at distance 1 to 4 in a mean, to the eighth difference.
-const MEAN: [f64; HALO + 1] = {
-    let (a, b, c, d) = (1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0);
-    [
-        1.0 - 2.0 * a + 6.0 * b - 20.0 * c + 70.0 * d,
-        a - 4.0 * b + 15.0 * c - 56.0 * d,
-        b - 6.0 * c + 28.0 * d,
-        c - 8.0 * d,
-        d,
-    ]
-};
-
 /// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
 const GAUSS: [(f64, f64); 4] = [
     (-0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
@@ -130,12 +109,12 @@ impl Kernels {
             self.fill_points(body, row as i64 - halo, z);
             let (points, slot) = (self.points.chunks_exact(width(mx)), row % ROWS);
             for (points, means) in points.zip(self.means.chunks_exact_mut(ROWS * mx)) {
-                mean_in_x(points, &mut means[slot * mx..(slot + 1) * mx]);
+                in_x(points, &mut means[slot * mx..(slot + 1) * mx]);
             }
             if row >= 2 * HALO {
                 let ky = row - 2 * HALO;
                 for (table, means) in self.tables.chunks_exact_mut(mx * my).zip(self.means.chunks_exact(ROWS * mx)) {
-                    mean_in_y(means, ky + HALO, &mut table[ky * mx..(ky + 1) * mx]);
+                    in_y(means, ky + HALO, &mut table[ky * mx..(ky + 1) * mx]);
                 }
             }
         }
@@ -197,33 +176,6 @@ impl Kernels {
 /// Places in a row with its neighbours, rounded up to whole lanes.
 fn width(mx: usize) -> usize {
     (mx + 2 * HALO).next_multiple_of(LANES)
-}
-
-fn mean_in_x(points: &[f64], out: &mut [f64]) {
-    let n = out.len();
-    let at = |k: usize| &points[k..k + n];
-    let [a, b, c, d, e, f, g, h, i] = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)];
-    for k in 0..n {
-        out[k] = mean([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k], i[k]]);
-    }
-}
-
-/// `means` holds the last rows, `row % ROWS` each; the one in the middle is asked for.
-fn mean_in_y(means: &[f64], middle: usize, out: &mut [f64]) {
-    let n = out.len();
-    let at = |k: usize| {
-        let slot = (middle - HALO + k) % ROWS;
-        &means[slot * n..(slot + 1) * n]
-    };
-    let [a, b, c, d, e, f, g, h, i] = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)];
-    for k in 0..n {
-        out[k] = mean([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k], i[k]]);
-    }
-}
-
-#[inline]
-fn mean([a, b, c, d, e, f, g, h, i]: [f64; ROWS]) -> f64 {
-    MEAN[0] * e + MEAN[1] * (d + f) + MEAN[2] * (c + g) + MEAN[3] * (b + h) + MEAN[4] * (a + i)
 }
 
 /// Stresses by uniform loads on an element, at places one element apart in x, by point forces at Gauss points.

@@ -4,5 +4,6 @@ mod bad_input;
 mod boundary;
 mod call;
 mod callbacks;
+mod coating;
 mod rows;
 mod subsurface_stress;

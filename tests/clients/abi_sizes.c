@@ -39,6 +39,11 @@ int main(void)
     OFFSET(contact_normal_row_tables, rows);
     OFFSET(contact_normal_row_tables, coefficients);
     OFFSET(contact_normal_row_tables, scale);
+    SIZE(contact_normal_coating);
+    OFFSET(contact_normal_coating, struct_size);
+    OFFSET(contact_normal_coating, thickness);
+    OFFSET(contact_normal_coating, shear_modulus);
+    OFFSET(contact_normal_coating, poisson_ratio);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -58,6 +63,7 @@ int main(void)
     OFFSET(contact_normal_scene, period);
     OFFSET(contact_normal_scene, patches);
     OFFSET(contact_normal_scene, row_tables);
+    OFFSET(contact_normal_scene, coating);
     SIZE(contact_normal_progress);
     OFFSET(contact_normal_progress, struct_size);
     OFFSET(contact_normal_progress, mx);

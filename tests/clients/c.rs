@@ -122,7 +122,7 @@ fn time_steps() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface"] {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
         let printed = run_linked(&program, &[], &folder);
@@ -138,6 +138,7 @@ fn the_examples_under_valgrind() {
     let data = root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned();
     let small = |text: String| {
         text.replace("COUNT = 200", "COUNT = 5")
+            .replace("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3")
             .replace("STEPS = 100", "STEPS = 4")
             .replace("MX = 48, MY = 48", "MX = 16, MY = 16")
     };
@@ -244,9 +245,13 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_row_tables {
             struct_size, cx, rows, coefficients, scale
         }
+        contact_normal_coating {
+            struct_size, thickness, shear_modulus, poisson_ratio
+        }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
-            approach, force, influence, layer, pressure_limit, period, patches, row_tables
+            approach, force, influence, layer, pressure_limit, period, patches, row_tables,
+            coating
         }
         contact_normal_progress {
             struct_size, mx, my, cycles, active_set_changes, seconds, work_units, update, residual

@@ -85,7 +85,7 @@ fn wheel_rail_prints_what_is_expected() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface"] {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
         let expected =
@@ -215,7 +215,7 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_row_tables: struct_size, cx, rows, coefficients, scale;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
-            patches, row_tables;
+            patches, row_tables, coating;
         contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
             coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
             threads, precision, reserved, progress, user;
@@ -235,6 +235,7 @@ fn derived_types_are_laid_out_as_the_structs() {
             user, mx, my, dx, dy, reached, seconds;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
+        contact_normal_coating: struct_size, thickness, shear_modulus, poisson_ratio;
         contact_normal_stress_maximum: value, x, y, z, ix, iy, depth, reserved;
         contact_normal_stress_outputs: struct_size, stress, von_mises, maximum_shear, principal, directions, largest_von_mises, largest_shear;
     };

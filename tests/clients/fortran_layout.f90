@@ -17,6 +17,7 @@ program fortran_layout
   type(contact_normal_report), target :: report
   type(contact_normal_accuracy), target :: accuracy
   type(contact_normal_hertz_solution), target :: solution
+  type(contact_normal_coating), target :: coating
   type(contact_normal_stress_maximum), target :: largest
   type(contact_normal_stress_outputs), target :: outputs
   integer(c_intptr_t) :: base
@@ -83,6 +84,7 @@ program fortran_layout
   call show("contact_normal_scene.period", c_loc(scene%period))
   call show("contact_normal_scene.patches", c_loc(scene%patches))
   call show("contact_normal_scene.row_tables", c_loc(scene%row_tables))
+  call show("contact_normal_scene.coating", c_loc(scene%coating))
 
   base = place(c_loc(options))
   print '(a, i0)', "contact_normal_options ", c_sizeof(options)
@@ -208,6 +210,13 @@ program fortran_layout
   call show("contact_normal_hertz_solution.approach", c_loc(solution%approach))
   call show("contact_normal_hertz_solution.force", c_loc(solution%force))
   call show("contact_normal_hertz_solution.area", c_loc(solution%area))
+
+  base = place(c_loc(coating))
+  print '(a, i0)', "contact_normal_coating ", c_sizeof(coating)
+  call show("contact_normal_coating.struct_size", c_loc(coating%struct_size))
+  call show("contact_normal_coating.thickness", c_loc(coating%thickness))
+  call show("contact_normal_coating.shear_modulus", c_loc(coating%shear_modulus))
+  call show("contact_normal_coating.poisson_ratio", c_loc(coating%poisson_ratio))
 
   base = place(c_loc(largest))
   print '(a, i0)', "contact_normal_stress_maximum ", c_sizeof(largest)

@@ -14,6 +14,7 @@ fn the_committed_header_is_the_generated_one() {
         "status",
         "scene",
         "influence",
+        "coating",
         "effects",
         "options",
         "report",

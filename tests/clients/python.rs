@@ -227,8 +227,10 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         pressure_limit,
         period,
         patches,
-        row_tables
+        row_tables,
+        coating
     );
+    layout!(ours, "Coating", contact_normal_coating, struct_size, thickness, shear_modulus, poisson_ratio);
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
     layout!(ours, "Patches", contact_normal_patches, struct_size, count, reserved, patch, factors);
     layout!(ours, "StressMaximum", contact_normal_stress_maximum, value, x, y, z, ix, iy, depth, reserved);

@@ -12,6 +12,7 @@ mod rough;
 
 mod accuracy_target;
 mod batch;
+mod coating;
 mod coefficients;
 mod effects;
 mod estimates;

@@ -1,0 +1,133 @@
+//! Effect: a coating, a bonded elastic layer of some thickness on one body or on both. See [`Coated`].
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::{Effect, Value};
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+use crate::influence::{radial, Coated, CoatedBody, CoatedPeriodic, Kernel};
+use crate::scene::Plain;
+
+/// The shear modulus of a coating, in that of its substrate.
+const RATIOS: (f64, f64) = (1e-4, 1e4);
+/// Of what elements measure, a layer thinner than that is none.
+const NOTHING: f64 = 1e-100;
+
+/// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoatingLayer {
+    /// t, a length; 0: no coating.
+    pub thickness: f64,
+    /// G of the layer.
+    pub shear_modulus: f64,
+    /// nu of the layer, in (-1, 0.5].
+    pub poisson_ratio: f64,
+}
+
+/// The coatings of body 1 and 2.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Coating {
+    /// None: that body has none.
+    pub layers: [Option<CoatingLayer>; 2],
+}
+
+const NAMES: [[&str; 3]; 2] = [
+    ["coating[0]->thickness", "coating[0]->shear_modulus", "coating[0]->poisson_ratio"],
+    ["coating[1]->thickness", "coating[1]->shear_modulus", "coating[1]->poisson_ratio"],
+];
+
+impl Coating {
+    /// Of body 1 alone.
+    pub fn of_body_1(thickness: f64, shear_modulus: f64, poisson_ratio: f64) -> Coating {
+        Coating { layers: [Some(CoatingLayer { thickness, shear_modulus, poisson_ratio }), None] }
+    }
+
+    /// One body with its coating, if that is one: not of no thickness, and not of the substrate's material.
+    fn body(&self, b: usize, scene: &Plain<'_>) -> Result<CoatedBody> {
+        let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
+        let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
+        let Some(layer) = self.layers[b] else { return Ok(plain) };
+        let CoatingLayer { thickness, shear_modulus, poisson_ratio } = layer;
+        let mu = shear_modulus / modulus;
+        if !(mu >= RATIOS.0 && mu <= RATIOS.1) {
+            return invalid(format!(
+                "{} is {shear_modulus}, that of the body {modulus}; their ratio must lie in {:e}..{:e}",
+                NAMES[b][1], RATIOS.0, RATIOS.1
+            ));
+        }
+        let is_none = thickness <= NOTHING * f64::min(scene.grid.dx, scene.grid.dy);
+        if is_none || (shear_modulus == modulus && poisson_ratio == ratio) {
+            return Ok(plain);
+        }
+        let compliance = (1.0 - poisson_ratio) / (2.0 * PI * shear_modulus);
+        Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })
+    }
+
+    /// Both bodies; none: they have no coating in effect.
+    pub fn bodies(&self, scene: &Plain<'_>) -> Result<Option<[CoatedBody; 2]>> {
+        let bodies = [self.body(0, scene)?, self.body(1, scene)?];
+        Ok(bodies.iter().any(|body| body.layer.is_some()).then_some(bodies))
+    }
+}
+
+impl Coating {
+    /// What both bodies give way to a pressure wave of wave number k > 0, after a check.
+    pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
+        self.check(&scene.grid)?;
+        scene.bodies.check()?;
+        Ok((self.body(0, scene)?.of_wave(k)) + self.body(1, scene)?.of_wave(k))
+    }
+}
+
+impl Effect for Coating {
+    fn name(&self) -> &'static str {
+        "coating"
+    }
+
+    fn check(&self, _grid: &Grid) -> Result<()> {
+        for (layer, [t, g, nu]) in self.layers.iter().zip(NAMES) {
+            let Some(layer) = layer else { continue };
+            let (thickness, modulus, ratio) = (layer.thickness, layer.shear_modulus, layer.poisson_ratio);
+            let holds = thickness >= 0.0 && thickness.is_finite();
+            require(holds, t, thickness, "a thickness must be finite and not negative")?;
+            require(modulus > 0.0 && modulus.is_finite(), g, modulus, "it must be positive and finite")?;
+            require(ratio > -1.0 && ratio <= 0.5, nu, ratio, "it must lie in (-1, 0.5]")?;
+        }
+        Ok(())
+    }
+
+    fn excludes(&self) -> &'static [&'static str] {
+        &["influence", "row_tables"]
+    }
+
+    fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
+        let Some(bodies) = self.bodies(scene)? else { return Ok(None) };
+        let repeats = others.iter().flatten().map(|other| other.repeats()).find(|(x, y)| *x || *y);
+        Ok(Some(match repeats {
+            None => Arc::new(Coated::new(bodies, &scene.grid)?),
+            Some((true, true)) => Arc::new(CoatedPeriodic::new(bodies, &scene.grid)?),
+            Some(_) => {
+                return Err(Error::Unsupported(
+                    "coating and a period in one direction are both given; this version does not solve them together"
+                        .into(),
+                ))
+            }
+        }))
+    }
+
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
+        let layers = self.layers.map(|layer| layer.filter(|layer| layer.thickness > 0.0));
+        if layers == [None, None] {
+            return;
+        }
+        // That a body has none is told, too.
+        for (layer, [t, g, nu]) in layers.into_iter().zip(NAMES) {
+            tell(t, Value::Number(layer.map_or(0.0, |layer| layer.thickness)));
+            if let Some(layer) = layer {
+                tell(g, Value::Number(layer.shear_modulus));
+                tell(nu, Value::Number(layer.poisson_ratio));
+            }
+        }
+    }
+}

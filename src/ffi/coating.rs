@@ -1,0 +1,71 @@
+//! Effect: coatings, `contact_normal_coating`.
+
+use super::arguments::GivenEffect;
+use super::guard::guard;
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use super::structs::{self, versioned};
+use crate::error::require;
+use crate::grid::Grid;
+use crate::scene::{Bodies, Coating, CoatingLayer, Load, Plain};
+
+/// Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_coating {
+    /// Set by `contact_normal_coating_init`.
+    pub struct_size: i64,
+    /// Its thickness, a length >= 0; default 0: no coating.
+    pub thickness: f64,
+    /// Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+    pub shear_modulus: f64,
+    /// Its nu, in (-1, 0.5]; default 0.
+    pub poisson_ratio: f64,
+}
+
+versioned! { contact_normal_coating, 32 }
+
+/// Fills a coating with no thickness. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_coating_init(coating: *mut contact_normal_coating) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(coating) }
+}
+
+/// What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+/// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
+/// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_coating_compliance(
+    coating: *const contact_normal_coating,
+    shear_modulus: f64,
+    poisson_ratio: f64,
+    wave_number: f64,
+    compliance: *mut f64,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: NULL or a struct that declares its size.
+        let given = unsafe { structs::read(coating, "coating")? };
+        if compliance.is_null() {
+            return Err(Refusal::null("compliance"));
+        }
+        let holds = wave_number > 0.0 && wave_number.is_finite();
+        require(holds, "wave_number", wave_number, "it must be positive and finite")?;
+        let bodies = Bodies { shear_modulus: [shear_modulus, f64::INFINITY], poisson_ratio: [poisson_ratio, 0.0] };
+        let coating = Coating { layers: [Some(given.translate()), None] };
+        let grid = Grid { mx: 1, my: 1, dx: 1.0, dy: 1.0 };
+        let plain = Plain { grid, undeformed_distance: &[], bodies, load: Load::Approach(0.0) };
+        let value = coating.compliance(&plain, wave_number)?;
+        // SAFETY: not null: room for a value.
+        unsafe { compliance.write(value) };
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+impl contact_normal_coating {
+    pub(super) fn translate(&self) -> CoatingLayer {
+        let contact_normal_coating { thickness, shear_modulus, poisson_ratio, .. } = *self;
+        CoatingLayer { thickness, shear_modulus, poisson_ratio }
+    }
+}
+
+impl GivenEffect for contact_normal_coating {}

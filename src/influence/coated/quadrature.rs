@@ -1,0 +1,72 @@
+//! Integrals of the radial functions: Gauss-Legendre, and Ogata's double-exponential rule for Hankel transforms.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::OnceLock;
+
+/// Nodes and weights of the n-point Gauss-Legendre rule on [0, 1], by Newton's method on the Legendre polynomial.
+pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    let node = |k: usize| {
+        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut before, mut p) = (1.0, x);
+            for j in 2..=n {
+                let j = j as f64;
+                (before, p) = (p, ((2.0 * j - 1.0) * x * p - (j - 1.0) * before) / j);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+/// The mesh size of the coarsest of Ogata's rules. Its nodes begin at `pi^2 h/3`; what is integrated may vary on ten times that scale.
+const MESH: f64 = 0.004;
+/// Beyond, its nodes are zeros of J0.
+const LAST: f64 = 3.6;
+/// Rules: each has half the mesh size of the one before.
+const RULES: usize = 8;
+
+/// Nodes x and weights w such that `integral from 0 to infinity of f(x) J0(x) dx = sum of w f(x)` (Ogata 2005), for f that varies on a
+/// scale of `scale`, or on longer ones:
+///
+/// ```text
+/// x = (pi/h) psi(h xi),  w = pi (Y0/J1)(pi xi) J0(x) psi'(h xi),  psi(t) = t tanh(pi/2 sinh t),  pi xi the zeros of J0
+/// ```
+pub fn hankel_rule(scale: f64) -> &'static [(f64, f64)] {
+    static KNOWN: [OnceLock<Vec<(f64, f64)>>; RULES] = [const { OnceLock::new() }; RULES];
+    let rule = (0.3 / scale).log2().ceil().clamp(0.0, RULES as f64 - 1.0) as usize;
+    KNOWN[rule].get_or_init(|| {
+        let mesh = MESH / (1u32 << rule) as f64;
+        let zeros = (1..).map(zero_of_j0).take_while(|zero| zero * mesh / PI < LAST);
+        zeros.map(|zero| rule_at(zero, mesh)).filter(|(_, w)| w.abs() > 1e-19).collect()
+    })
+}
+
+fn rule_at(zero: f64, mesh: f64) -> (f64, f64) {
+    let t = mesh * zero / PI;
+    let u = FRAC_PI_2 * t.sinh();
+    let slope = u.tanh() + t * FRAC_PI_2 * t.cosh() / u.cosh().powi(2);
+    // x = zero + d: near the zero J0 by its Taylor series there, as J0(x) itself would be round-off.
+    let fade = (-2.0 * u).exp();
+    let d = -zero * 2.0 * fade / (1.0 + fade);
+    let j1 = libm::j1(zero);
+    let value = match d.abs() < 1e-4 {
+        true => -j1 * d * (1.0 - 0.5 * d / zero - (1.0 - 2.0 / (zero * zero)) * d * d / 6.0),
+        false => libm::j0(zero + d),
+    };
+    (zero + d, PI * libm::y0(zero) / j1 * value * slope)
+}
+
+/// The k-th zero of J0: McMahon's expansion (Abramowitz & Stegun 9.5.12), and Newton's method.
+fn zero_of_j0(k: usize) -> f64 {
+    let b = (k as f64 - 0.25) * PI;
+    let e = 1.0 / (8.0 * b);
+    let mut zero = b + e - 124.0 / 3.0 * e * e * e;
+    for _ in 0..3 {
+        zero += libm::j0(zero) / libm::j1(zero);
+    }
+    zero
+}

@@ -1,0 +1,135 @@
+//! The transfer function of a bonded elastic layer on a half-space (Burmister 1945; Chen & Engel 1972; O'Sullivan & King 1988).
+//!
+//! A pressure wave of wave number k displaces the surface by `(1 - nu1)/(G1 k) B(k t)` times its amplitude. With `mu = G1/G2`, `s = k t`,
+//! `th = exp(-2 s)`,
+//!
+//! ```text
+//! lambda = 1 - 4 (1 - nu1)/(1 + mu (3 - 4 nu2)),     kappa = (mu - 1)/(mu + 3 - 4 nu1)
+//! B(s) = N/D,    N = 1 + 4 s kappa th - lambda kappa th^2,    D = 1 - (lambda + kappa + 4 kappa s^2) th + lambda kappa th^2
+//! ```
+//!
+//! B(0) = mu (1 - nu2)/(1 - nu1) is the substrate, B(infinity) = 1 the layer. Both N and D cancel for small s, the more the stiffer the
+//! layer is. So they are written as sums of what remains, with
+//!
+//! ```text
+//! 1 - lambda kappa = B(0) (1 - lambda)(1 - kappa)
+//! N = (1 - lambda kappa) + 2 th (lambda kappa (sinh 2s - 2s) + 2 s kappa (1 + lambda))                      soft
+//! N = (1 - lambda kappa) - lambda kappa expm1(-4 s) + 4 s kappa th                                          stiff
+//! D = (1 - lambda)(1 - kappa) + ((1 - lambda) kappa th + lambda (1 - kappa)) e + 4 kappa th (sinh^2 s - s^2)    stiff, e = 1 - th
+//! ```
+
+/// Beyond, exponentials are so small that nothing cancels.
+const PLAIN: f64 = 20.0;
+/// Taylor coefficients that are kept.
+pub const TERMS: usize = 12;
+
+/// B of one layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transfer {
+    lambda: f64,
+    kappa: f64,
+    /// `1 - lambda`, `1 - kappa`, `1 + lambda`, `1 - lambda kappa`.
+    less_lambda: f64,
+    less_kappa: f64,
+    more_lambda: f64,
+    less_both: f64,
+    /// B(0).
+    pub substrate: f64,
+}
+
+impl Transfer {
+    /// Of a layer of shear modulus `mu` times the substrate's, with both Poisson ratios.
+    pub fn new(mu: f64, [nu1, nu2]: [f64; 2]) -> Transfer {
+        let (one, two) = (1.0 + mu * (3.0 - 4.0 * nu2), mu + 3.0 - 4.0 * nu1);
+        let (less_lambda, less_kappa) = (4.0 * (1.0 - nu1) / one, 4.0 * (1.0 - nu1) / two);
+        let substrate = mu * (1.0 - nu2) / (1.0 - nu1);
+        Transfer {
+            lambda: (mu * (3.0 - 4.0 * nu2) - (3.0 - 4.0 * nu1)) / one,
+            kappa: (mu - 1.0) / two,
+            less_lambda,
+            less_kappa,
+            more_lambda: (2.0 * mu * (3.0 - 4.0 * nu2) - 2.0 * (1.0 - 2.0 * nu1)) / one,
+            less_both: substrate * less_lambda * less_kappa,
+            substrate,
+        }
+    }
+
+    /// B(s), s >= 0.
+    pub fn at(&self, s: f64) -> f64 {
+        if s > PLAIN {
+            return 1.0 + self.less_one_plain(s);
+        }
+        let Transfer { lambda, kappa, .. } = *self;
+        let th = (-2.0 * s).exp();
+        let n = if kappa >= 0.0 && lambda > 0.0 {
+            self.less_both - lambda * kappa * (-4.0 * s).exp_m1() + 4.0 * s * kappa * th
+        } else {
+            self.less_both + 2.0 * th * (lambda * kappa * sinh_less(2.0 * s) + 2.0 * s * kappa * self.more_lambda)
+        };
+        n / self.denominator(s, th)
+    }
+
+    /// `B(s) - 1`, without cancellation where B is near 1 for large s.
+    pub fn less_one(&self, s: f64) -> f64 {
+        if s >= 1.0 {
+            self.less_one_plain(s)
+        } else {
+            self.at(s) - 1.0
+        }
+    }
+
+    fn less_one_plain(&self, s: f64) -> f64 {
+        let Transfer { lambda, kappa, .. } = *self;
+        let th = (-2.0 * s).exp();
+        let grows = (1.0 + 2.0 * s).powi(2);
+        th * (lambda + kappa * grows - 2.0 * lambda * kappa * th) / self.denominator(s, th)
+    }
+
+    fn denominator(&self, s: f64, th: f64) -> f64 {
+        let Transfer { lambda, kappa, .. } = *self;
+        if kappa < 0.0 || s > PLAIN {
+            return 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
+        }
+        let e = -(-2.0 * s).exp_m1();
+        self.less_lambda * self.less_kappa
+            + (self.less_lambda * kappa * th + lambda * self.less_kappa) * e
+            + 4.0 * kappa * th * sinh_less(s) * (s.sinh() + s)
+    }
+
+    /// The Taylor coefficients of B at 0, by dividing the series of N and D, which are written with `1 - lambda` and `1 - kappa`
+    /// so that they do not cancel for stiff layers.
+    pub fn taylor(&self) -> [f64; TERMS] {
+        let (a, b, c) = (self.less_lambda, self.less_kappa, self.less_both);
+        // x^k/k!
+        let term = |x: f64, k: i32| (1..=k).fold(1.0, |product, i| product * x / f64::from(i));
+        let n = |k: i32| match k {
+            0 => c,
+            _ => 4.0 * self.kappa * term(-2.0, k - 1) - self.lambda * self.kappa * term(-4.0, k),
+        };
+        let d = |k: i32| match k {
+            0 => a * b,
+            _ => {
+                let quadratic = if k >= 2 { 4.0 * term(-2.0, k - 2) } else { 0.0 };
+                // Of two equal layers of infinite stiffness: 4 th (sinh^2 s - s^2), which begins with s^4.
+                let stiff = if k < 4 { 0.0 } else { term(-4.0, k) - 2.0 * term(-2.0, k) - quadratic };
+                stiff + (a + b) * term(-2.0, k) + b * quadratic - c * term(-4.0, k)
+            }
+        };
+        let mut taylor = [0.0; TERMS];
+        for k in 0..TERMS {
+            let known: f64 = (1..=k).map(|j| d(j as i32) * taylor[k - j]).sum();
+            taylor[k] = (n(k as i32) - known) / d(0);
+        }
+        taylor
+    }
+}
+
+/// `sinh x - x`, x >= 0.
+fn sinh_less(x: f64) -> f64 {
+    if x > 1.0 {
+        return x.sinh() - x;
+    }
+    // x^3/3! (1 + x^2/(4 5) (1 + x^2/(6 7) (...)))
+    let series = (2..=9).rev().fold(1.0, |sum, k| 1.0 + x * x / f64::from(2 * k * (2 * k + 1)) * sum);
+    x * x * x / 6.0 * series
+}

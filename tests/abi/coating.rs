@@ -1,0 +1,77 @@
+//! `contact_normal_coating`: what is refused, and by which name.
+
+use std::ptr::null_mut;
+
+use crate::call::{initialised, last_error, Call, Through};
+use contact_normal::ffi::*;
+
+fn coating(thickness: f64, shear_modulus: f64, poisson_ratio: f64) -> contact_normal_coating {
+    contact_normal_coating { thickness, shear_modulus, poisson_ratio, ..initialised(contact_normal_coating_init) }
+}
+
+#[test]
+fn a_coating_is_refused_by_name() {
+    let cases = [
+        (coating(-1.0, 1e3, 0.3), CONTACT_NORMAL_INVALID_ARGUMENT, "coating[1]->thickness is -1"),
+        (coating(f64::INFINITY, 1e3, 0.3), CONTACT_NORMAL_NOT_FINITE, "coating[1]->thickness is inf"),
+        (coating(0.1, 0.0, 0.3), CONTACT_NORMAL_INVALID_ARGUMENT, "coating[1]->shear_modulus is 0"),
+        (coating(0.1, f64::NAN, 0.3), CONTACT_NORMAL_NOT_FINITE, "coating[1]->shear_modulus is NaN"),
+        (coating(0.1, 1e-9, 0.3), CONTACT_NORMAL_INVALID_ARGUMENT, "their ratio must lie in"),
+        (coating(0.1, 1e3, 0.6), CONTACT_NORMAL_INVALID_ARGUMENT, "coating[1]->poisson_ratio is 0.6"),
+    ];
+    for (coating, status, words) in cases {
+        let mut call = Call::new();
+        call.scene.known.coating[1] = &coating;
+        let (got, message) = call.run(Through::Solve, null_mut());
+        assert_eq!(got, status, "{words}: {message}");
+        assert!(message.contains(words), "\"{message}\" does not say {words}");
+    }
+    let mut short = coating(0.1, 1e3, 0.3);
+    short.struct_size = 24;
+    let mut call = Call::new();
+    call.scene.known.coating[0] = &short;
+    let (got, message) = call.run(Through::Solve, null_mut());
+    assert!(got == CONTACT_NORMAL_STRUCT_SIZE && message.contains("scene->coating[0]->struct_size is 24"), "{message}");
+}
+
+#[test]
+fn pairs_that_are_not_solved_are_refused_by_name() {
+    let layer = coating(0.1, 1e3, 0.3);
+    type Spoil = fn(&mut Call);
+    let spoils: [(Spoil, &str); 3] = [
+        (|c| _ = c.use_table(), "influence"),
+        (|c| _ = c.use_row_tables(), "row_tables"),
+        (|c| c.use_period(1, 0), "a period in one direction"),
+    ];
+    for (spoil, words) in spoils {
+        let mut call = Call::new();
+        spoil(&mut call);
+        call.scene.known.coating[0] = &layer;
+        call.scene.known.shear_modulus = [2e3; 2];
+        let (got, message) = call.run(Through::Solve, null_mut());
+        assert!(got == CONTACT_NORMAL_UNSUPPORTED && message.contains(words), "{got} {message}");
+        assert!(message.contains("coating"), "{message}");
+    }
+}
+
+#[test]
+fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
+    let ask = |coating: &contact_normal_coating, k: f64| {
+        let mut compliance = f64::NAN;
+        // SAFETY: a whole struct, and room for a value.
+        let status = unsafe { contact_normal_coating_compliance(coating, 500.0, 0.25, k, &mut compliance) };
+        (status, compliance)
+    };
+    let close = |found: (i32, f64), exact: f64| {
+        assert!(found.0 == CONTACT_NORMAL_OK && (found.1 / exact - 1.0).abs() <= 1e-12, "{found:?} for {exact}");
+    };
+    close(ask(&coating(0.0, 1e3, 0.3), 2.0), 0.75 / (500.0 * 2.0));
+    close(ask(&coating(1.0, 500.0, 0.25), 2.0), 0.75 / (500.0 * 2.0));
+    close(ask(&coating(1.0, 1e3, 0.3), 100.0), 0.7 / (1e3 * 100.0));
+    close(ask(&coating(1.0, 1e3, 0.3), 1e-15), 0.75 / (500.0 * 1e-15));
+    assert_eq!(ask(&coating(1.0, 1e3, 0.3), 0.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert_eq!(ask(&coating(1.0, 1e3, 0.3), f64::NAN).0, CONTACT_NORMAL_NOT_FINITE);
+    // SAFETY: NULL is allowed, and refused.
+    let status = unsafe { contact_normal_coating_compliance(&coating(1.0, 1e3, 0.3), 500.0, 0.25, 1.0, null_mut()) };
+    assert_eq!((status, last_error().contains("compliance")), (CONTACT_NORMAL_NULL_POINTER, true));
+}

@@ -1,0 +1,420 @@
+//! Coatings: the transfer function and the coefficients, Hertz contact of coated bodies, preconditioners, effects that combine.
+
+use std::f64::consts::PI;
+
+use astro_float::{BigFloat, Consts, RoundingMode};
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::influence::{radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Transfer};
+use contact_normal::operator::{dense, Operator};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::solver::{Method, Options, Solver, Stop};
+use contact_normal::threads::Threads;
+
+use crate::support::{assert_conditions, run};
+
+const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];
+
+/// One coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 at its surface.
+fn coated(mu: f64, nu: [f64; 2], t: f64, grid: &Grid) -> Coated {
+    let rigid = CoatedBody { compliance: 0.0, layer: None };
+    let layer = CoatedBody { compliance: 1.0, layer: Some((t, radial(mu, nu))) };
+    Coated::new([layer, rigid], grid).unwrap()
+}
+
+/// Bits of the reference for B: at s = 1e-6 and G1/G2 = 1e6 some 100 of them cancel.
+const BITS: usize = 320;
+const RM: RoundingMode = RoundingMode::ToEven;
+
+/// B(s) from its definition.
+fn exact_transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64, consts: &mut Consts) -> f64 {
+    let big = |x: f64| BigFloat::from_f64(x, BITS);
+    let (add, sub) = (|a: &BigFloat, b: &BigFloat| a.add(b, BITS, RM), |a: &BigFloat, b: &BigFloat| a.sub(b, BITS, RM));
+    let (mul, div) = (|a: &BigFloat, b: &BigFloat| a.mul(b, BITS, RM), |a: &BigFloat, b: &BigFloat| a.div(b, BITS, RM));
+    let (one, three, four) = (big(1.0), big(3.0), big(4.0));
+    let (mu, nu1, nu2, s) = (big(mu), big(nu1), big(nu2), big(s));
+    let of_substrate = add(&one, &mul(&mu, &sub(&three, &mul(&four, &nu2))));
+    let lambda = sub(&one, &div(&mul(&four, &sub(&one, &nu1)), &of_substrate));
+    let kappa = div(&sub(&mu, &one), &sub(&add(&mu, &three), &mul(&four, &nu1)));
+    let th = mul(&big(-2.0), &s).exp(BITS, RM, consts);
+    let both = mul(&mul(&lambda, &kappa), &mul(&th, &th));
+    let n = sub(&add(&one, &mul(&mul(&four, &s), &mul(&kappa, &th))), &both);
+    let sum = add(&add(&lambda, &kappa), &mul(&mul(&four, &kappa), &mul(&s, &s)));
+    let d = add(&sub(&one, &mul(&sum, &th)), &both);
+    format!("{}", div(&n, &d)).parse().unwrap()
+}
+
+#[test]
+fn the_transfer_function_has_all_digits() {
+    let mut consts = Consts::new().unwrap();
+    let mut worst: f64 = 0.0;
+    for mu in [1e-6, 1e-3, 0.1, 0.7, 1.0, 1.5, 30.0, 1e3, 1e6] {
+        for nu in [[0.0, 0.0], [0.3, 0.3], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5], [0.25, 0.45]] {
+            let transfer = Transfer::new(mu, nu);
+            for s in [1e-8, 1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 0.99, 1.01, 2.0, 5.0, 10.0, 19.0, 21.0, 100.0, 300.0] {
+                let exact = exact_transfer(mu, nu, s, &mut consts);
+                let error = (transfer.at(s) / exact - 1.0).abs();
+                assert!(error <= 5e-14, "mu {mu} nu {nu:?} s {s}: {} for {exact}", transfer.at(s));
+                worst = worst.max(error);
+            }
+            // Its Taylor coefficients: B(0), and B at a place where twelve of them have ten digits.
+            let (taylor, s) = (transfer.taylor(), 0.02 / mu.max(1.0));
+            let series = taylor.iter().rev().fold(0.0, |sum, b| sum * s + b);
+            assert!((taylor[0] / transfer.substrate - 1.0).abs() <= 1e-14);
+            assert!((series / transfer.at(s) - 1.0).abs() <= 1e-10, "mu {mu} nu {nu:?}: {series} {}", transfer.at(s));
+        }
+    }
+    println!("largest error of B: {worst:e}");
+}
+
+/// Nine elements are one that is three times as long and wide: sums that know nothing of how either was computed.
+#[test]
+fn coefficients_add_up_to_those_of_larger_elements() {
+    let mut worst: f64 = 0.0;
+    for mu in RATIOS {
+        for (t, nu, shape) in [
+            (1e3, [0.3, 0.3], 1.0),
+            (40.0, [0.5, 0.3], 0.8),
+            (10.0, [0.3, 0.3], 1.0),
+            (3.0, [0.0, 0.5], 0.125),
+            (1.0, [0.3, 0.3], 1.0),
+            (0.1, [0.5, 0.5], 8.0),
+            (1e-3, [0.3, 0.2], 1.0),
+        ] {
+            let fine = coated(mu, nu, t, &Grid::new(154, 154, 1.0, shape).unwrap());
+            let triple = coated(mu, nu, t, &Grid::new(52, 52, 3.0, 3.0 * shape).unwrap());
+            for (kx, ky) in (0..50).flat_map(|ky| (0..50).map(move |kx| (kx, ky))) {
+                let nine = (-1..2).flat_map(|j| (-1..2).map(move |i| (3 * kx + i, 3 * ky + j)));
+                let sum: f64 = nine.map(|(kx, ky)| fine.at(kx, ky)).sum();
+                let error = (sum / triple.at(kx, ky) - 1.0).abs();
+                let tolerance = if (0.01..=100.0).contains(&mu) { 1e-10 } else { 1e-8 };
+                assert!(error <= tolerance, "mu {mu} t {t} shape {shape} ({kx}, {ky}): {error:e}");
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("largest error of nine elements: {worst:e}");
+}
+
+#[test]
+fn thin_thick_and_equal_coatings_are_what_they_should_be() {
+    let grid = Grid::new(40, 40, 1.0, 1.0).unwrap();
+    let love = HalfSpace::new(1.0, 1.0, PI);
+    // Thin: the substrate, and the compliance B1 of a layer on the diagonal; what is left is of second order.
+    let (mu, t) = (0.01, 1e-3);
+    let transfer = Transfer::new(mu, [0.3, 0.3]);
+    let thin = transfer.substrate * love.at(0, 0) + 2.0 * PI * transfer.taylor()[1] * t;
+    let found = coated(mu, [0.3, 0.3], t, &grid).at(0, 0);
+    assert!((found / thin - 1.0).abs() <= 1e-6, "{found} for {thin}");
+    for (t, base) in [(1e-300, transfer.substrate), (1e-30, transfer.substrate), (1e30, 1.0), (1e300, 1.0)] {
+        let layer = coated(mu, [0.3, 0.3], t, &grid);
+        for (kx, ky) in [(0, 0), (1, 0), (3, 7), (39, 39)] {
+            let exact = base * love.at(kx, ky);
+            assert!((layer.at(kx, ky) / exact - 1.0).abs() <= 1e-12, "t {t}: {} for {exact}", layer.at(kx, ky));
+        }
+    }
+    for (kx, ky) in [(0, 0), (1, 0), (3, 7), (39, 39), (39, 45)] {
+        let equal = coated(1.0, [0.3, 0.3], 2.0, &grid).at(kx, ky);
+        assert!((equal / love.at(kx, ky) - 1.0).abs() <= 1e-12);
+    }
+}
+
+/// t/aH, a/aH, p0/pH.
+type Column = (f64, f64, f64);
+
+/// A rigid ball on a coated body: `a/aH` and `p0/pH` of an axisymmetric solution by Hankel transforms, without a grid, nu = 0.3; aH and pH
+/// are those of the same force on the substrate alone.
+const HERTZ: [(f64, [Column; 4]); 6] = [
+    (0.1, [(0.25, 1.45451, 0.56987), (0.5, 1.634207, 0.442380), (1.0, 1.834127, 0.331111), (2.0, 2.014819, 0.254691)]),
+    (0.25, [(0.25, 1.22637, 0.75955), (0.5, 1.330897, 0.634832), (1.0, 1.446997, 0.507138), (2.0, 1.538662, 0.427224)]),
+    (0.5, [(0.25, 1.09873, 0.89296), (0.5, 1.149909, 0.807562), (1.0, 1.206608, 0.704682), (2.0, 1.244859, 0.647357)]),
+    (2.0, [(0.25, 0.92034, 1.07393), (0.5, 0.869692, 1.228033), (1.0, 0.818478, 1.475437), (2.0, 0.798224, 1.568452)]),
+    (4.0, [(0.25, 0.84941, 1.11741), (0.5, 0.745816, 1.574471), (1.0, 0.658088, 2.283466), (2.0, 0.634293, 2.484389)]),
+    (10.0, [(0.25, 0.75150, 1.14534), (0.5, 0.574649, 2.669873), (1.0, 0.482055, 4.282251), (2.0, 0.466579, 4.592785)]),
+];
+
+/// E* = 1 of the substrate and R = 1: a force of 4/3 gives aH = 1 and pH = 2/pi.
+fn ball(mu: f64, t: f64, radius: f64, elements: usize) -> (Grid, Vec<f64>, Bodies, Coating) {
+    let m = 2 * (elements + elements / 5) + 1;
+    let d = radius / elements as f64;
+    let grid = Grid::new(m, m, d, d).unwrap();
+    let place = |k: usize| (k as f64 - (m / 2) as f64) * d;
+    let h = (0..grid.len()).map(|i| 0.5 * (place(i % m).powi(2) + place(i / m).powi(2))).collect();
+    let bodies = Bodies { shear_modulus: [f64::INFINITY, 0.35], poisson_ratio: [0.0, 0.3] };
+    let layer = CoatingLayer { thickness: t, shear_modulus: 0.35 * mu, poisson_ratio: 0.3 };
+    (grid, h, bodies, Coating { layers: [None, Some(layer)] })
+}
+
+#[test]
+fn a_ball_on_a_coated_body_has_the_pressures_of_the_axisymmetric_solution() {
+    let mut worst: f64 = 0.0;
+    for (mu, columns) in HERTZ {
+        for (t, radius, pressure) in columns {
+            let (grid, h, bodies, coating) = ball(mu, t, radius, 40);
+            let scene = Scene { coating: Some(coating), ..Scene::new(grid, &h, bodies, Load::Force(4.0 / 3.0)) };
+            let (solver, report) = run(&scene, &Options { tolerance: 1e-9, ..Options::default() });
+            // Of stiff thin coatings the largest pressure is not in the middle.
+            let error = (solver.state().p[grid.len() / 2] / (pressure * 2.0 / PI) - 1.0).abs();
+            // Second order in the elements to the radius: 5e-5 at 40, and the digits of the table.
+            assert!(error <= 1e-4, "mu {mu} t {t}: p0 off by {error:e}");
+            let found = (report.measures.contact_area / PI).sqrt();
+            assert!((found - radius).abs() <= 0.5 * grid.dx, "mu {mu} t {t}: a {found} for {radius}");
+            worst = worst.max(error);
+        }
+    }
+    println!("largest error of p0: {worst:e}");
+}
+
+/// Steps of conjugate gradients on a fixed disc of 80 elements across, to 1e-8 of the right-hand side.
+fn steps(mu: f64, t: f64, rough: bool) -> usize {
+    let m = 128;
+    let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
+    let coefficients = Coefficients::from(coated(mu, [0.3, 0.3], 40.0 * t, &grid));
+    let operator = Operator::<f64>::new(&coefficients, &grid, &Threads::One).unwrap();
+    let inverse = Operator::<f64>::inverse_circulant(&coefficients, &grid, (m, m), &Threads::One).unwrap();
+    let inverse = inverse.expect("a positive preconditioner");
+    let (mut memory, mut inverse_memory) = (operator.workspace().unwrap(), inverse.workspace().unwrap());
+    let place = |k: usize| k as f64 - 63.5;
+    let inside: Vec<bool> = (0..m * m).map(|i| place(i % m).powi(2) + place(i / m).powi(2) < 1600.0).collect();
+    let masked = |v: &mut Vec<f64>| v.iter_mut().zip(&inside).for_each(|(v, inside)| *v *= f64::from(*inside));
+    let mut state = 7u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut r: Vec<f64> = (0..m * m)
+        .map(|i| if rough { random() } else { 1.0 - (place(i % m).powi(2) + place(i / m).powi(2)) / 3200.0 })
+        .collect();
+    masked(&mut r);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let goal = 1e-16 * dot(&r, &r);
+    let (mut z, mut v, mut direction) = (vec![0.0; m * m], vec![0.0; m * m], vec![0.0; m * m]);
+    let mut before = 1.0;
+    for step in 0..1000 {
+        if dot(&r, &r) <= goal {
+            return step;
+        }
+        inverse.apply(&r, &mut z, &mut inverse_memory);
+        masked(&mut z);
+        let now = dot(&r, &z);
+        let ratio = if step > 0 { now / before } else { 0.0 };
+        direction.iter_mut().zip(&z).for_each(|(d, z)| *d = z + ratio * *d);
+        operator.apply(&direction, &mut v, &mut memory);
+        masked(&mut v);
+        let length = now / dot(&direction, &v);
+        r.iter_mut().zip(&v).for_each(|(r, v)| *r -= length * v);
+        before = now;
+    }
+    panic!("mu {mu} t {t}: no end");
+}
+
+#[test]
+fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
+    let table = [
+        (0.01, 0.01, 5, 7),
+        (0.01, 0.1, 6, 7),
+        (0.01, 1.0, 8, 12),
+        (0.01, 3.0, 8, 12),
+        (10.0, 0.01, 11, 16),
+        (10.0, 0.1, 9, 22),
+        (10.0, 0.3, 8, 17),
+        (10.0, 1.0, 8, 14),
+        (10.0, 3.0, 8, 14),
+        (100.0, 0.01, 17, 31),
+        (100.0, 0.1, 13, 31),
+        (100.0, 0.3, 9, 18),
+        (100.0, 1.0, 9, 14),
+        (100.0, 3.0, 9, 13),
+    ];
+    for (mu, t, smooth, rough) in table {
+        let found = (steps(mu, t, false), steps(mu, t, true));
+        println!("{mu} {t}: {found:?} for ({smooth}, {rough})");
+        assert!(found.0 <= smooth + 2 && found.1 <= rough + 2, "mu {mu} t {t}: {found:?} for ({smooth}, {rough})");
+    }
+}
+
+/// F_1 by 30 digits (mpmath: composite quadrature of `(B - 1) J0`): `(G1/G2, nu1, nu2, rho, F)`.
+const RADIAL: [(f64, f64, f64, f64, f64); 35] = [
+    (1e-4, 0.3, 0.3, 0.0, -1.3766917667552365),
+    (1e-4, 0.3, 0.3, 0.01, -1.3766290230613736),
+    (1e-4, 0.3, 0.3, 0.7, -1.1230244283336073),
+    (1e-4, 0.3, 0.3, 1.9, -0.538762588539679),
+    (1e-4, 0.3, 0.3, 2.1, -0.4851459620968778),
+    (1e-4, 0.3, 0.3, 5.0, -0.20011773076526435),
+    (1e-4, 0.3, 0.3, 13.0, -0.07691543254347602),
+    (1e-4, 0.3, 0.3, 60.0, -0.016664999886491946),
+    (1e-4, 0.3, 0.3, 300.0, -0.0033329999990929),
+    (0.01, 0.5, 0.25, 0.0, -1.7461482226213492),
+    (0.01, 0.5, 0.25, 0.01, -1.7460540107467197),
+    (0.01, 0.5, 0.25, 0.7, -1.371055653943529),
+    (0.01, 0.5, 0.25, 1.9, -0.5798081579283788),
+    (0.01, 0.5, 0.25, 2.1, -0.5157504676823769),
+    (0.01, 0.5, 0.25, 5.0, -0.20012983363098896),
+    (0.01, 0.5, 0.25, 13.0, -0.075775429864726),
+    (0.01, 0.5, 0.25, 60.0, -0.016416667554492243),
+    (0.01, 0.5, 0.25, 300.0, -0.00328333333900267),
+    (0.5, 0.3, 0.3, 0.0, -0.6404588176700088),
+    (0.5, 0.3, 0.3, 0.01, -0.640432341896339),
+    (0.5, 0.3, 0.3, 0.7, -0.5323963742470471),
+    (0.5, 0.3, 0.3, 1.9, -0.2691356475519988),
+    (0.5, 0.3, 0.3, 2.1, -0.24305702973069843),
+    (0.5, 0.3, 0.3, 5.0, -0.09967710656031595),
+    (0.5, 0.3, 0.3, 13.0, -0.038416715110213134),
+    (0.5, 0.3, 0.3, 60.0, -0.008332861265603616),
+    (0.5, 0.3, 0.3, 300.0, -0.0016666628874830664),
+    (2.0, 0.3, 0.5, 0.0, 0.8313658713185441),
+    (2.0, 0.3, 0.5, 0.01, 0.8313310823549201),
+    (2.0, 0.3, 0.5, 0.7, 0.6879729561899315),
+    (2.0, 0.3, 0.5, 1.9, 0.3205866272305541),
+    (2.0, 0.3, 0.5, 2.1, 0.28241082350202273),
+    (2.0, 0.3, 0.5, 5.0, 0.09000359201100432),
+    (2.0, 0.3, 0.5, 13.0, 0.03313063977359653),
+    (2.0, 0.3, 0.5, 60.0, 0.0071444792721844985),
+];
+
+#[test]
+fn radial_functions_have_fourteen_digits() {
+    for (mu, nu1, nu2, rho, exact) in RADIAL {
+        let found = radial(mu, [nu1, nu2]).f(rho, Base::Layer);
+        // Sums of some 500 terms of order 1.
+        assert!((found - exact).abs() <= 2e-14 * exact.abs().max(1.0), "mu {mu} rho {rho}: {found} for {exact}");
+    }
+}
+
+/// A surface with several contact areas, one place without a surface.
+fn bumps(m: usize, d: f64) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(m, m, d, d).unwrap();
+    let mut h: Vec<f64> = (0..m * m)
+        .map(|i| {
+            let (x, y) = ((i % m) as f64 * d, (i / m) as f64 * d);
+            0.02 * (2.0 - (2.1 * x).cos() - (1.7 * y).cos())
+        })
+        .collect();
+    h[m + 3] = f64::INFINITY;
+    (grid, h)
+}
+
+fn soft_and_stiff() -> Coating {
+    let layer =
+        |thickness, shear_modulus, poisson_ratio| Some(CoatingLayer { thickness, shear_modulus, poisson_ratio });
+    Coating { layers: [layer(0.3, 0.2, 0.4), layer(0.15, 6.0, 0.2)] }
+}
+
+/// The conditions of contact, with u by direct summation over coefficients.
+#[test]
+fn a_coating_goes_with_other_effects_and_methods() {
+    let (m, d) = (32, 0.2);
+    let (grid, h) = bumps(m, d);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let plain = Scene { coating: Some(soft_and_stiff()), ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let patch: Vec<i32> = (0..m * m).map(|i| i32::from(i % m >= m / 2)).collect();
+    let patches = Patches { count: 2, patch: &patch, factors: &[1.0, 0.5, 0.5, 1.0] };
+    let compliances: Vec<f64> = (0..m * m).map(|i| 0.01 * (i % 7) as f64).collect();
+    let scenes = [
+        ("alone", plain.clone()),
+        ("approach", Scene { load: Load::Approach(0.03), ..plain.clone() }),
+        ("layer", Scene { layer: Some(Layer::Uniform(0.02)), ..plain.clone() }),
+        ("layers", Scene { layer: Some(Layer::PerElement(&compliances)), ..plain.clone() }),
+        ("patches", Scene { patches: Some(patches), ..plain.clone() }),
+        ("period", Scene { period: Some(Period { x: true, y: true }), ..plain.clone() }),
+    ];
+    for (name, scene) in &scenes {
+        for method in [Method::Auto, Method::ProjectedCg, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
+            if matches!(method, Method::Multigrid | Method::FullMultigrid)
+                && ["layers", "patches", "period"].contains(name)
+            {
+                continue;
+            }
+            let (solver, report) = run(scene, &Options { method, ..Options::default() });
+            let p = &solver.state().p;
+            let mut u = vec![0.0; p.len()];
+            dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
+            assert_conditions(&h, report.measures.approach, p, &u, &format!("{name} {method:?}"));
+        }
+    }
+    let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(0.05)), ..plain.clone() };
+    let (solver, report) = run(&limited, &Options::default());
+    let state = solver.state();
+    let largest = state.p.iter().copied().fold(0.0, f64::max);
+    assert!(largest == 0.05 && state.at_limit.contains(&true), "{largest} {report:?}");
+    assert!((state.p.iter().sum::<f64>() * d * d / 0.2 - 1.0).abs() <= 1e-9);
+}
+
+#[test]
+fn no_coating_in_effect_is_the_plain_scene() {
+    let (grid, h) = bumps(32, 0.2);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let plain = Scene::new(grid, &h, bodies, Load::Force(0.2));
+    let (without, _) = run(&plain, &Options::default());
+    let layer =
+        |thickness, shear_modulus, poisson_ratio| Some(CoatingLayer { thickness, shear_modulus, poisson_ratio });
+    for layers in [[None, None], [layer(0.0, 5.0, 0.1), None], [layer(0.7, 1.0, 0.3), layer(1.0, 2.0, 0.25)]] {
+        let (with, _) = run(&Scene { coating: Some(Coating { layers }), ..plain.clone() }, &Options::default());
+        assert_eq!(with.state().p, without.state().p);
+    }
+    // So thick that it is the body.
+    let thick = Coating { layers: [layer(1e15, 1.0, 0.3), None] };
+    let bodies = Bodies { shear_modulus: [3.0, 2.0], poisson_ratio: [0.1, 0.25] };
+    let scene = Scene { coating: Some(thick), bodies, ..plain.clone() };
+    let (with, _) = run(&scene, &Options { tolerance: 1e-12, ..Options::default() });
+    let (without, _) = run(&plain, &Options { tolerance: 1e-12, ..Options::default() });
+    let largest = without.state().p.iter().copied().fold(0.0, f64::max);
+    for (one, other) in with.state().p.iter().zip(&without.state().p) {
+        assert!((one - other).abs() <= 1e-10 * largest, "{one} {other}");
+    }
+}
+
+/// A wave of pressure, constant on elements, displaces by the sum over its aliases.
+#[test]
+fn periodic_coefficients_have_the_transform_of_the_layer() {
+    let grid = Grid::new(12, 9, 0.3, 0.5).unwrap();
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let h = vec![0.0; grid.len()];
+    let period = Some(Period { x: true, y: true });
+    let scene = Scene { coating: Some(soft_and_stiff()), period, ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let coefficients = scene.coefficients().unwrap();
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+    for (i, j) in [(1, 0), (0, 2), (3, 1), (6, 4)] {
+        let mut found = 0.0;
+        for (kx, ky) in (0..9).flat_map(|ky| (0..12).map(move |kx| (kx, ky))) {
+            found += coefficients.at(kx, ky)
+                * (2.0 * PI * (i * kx) as f64 / 12.0).cos()
+                * (2.0 * PI * (j * ky) as f64 / 9.0).cos();
+        }
+        // Beyond n aliases are 1/n^2 of the sum: twice as many leave a quarter.
+        let sum = |n: i64| -> f64 {
+            let aliases = (-n..=n).flat_map(|a| (-n..=n).map(move |b| (a, b)));
+            aliases
+                .map(|(a, b)| {
+                    let kx = 2.0 * PI * (i as f64 / 12.0 + a as f64) / 0.3;
+                    let ky = 2.0 * PI * (j as f64 / 9.0 + b as f64) / 0.5;
+                    let k = kx.hypot(ky);
+                    let of = |g: f64, nu: f64, t: f64, mu: f64, below: f64| {
+                        (1.0 - nu) / (g * k) * Transfer::new(mu, [nu, below]).at(k * t)
+                    };
+                    (of(0.2, 0.4, 0.3, 0.2, 0.3) + of(6.0, 0.2, 0.15, 3.0, 0.25)) * sinc(0.15 * kx) * sinc(0.25 * ky)
+                })
+                .sum()
+        };
+        let (less, more) = (sum(100), sum(200));
+        let exact = more + (more - less) / 3.0;
+        assert!((found / exact - 1.0).abs() <= 2e-5, "({i}, {j}): {found} for {exact}");
+    }
+}
+
+#[test]
+fn a_handle_refuses_another_coating_and_tables() {
+    let (grid, h) = bumps(16, 0.2);
+    let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, 0.25] };
+    let scene = Scene { coating: Some(soft_and_stiff()), ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
+    let mut solver = Solver::new(&scene, &Options::default()).unwrap();
+    let (stop, _) = solver.solve(&scene, &Options::default(), None, None).unwrap();
+    assert_eq!(stop, Stop::Converged);
+    let mut other = scene.clone();
+    other.coating = Some(Coating::of_body_1(0.3, 0.2, 0.4));
+    let refused = solver.solve(&other, &Options::default(), None, None).unwrap_err();
+    assert!(matches!(refused, Error::InvalidArgument(_)), "{refused}");
+    other.coating = None;
+    let refused = solver.solve(&other, &Options::default(), None, None).unwrap_err();
+    assert!(refused.to_string().contains("coating is not given"), "{refused}");
+}
