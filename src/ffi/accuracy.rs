@@ -142,6 +142,8 @@ fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Refusal> {
     };
     Ok(Accuracy {
         target: given.target,
+        max_pressure_target: 0.0,
+        contact_area_target: 0.0,
         max_seconds: given.max_seconds,
         max_bytes: limit("max_bytes", given.max_bytes)?,
         max_elements: limit("max_elements", given.max_elements)?,

@@ -9,7 +9,7 @@ pub use crate::effects::{Layer, Patches, Period, PressureLimit};
 pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
-pub use refine::refine;
+pub use refine::{refine, sample};
 
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};
