@@ -55,8 +55,7 @@ impl Surface {
     pub fn write(&self, grid: &Grid, h: &mut [f64]) {
         let centre = |i: usize, d: f64, m: usize| (i as f64 + 0.5 - 0.5 * m as f64) * d;
         for (i, value) in h.iter_mut().enumerate() {
-            *value =
-                (self.h)(centre(i % grid.mx, grid.dx, grid.mx), centre(i / grid.mx, grid.dy, grid.my));
+            *value = (self.h)(centre(i % grid.mx, grid.dx, grid.mx), centre(i / grid.mx, grid.dy, grid.my));
         }
     }
 

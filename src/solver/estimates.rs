@@ -40,7 +40,7 @@ const AT_ENDS: f64 = 0.33;
 /// Second differences of the pressures: what of them is missed of the largest, and in the rms; and when they say that a peak is singular.
 const PEAK: f64 = 0.1;
 const PRESSURES: f64 = 0.25;
-const SINGULAR: f64 = 0.15;
+const SINGULAR: f64 = 0.18;
 const SHARP: f64 = 0.08;
 /// Part of the correction of the contact area by which it is off, and elements along straight outlines.
 const CORRECTION_OFF: f64 = 0.3;

@@ -52,8 +52,8 @@ type OnGrid = std::result::Result<Solved, (Stop, String, Option<Solved>)>;
 /// nothing, until the estimated relative errors are at most the targets on 32 elements across the contact in both directions. `surface`
 /// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](refine).
 ///
-/// The first grid is solved whatever the limits are. A finer grid that runs out of time, memory or cycles or is cancelled counts
-/// only if it is estimated to be the better one all the same; else the result is that of the grid before.
+/// The first grid is solved whatever the limits are. A finer grid that runs out of time or cycles counts only if it is estimated to be
+/// the better one all the same, and none that is cancelled; else the result is that of the grid before.
 pub fn solve_to_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -73,7 +73,8 @@ pub fn solve_to_accuracy(
         let solved = match on_grid(scene, &options, doublings, &mut surface, &mut progress, &late) {
             Ok(Ok(solved)) => solved,
             Ok(Err((stop, why, unfinished))) => {
-                best = better(best, unfinished, accuracy);
+                let counts = stop == Stop::IterationLimit || best.is_none();
+                best = better(best, unfinished.filter(|_| counts), accuracy);
                 break (stop, why);
             }
             Err(Error::OutOfMemory(message)) if !is_first => break (Stop::IterationLimit, message),
@@ -102,7 +103,9 @@ pub fn solve_to_accuracy(
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst = |solved: &Option<Solved>| {
         let excesses = solved.as_ref().map(|solved| solved.outlook.excesses(accuracy));
-        excesses.map_or(f64::INFINITY, |all| all.iter().map(|one| one.map_or(f64::INFINITY, |one| one.now())).fold(0.0, f64::max))
+        excesses.map_or(f64::INFINITY, |all| {
+            all.iter().map(|one| one.map_or(f64::INFINITY, |one| one.now())).fold(0.0, f64::max)
+        })
     };
     match (worst(&unfinished) < worst(&last), last.is_some()) {
         (false, true) => last,

@@ -365,7 +365,26 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         dx,
         dy,
         reached,
-        seconds
+        seconds,
+        max_pressure_target,
+        contact_area_target
+    );
+    layout!(
+        ours,
+        "Price",
+        contact_normal_price,
+        target,
+        error,
+        tolerance,
+        seconds,
+        seconds_one_thread,
+        bytes,
+        mx,
+        my,
+        dx,
+        dy,
+        obstacle,
+        reserved
     );
     layout!(
         ours,
@@ -480,6 +499,9 @@ with cn.Solver(10, 12, 0.2, 0.2, threads=2, **steel) as solver:
 ball = lambda x, y: 0.01 * (x ** 2 + y ** 2)
 near = cn.solve_to_accuracy(0.04 * h, 0.5, 0.5, target=1e-2, approach=0.1, **steel)
 print(near.status, near.reached <= 1e-2, near.pressure.shape[1] * near.dx, near.seconds > 0, len(near.ledger) > 1)
+prices = cn.cost_of_accuracy(0.04 * h, 0.5, 0.5, targets=(1e-2, 1e-15), approach=0.1, **steel)
+assert prices[0].seconds > 0 and prices[0].shape[0] >= 12 and not prices[0].obstacle, prices
+assert prices[1].obstacle == 'below round-off' and prices[1].shape == (0, 0), prices
 far = cn.solve_to_accuracy(ball, 0.5, 0.5, shape=(10, 12), target=1e-9, max_elements=40 * 48, approach=0.1, **steel)
 print(far.status == cn.ITERATION_LIMIT, far.pressure.shape, 'max_elements' in far.message and '48 x 40' in far.message)
 for bad in (dict(shape=(10, 12)), dict()):

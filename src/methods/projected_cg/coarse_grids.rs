@@ -66,10 +66,7 @@ impl CoarseGrids {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.grids
-            .iter()
-            .map(|grid| grid.level.bytes() + grid.state.bytes())
-            .sum()
+        self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum()
     }
 
     /// See [`Level::forget_window`].

@@ -126,7 +126,9 @@ impl fmt::Display for Past {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = self.across;
         match self.worst() {
-            Some(worst) => write!(f, "the estimated error is {worst:.2} times the target, {x} x {y} elements across the contact"),
+            Some(worst) => {
+                write!(f, "the estimated error is {worst:.2} times the target, {x} x {y} elements across the contact")
+            }
             None => write!(f, "no estimate, {x} x {y} elements across the contact"),
         }
     }
@@ -137,7 +139,8 @@ impl Accuracy {
     pub fn check(&self) -> Result<()> {
         let (target, seconds) = (self.target, self.max_seconds);
         require(target > 0.0 && target.is_finite(), "target", target, "it must be positive and finite")?;
-        let more = [("max_pressure_target", self.max_pressure_target), ("contact_area_target", self.contact_area_target)];
+        let more =
+            [("max_pressure_target", self.max_pressure_target), ("contact_area_target", self.contact_area_target)];
         for (name, target) in more {
             require(target >= 0.0 && target.is_finite(), name, target, "it must be positive, or 0 for none")?;
         }
@@ -207,7 +210,7 @@ impl Accuracy {
     /// Doublings that the estimates ask for, and the elements across the contact; one if there are no estimates.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
-        if across == 0 {
+        if across == 0 || past.worst().is_none() {
             return 1;
         }
         let enough = |k: u32| across.saturating_mul(1 << k) >= ENOUGH_ACROSS;

@@ -18,9 +18,12 @@ pub enum Quantity {
 /// An error: what falls by 4 with a doubling of the elements in both directions, what falls by 2, and what the residual hides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Falling {
-    by_four: f64,
-    by_two: f64,
-    hidden: f64,
+    /// What falls by 4.
+    pub(super) by_four: f64,
+    /// What falls by 2.
+    pub(super) by_two: f64,
+    /// What stays.
+    pub(super) hidden: f64,
 }
 
 impl Falling {

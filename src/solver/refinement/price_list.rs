@@ -11,7 +11,7 @@ use super::{check, on_grid, scaled, Accuracy, Quantity, Solved, SurfaceCallback}
 use crate::error::{require, Result};
 use crate::grid::Grid;
 use crate::scene::Scene;
-use crate::solver::{Options, Progress};
+use crate::solver::{Options, Progress, Stop};
 
 /// What keeps an accuracy from being had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +33,8 @@ pub enum Obstacle {
 pub struct Price {
     /// The relative error that is wanted.
     pub target: f64,
-    /// The coarsest grid that is predicted to do; with an obstacle as far as it is known, else that of the scene.
-    pub grid: Grid,
+    /// The coarsest grid that is predicted to do, if that is known.
+    pub grid: Option<Grid>,
     /// The tolerance to ask for: more would be wasted.
     pub tolerance: f64,
     /// Relative error that this grid and tolerance are predicted to leave; negative: not known.
@@ -50,27 +50,48 @@ pub struct Price {
 }
 
 /// The samples take at most this part of the seconds of the dearest accuracy, or these seconds; less a margin for the last of them.
-const PART: f64 = 0.012;
-const SECONDS: f64 = 0.03;
+const PART: f64 = 0.014;
+const SECONDS: f64 = 0.035;
 /// The first sample has about so many elements in a direction.
 const FIRST: usize = 32;
 /// Elements across the contact on a sample that can be carried on.
 const ACROSS: usize = 12;
-/// Powers of the number of elements with which seconds grow: of that which samples show, what is believed.
-const EXPONENTS: (f64, f64) = (1.0, 1.15);
+/// The power of the number of elements with which seconds grow (docs/performance.md).
+const GROWTH: f64 = 1.08;
+/// That of set-ups, at least.
+const SETUP_GROWTH: f64 = 0.4;
 /// What a grid of four times as many elements takes at most, where samples have not shown it.
 const NEXT: f64 = 5.0;
+
+/// On more elements contact that is still on fewer across is left alone, whatever is known.
+const UNRESOLVED: f64 = 2e5;
+/// Samples at most.
+const MOST_SAMPLES: usize = 12;
+/// Samples are timed again, so often at most and for this part of the seconds: the first solve of a size is slow, and machines are busy.
+const AGAIN: usize = 3;
+const FOR_TIMES: f64 = 0.5;
+
+/// What became of a sample.
+enum Taken {
+    Sample(Sample),
+    /// By the surface.
+    Cancelled,
+    Unsolved,
+}
 
 /// What a small grid has shown.
 struct Sample {
     doublings: i32,
     elements: f64,
+    /// In the direction with fewer of them.
     across: usize,
     falling: Option<Falling>,
     bytes: f64,
     /// Until the residual was first at most that: seconds since the start of the surface.
     reached: Vec<(f64, f64)>,
     seconds: f64,
+    /// Of which the set-up took so many.
+    setup: f64,
 }
 
 /// Predicts what each of the relative errors `targets` of a quantity costs, from solves on small grids over the rectangle of the
@@ -82,7 +103,7 @@ pub fn cost_of_accuracy(
     accuracy: &Accuracy,
     (quantity, targets): (Quantity, &[f64]),
     mut surface: Option<SurfaceCallback<'_>>,
-) -> Result<Vec<Price>> {
+) -> Result<(Stop, Vec<Price>)> {
     accuracy.check()?;
     check(scene, options, surface.is_some())?;
     for &target in targets {
@@ -94,26 +115,37 @@ pub fn cost_of_accuracy(
     let one = Options { threads: 1, ..options };
     let began = Instant::now();
     let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(&scene.grid));
-    loop {
-        let Some(sample) = Sample::take(scene, &one, doublings, quantity, &mut surface)? else { break };
+    let list = |samples: &[Sample], speed_up: f64| -> Vec<Price> {
+        targets.iter().map(|target| price(scene, samples, accuracy, (quantity, *target), speed_up)).collect()
+    };
+    while samples.len() < MOST_SAMPLES {
+        let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
+        let sample = match Sample::take(scene, &one, (doublings, spare), quantity, &mut surface)? {
+            Taken::Sample(sample) => sample,
+            Taken::Cancelled => return Ok((Stop::Cancelled, list(&samples, 1.0))),
+            Taken::Unsolved => break,
+        };
+        let next = sample.seconds * NEXT;
         samples.push(sample);
-        let dearest = targets.iter().filter_map(|target| predict(scene, &samples, *target)).map(|(_, s)| s);
-        let budget = SECONDS.max(PART * dearest.fold(0.0, f64::max));
-        let next = samples.last().map_or(0.0, |last| last.seconds * NEXT);
         doublings += 1;
-        if began.elapsed().as_secs_f64() + next > budget || samples.len() > 12 {
+        let had = list(&samples, 1.0).into_iter().filter(|price| price.obstacle.is_none());
+        let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
+        let known = samples.last().is_some_and(|last| last.across >= ACROSS || last.elements > UNRESOLVED);
+        let over = began.elapsed().as_secs_f64() + next > SECONDS.max(PART * dearest);
+        if known && over || scaled(&scene.grid, doublings).is_err() {
             break;
         }
     }
     // How much faster more threads are.
-    let speed_up = match samples.last() {
-        Some(last) if options.threads != 1 && began.elapsed().as_secs_f64() + last.seconds < 2.0 * SECONDS => {
-            let again = Sample::take(scene, &options, last.doublings, quantity, &mut surface)?;
-            again.map_or(1.0, |again| (last.seconds / again.seconds).max(1.0))
+    let mut speed_up = 1.0;
+    if let Some(last) = samples.last().filter(|last| options.threads != 1 && last.seconds < SECONDS) {
+        if let Taken::Sample(again) =
+            Sample::take(scene, &options, (last.doublings, last.seconds), quantity, &mut surface)?
+        {
+            speed_up = (last.seconds / again.seconds).max(1.0);
         }
-        _ => 1.0,
-    };
-    Ok(targets.iter().map(|target| price(scene, &samples, accuracy, (quantity, *target), speed_up)).collect())
+    }
+    Ok((Stop::Converged, list(&samples, speed_up)))
 }
 
 /// Doublings, or with a sign halvings, from the scene's grid to the first sample.
@@ -123,14 +155,38 @@ fn first(grid: &Grid) -> i32 {
 }
 
 impl Sample {
-    /// None where nothing is solved.
+    /// Solves once, and again for the time as long as there are seconds to spare.
     fn take(
+        scene: &Scene<'_>,
+        options: &Options,
+        (doublings, spare): (i32, f64),
+        quantity: Quantity,
+        surface: &mut Option<SurfaceCallback<'_>>,
+    ) -> Result<Taken> {
+        let (began, mut spent) = (Instant::now(), 0.0);
+        let mut taken = Sample::take_once(scene, options, doublings, quantity, surface)?;
+        for _ in 0..AGAIN {
+            let Taken::Sample(best) = &mut taken else { break };
+            if spent + 2.0 * best.seconds > spare {
+                break;
+            }
+            if let Taken::Sample(again) = Sample::take_once(scene, options, doublings, quantity, surface)? {
+                if again.seconds < best.seconds {
+                    *best = again;
+                }
+            }
+            spent = began.elapsed().as_secs_f64();
+        }
+        Ok(taken)
+    }
+
+    fn take_once(
         scene: &Scene<'_>,
         options: &Options,
         doublings: i32,
         quantity: Quantity,
         surface: &mut Option<SurfaceCallback<'_>>,
-    ) -> Result<Option<Sample>> {
+    ) -> Result<Taken> {
         let began = Instant::now();
         let mut reached: Vec<(f64, f64)> = Vec::new();
         let elements = scaled(&scene.grid, doublings)?.len();
@@ -140,12 +196,15 @@ impl Sample {
             }
             false
         };
-        let solved = on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)?;
+        let Solved { solver, report, outlook } =
+            match on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)? {
+                Ok(solved) => solved,
+                Err((Stop::Cancelled, ..)) => return Ok(Taken::Cancelled),
+                Err(_) => return Ok(Taken::Unsolved),
+            };
         let seconds = began.elapsed().as_secs_f64();
-        let Ok(Solved { solver, report, outlook }) = solved else { return Ok(None) };
-        let repeats = solver.influence().repeats(solver.grid());
-        let (x, y) = across(solver.state(), repeats);
-        Ok(Some(Sample {
+        let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
+        Ok(Taken::Sample(Sample {
             doublings,
             elements: elements as f64,
             across: x.min(y),
@@ -153,6 +212,7 @@ impl Sample {
             bytes: report.bytes as f64,
             reached,
             seconds,
+            setup: report.setup_seconds,
         }))
     }
 
@@ -164,15 +224,19 @@ impl Sample {
     }
 }
 
-/// The power of the number of elements with which seconds grow.
-fn growth(samples: &[Sample]) -> f64 {
-    let [.., before, last] = samples else { return EXPONENTS.1 };
-    let seen = (last.seconds / before.seconds).ln() / (last.elements / before.elements).ln();
-    if seen.is_finite() {
-        seen.clamp(EXPONENTS.0, EXPONENTS.1)
-    } else {
-        EXPONENTS.1
-    }
+/// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
+/// that they are mostly overhead. The set-up grows as the last two samples say (that of a period hardly does).
+fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
+    let seen = match samples {
+        [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
+        _ => GROWTH,
+    };
+    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH, GROWTH) } else { GROWTH };
+    let carried = |sample: &Sample| {
+        let ratio = elements / sample.elements;
+        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * ratio.powf(GROWTH)
+    };
+    samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min)
 }
 
 /// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
@@ -186,9 +250,7 @@ fn predict(scene: &Scene<'_>, samples: &[Sample], target: f64) -> Option<(i32, f
         enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
-    let ratio = 4f64.powi(k);
-    let sample = samples.iter().find(|sample| sample.doublings == last.doublings + k);
-    let seconds = sample.map_or(last.seconds * ratio.powf(growth(samples)), |sample| sample.seconds);
+    let seconds = seconds_on(samples, last.elements * 4f64.powi(k));
     Some((k, seconds))
 }
 
@@ -203,7 +265,7 @@ fn price(
     let tolerance = tolerance_for(quantity, target).max(1e-12);
     let nothing = Price {
         target,
-        grid: scene.grid,
+        grid: None,
         tolerance,
         error: -1.0,
         seconds: -1.0,
@@ -214,7 +276,7 @@ fn price(
     if target < ROUND_OFF {
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
-    let Some(last) = samples.last().filter(|last| last.across >= ACROSS.min(ENOUGH_ACROSS)) else { return nothing };
+    let Some(last) = samples.last().filter(|last| last.across >= ACROSS) else { return nothing };
     let Some(falling) = last.falling else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, target) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
@@ -233,7 +295,7 @@ fn price(
         None
     };
     Price {
-        grid,
+        grid: Some(grid),
         error: falling.after(k) + tolerance,
         seconds: seconds / speed_up,
         seconds_one_thread: seconds,
