@@ -245,6 +245,6 @@ pub fn held_back(random: &mut Random) -> Vec<Surface> {
         flat_punch("flat punch off centre", radius(random), place(random), 0.1),
     ];
     let stretched = axisymmetric("r^4 elements 3:1", &[(4.0, 1.0)], radius(random), place(random));
-    all.push(Surface { size: (1.0, 1.0), eighths: (3, 8), ..stretched });
+    all.push(Surface { eighths: (6, 18), ..stretched });
     all
 }

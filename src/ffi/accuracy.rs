@@ -60,7 +60,7 @@ pub struct contact_normal_accuracy {
     pub contact_area_target: f64,
 }
 
-versioned! { contact_normal_accuracy, 96, target: 1e-3, reached: -1.0 }
+versioned! { contact_normal_accuracy, 112, target: 1e-3, reached: -1.0 }
 
 /// Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
 #[no_mangle]
