@@ -111,6 +111,18 @@ fn the_to_accuracy_example_prints_what_is_expected() {
 }
 
 #[test]
+fn the_price_list_example_prints_what_is_expected_and_draws() {
+    let folder = scratch("python_price_list");
+    let example = root().join("python_examples/price_list.py");
+    let printed = run(python_in(&folder).arg(&example).arg("picture.png"));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("price_list.expected");
+    assert_eq!(printed, expected);
+    let picture = std::fs::read(folder.join("picture.png")).expect("the picture");
+    let reader = png::Decoder::new(std::io::Cursor::new(picture)).read_info().expect("a PNG");
+    assert!(reader.info().width > 400 && reader.info().height > 300);
+}
+
+#[test]
 fn the_ledger_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_ledger");
     let example = root().join("python_examples/ledger.py");

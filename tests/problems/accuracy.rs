@@ -9,7 +9,7 @@ use crate::judge::{self, estimates, prices, searches, QUANTITIES, TARGETS};
 use crate::random::Random;
 use crate::surfaces::{held_back, studied, Surface, BODIES};
 
-const SIZES: [usize; 4] = [64, 100, 128, 200];
+const SIZES: [usize; 5] = [64, 100, 128, 200, 256];
 
 /// At most 5 % below 0.3 of the true error, at most 10 % unknown, of each surface; infinite peaks are never trusted. A cusp (r^1.5) is the
 /// exception that is allowed to be unknown: the pressure of its peak is finite by a hair.
