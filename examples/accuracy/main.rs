@@ -83,7 +83,7 @@ fn searches(set: &str, surfaces: judge::Surfaces, seeds: u64) {
     let across = |search: &&judge::Search| {
         search.across.0.min(if search.family.contains("wave") { usize::MAX } else { search.across.1 })
     };
-    println!("elements across the contact: at least {}", ok.iter().map(|search| across(search)).min().unwrap_or(0));
+    println!("elements across the contact: at least {}", ok.iter().map(across).min().unwrap_or(0));
     for search in ok.iter().filter(|search| search.miss > 1.0) {
         let judge::Search { family, by_force, target, miss, .. } = search;
         println!("beyond: {family}, by force: {by_force}, {target:e}: {miss:.2}");

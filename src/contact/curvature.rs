@@ -3,7 +3,7 @@
 use super::{Problem, State};
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
-const ROWS: usize = 64;
+const ROWS: usize = 32;
 
 /// Second differences of h and p over the contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,12 +33,21 @@ impl Curvature {
     /// Of a state with `rows` rows that hold contact.
     pub fn of(problem: &Problem, state: &State, rows: usize) -> Curvature {
         let stride = (rows / ROWS).max(1);
-        let (mx, repeats) = (state.grid.mx, problem.coefficients.repeats(&state.grid));
+        let (mx, my) = (state.grid.mx, state.grid.my);
+        let (repeats, layered) = (problem.coefficients.repeats(&state.grid), problem.coefficients.has_layer());
         let mut sums = Sums { lowest: f64::INFINITY, ..Sums::default() };
         let touched = state.contact.chunks_exact(mx).enumerate().filter(|(_, row)| row.contains(&true));
         for (iy, row) in touched.skip(stride / 2).step_by(stride) {
-            let inside = row.iter().enumerate().filter(|(_, &inside)| inside);
-            inside.for_each(|(ix, _)| sums.add(problem, state, repeats, ix, iy));
+            let first = row.iter().position(|&inside| inside).unwrap_or(0);
+            let end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
+            let plain = !layered && iy > 0 && iy + 1 < my;
+            for ix in (first..end).filter(|&ix| row[ix]) {
+                if plain && ix > 0 && ix + 1 < mx {
+                    sums.add_inner(state, iy * mx + ix);
+                } else {
+                    sums.add(problem, state, repeats, ix, iy);
+                }
+            }
         }
         sums.curvature(state.approach)
     }
@@ -59,6 +68,20 @@ impl Curvature {
 }
 
 impl Sums {
+    /// An element with four neighbours, without a layer.
+    #[inline]
+    fn add_inner(&mut self, state: &State, at: usize) {
+        let State { h, p, contact, grid, .. } = state;
+        let (left, right, below, above) = (at - 1, at + 1, at - grid.mx, at + grid.mx);
+        let second = |values: &[f64], a: usize, b: usize| values[a] + values[b] - 2.0 * values[at];
+        let finite = |difference: f64| if difference.is_finite() { difference / 24.0 } else { 0.0 };
+        let bend = finite(second(h, left, right)) + finite(second(h, below, above));
+        let rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
+        let difference = second(p, left, right) + second(p, below, above);
+        self.count_in(state, at, (bend, difference, rim));
+    }
+
+    /// Any element.
     fn add(&mut self, problem: &Problem, state: &State, (x, y): (bool, bool), ix: usize, iy: usize) {
         let (mx, my) = (state.grid.mx, state.grid.my);
         let at = iy * mx + ix;
@@ -77,6 +100,11 @@ impl Sums {
                 difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[at];
             }
         }
+        self.count_in(state, at, (bend, difference, rim));
+    }
+
+    #[inline]
+    fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, bool)) {
         self.bend += bend;
         self.count += 1.0;
         if rim {

@@ -154,13 +154,13 @@ impl Solver {
             None => self.run(scene, NonNegative, options, guess, &mut monitor),
             Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
         };
-        let outcome = outcome.and_then(|(stop, tolerance)| {
+        let outcome = outcome.map(|(stop, tolerance)| {
             let mut report = Report::of(&monitor, tolerance);
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);
             }
             report.solve_seconds = monitor.seconds();
-            Ok((stop, report))
+            (stop, report)
         });
         self.has_result &= outcome.is_ok();
         self.ledger = monitor.ledger.rows;
