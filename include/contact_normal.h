@@ -193,7 +193,7 @@
 #define CONTACT_NORMAL_PRECISION_MIXED 2
 
 /*
- `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
+ `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
  */
 #define CONTACT_NORMAL_UNTRUSTED_FORCE 1
 
