@@ -1,4 +1,4 @@
-"""Draws what `cargo run --release --example accuracy` printed, and prints the tables of docs/accuracy.md.
+"""Draws what `cargo run --release --example accuracy` printed, and prints the tables of docs/accuracy.md and docs/notes/accuracy.md.
 
     accuracy.py accuracy.csv folder
 """
@@ -11,7 +11,6 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-MARKERS = {"Auto": "o", "FullMultigrid": "s", "Multigrid": "^", "Norm": "x"}
 LABELS = {"Auto": "AUTO", "FullMultigrid": "FULL_MULTIGRID", "Multigrid": "MULTIGRID", "Norm": "NORM"}
 
 
@@ -25,64 +24,55 @@ def read(path):
     return rows
 
 
-def tolerances(rows, path):
-    """Error against seconds and work units at one grid: tolerances from 1e-2 on."""
-    cases = [("ellipse", 128), ("sphere", 256)]
-    figure, axes = plt.subplots(2, 2, figsize=(9.6, 7.2), layout="constrained", sharey="row")
-    for line, (case, m) in zip(axes, cases):
-        for ax, cost in zip(line, ("seconds", "work")):
-            for method, marker in MARKERS.items():
-                some = [r for r in rows if (r["case"], r["mx"], r["method"]) == (case, m, method)]
-                some.sort(key=lambda r: -r["tolerance"])
-                ax.loglog([r[cost] for r in some], [r["error"] for r in some], marker + "-", label=LABELS[method], ms=5)
-            ax.set(xlabel="seconds" if cost == "seconds" else "work units", title=f"{case}, {m} x {m}: tolerance 1e-2 to 1e-12")
-            ax.grid(alpha=0.3)
-        line[0].set_ylabel("relative error of the force")
-    axes[0][0].legend()
-    figure.savefig(path, dpi=110)
+TARGETS = ((1e-2, "1 %", "o"), (1e-3, "0.1 %", "s"), (1e-4, "0.01 %", "D"))
 
 
-def grids(rows, path):
-    """Error against seconds over the grids, AUTO at tolerance 1e-8."""
-    figure, ax = plt.subplots(figsize=(8, 5.2), layout="constrained")
-    for case in dict.fromkeys(r["case"] for r in rows):
-        some = [r for r in rows if r["case"] == case and r["method"] == "Auto" and r["tolerance"] == 1e-8]
-        some.sort(key=lambda r: r["mx"])
-        ax.loglog([r["seconds"] for r in some], [r["error"] for r in some], "o-", ms=4, label=case)
-        for r in some[:: max(1, len(some) - 1)]:
-            ax.annotate(r["mx"], (r["seconds"], r["error"]), fontsize=7, xytext=(3, 3), textcoords="offset points")
-    ax.set(xlabel="seconds (AUTO, tolerance 1e-8)", ylabel="relative error of what is found",
-           title="What the grid gives (numbers: elements in a direction)")
-    ax.grid(alpha=0.3)
-    ax.legend(ncols=2)
-    figure.savefig(path, dpi=110)
+def price(rows, case, target):
+    """The coarsest grid from which on the error stays below the target, with a tolerance of a tenth of it."""
+    some = [r for r in rows if r["case"] == case and r["method"] == "Auto"]
+    on_grid = {m: min((r for r in some if r["mx"] == m), key=lambda r: r["tolerance"]) for m in {r["mx"] for r in some}}
+    enough = [m for m in sorted(on_grid) if all(on_grid[n]["error"] <= target for n in on_grid if n >= m)]
+    good = [r for r in some if enough and r["mx"] == enough[0] and abs(r["tolerance"] / (0.1 * target) - 1) < 1e-6]
+    return good[0] if good else None
+
+
+def picture(rows, path):
+    """Seconds that 1 %, 0.1 % and 0.01 % of the force or the approach cost."""
+    cases = list(dict.fromkeys(r["case"] for r in rows))
+    figure, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
+    for y, case in enumerate(reversed(cases)):
+        prices = [price(rows, case, target) for target, *_ in TARGETS]
+        paid = [r["seconds"] for r in prices if r]
+        ax.plot(paid, [y] * len(paid), "-", color="0.8", zorder=0)
+        for color, (_, label, marker), r in zip(("tab:green", "tab:orange", "tab:red"), TARGETS, prices):
+            if r:
+                ax.plot(r["seconds"], y, marker, color=color, label=label if y == 0 else None, ms=8)
+                ax.annotate(r["mx"], (r["seconds"], y), fontsize=7, xytext=(0, 7), textcoords="offset points", ha="center")
+        if None in prices:
+            ax.annotate(" finer than studied", (paid[-1] if paid else 1e-4, y), fontsize=8, va="center", xytext=(9, 0), textcoords="offset points")
+    labels = [ax.plot([], [], m, color=c, label=l)[0] for c, (_, l, m) in zip(("tab:green", "tab:orange", "tab:red"), TARGETS)]
+    ax.legend(handles=labels, title="error of the force", loc="lower right")
+    ax.set_yticks(range(len(cases)), list(reversed(cases)))
+    ax.set(xscale="log", xlabel="seconds, one thread (numbers: elements in a direction)", ylim=(-0.6, len(cases) - 0.4))
+    ax.grid(axis="x", alpha=0.3)
+    figure.savefig(path, dpi=120)
 
 
 def tables(rows):
-    print("| case | for 1 % | for 0.1 % | for 0.01 % |")
+    print("| surface | " + " | ".join(label for _, label, _ in TARGETS) + " |")
     print("|---|---|---|---|")
     for case in dict.fromkeys(r["case"] for r in rows):
         cells = []
-        for target in (1e-2, 1e-3, 1e-4):
-            some = [r for r in rows if r["case"] == case and r["method"] == "Auto"]
-            # From this grid on the error stays below.
-            sizes = sorted({r["mx"] for r in some})
-            best = lambda m: min(r["error"] for r in some if r["mx"] == m)
-            enough = [m for m in sizes if all(best(n) <= target for n in sizes if n >= m)]
-            good = [r for r in some if enough and r["mx"] == enough[0] and r["error"] <= target]
-            good.sort(key=lambda r: r["seconds"])
-            if good:
-                r = max(good, key=lambda r: r["tolerance"])
-                cells.append(f"{r['mx']}, tolerance {r['tolerance']:.0e}: {r['seconds'] * 1e3:.2g} ms")
-            else:
-                cells.append("finer than studied")
+        for target, *_ in TARGETS:
+            r = price(rows, case, target)
+            cells.append(f"{r['mx']}: {r['seconds'] * 1e3:.2g} ms" if r else "finer than studied")
         print(f"| {case} | " + " | ".join(cells) + " |")
     print()
     print("| tolerance | " + " | ".join(LABELS.values()) + " |")
     print("|---|" + "---|" * len(LABELS))
     for tolerance in sorted({r["tolerance"] for r in rows}, reverse=True):
         line = []
-        for method in MARKERS:
+        for method in LABELS:
             some = [r for r in rows if (r["case"], r["mx"], r["method"], r["tolerance"]) == ("ellipse", 128, method, tolerance)]
             line.append(f"{some[0]['error']:.1e}, {some[0]['work']:.0f} work units" if some else "not reached")
         print(f"| {tolerance:.0e} | " + " | ".join(line) + " |")
@@ -90,8 +80,7 @@ def tables(rows):
 
 def main():
     rows, folder = read(sys.argv[1]), sys.argv[2]
-    tolerances(rows, f"{folder}/accuracy_tolerances.png")
-    grids(rows, f"{folder}/accuracy_grids.png")
+    picture(rows, f"{folder}/accuracy.png")
     tables(rows)
 
 

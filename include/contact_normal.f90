@@ -51,6 +51,13 @@ module contact_normal
   ! report%limited_by
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LIMITED_BY_UNKNOWN = 0, CONTACT_NORMAL_LIMITED_BY_GRID = 1, &
     CONTACT_NORMAL_LIMITED_BY_TOLERANCE = 2
+
+  ! Quantities of a price list, and price%obstacle
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_QUANTITY_FORCE = 0, CONTACT_NORMAL_QUANTITY_MAX_PRESSURE = 1, &
+    CONTACT_NORMAL_QUANTITY_CONTACT_AREA = 2
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_OBSTACLE_NONE = 0, CONTACT_NORMAL_OBSTACLE_SINGULAR = 1, &
+    CONTACT_NORMAL_OBSTACLE_ROUND_OFF = 2, CONTACT_NORMAL_OBSTACLE_ELEMENTS = 3, CONTACT_NORMAL_OBSTACLE_MEMORY = 4, &
+    CONTACT_NORMAL_OBSTACLE_TIME = 5
   ! contact_normal_set_log
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LOG_OFF = 0, CONTACT_NORMAL_LOG_WARNING = 1, &
     CONTACT_NORMAL_LOG_INFO = 2
@@ -246,6 +253,24 @@ module contact_normal
     real(c_double) :: dy = 0
     real(c_double) :: reached = -1
     real(c_double) :: seconds = 0
+    real(c_double) :: max_pressure_target = 0
+    real(c_double) :: contact_area_target = 0
+  end type
+
+  ! One row of the price list: what one accuracy costs, predicted. Since 0.1.
+  type, bind(C), public :: contact_normal_price
+    real(c_double) :: target = 0
+    real(c_double) :: error = -1
+    real(c_double) :: tolerance = 0
+    real(c_double) :: seconds = -1
+    real(c_double) :: seconds_one_thread = -1
+    integer(c_int64_t) :: bytes = 0
+    integer(c_int32_t) :: mx = 0
+    integer(c_int32_t) :: my = 0
+    real(c_double) :: dx = 0
+    real(c_double) :: dy = 0
+    integer(c_int32_t) :: obstacle = 0                    ! CONTACT_NORMAL_OBSTACLE_...
+    integer(c_int32_t) :: reserved = 0
   end type
 
   ! The exact Hertz solution. Since 0.1.
@@ -319,7 +344,7 @@ module contact_normal
     contact_normal_set_undeformed_distance, contact_normal_set_influence, contact_normal_set_fields, &
     contact_normal_set_stress_outputs, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
-    contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
+    contact_normal_cost_of_accuracy, contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
     contact_normal_solver_free, norm_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
@@ -588,6 +613,25 @@ contains
     integer(c_int32_t), intent(inout), optional :: statuses(size(scenes))
     integer(c_int32_t) :: status
     status = c_solver_solve_batch(solver%handle, size(scenes, kind=c_int32_t), scenes, options, fields, reports, statuses)
+  end function
+
+  ! Predicts what each relative error of `targets` costs: rows(i) is that of targets(i). `quantity`: CONTACT_NORMAL_QUANTITY_...,
+  ! by default the force or the approach. Of `accuracy` limits and surface are read. Since 0.1.
+  function contact_normal_cost_of_accuracy(scene, targets, rows, quantity, options, accuracy) result(status)
+    type(contact_normal_scene), intent(in) :: scene
+    real(c_double), intent(in) :: targets(:)
+    type(contact_normal_price), intent(inout) :: rows(:)
+    integer(c_int32_t), intent(in), optional :: quantity
+    type(contact_normal_options), intent(in), optional :: options
+    type(contact_normal_accuracy), intent(in), optional :: accuracy
+    type(contact_normal_price) :: list(size(targets))
+    real(c_double) :: wanted(size(targets))
+    integer(c_int32_t) :: status, what
+    what = CONTACT_NORMAL_QUANTITY_FORCE
+    if (present(quantity)) what = quantity
+    wanted = targets
+    status = c_cost_of_accuracy(scene, options, accuracy, what, min(size(targets), size(rows)), wanted, list)
+    if (status >= 0) rows(:min(size(targets), size(rows))) = list(:min(size(targets), size(rows)))
   end function
 
   ! Solves on finer and finer grids until accuracy%target is met; accuracy%mx, my, dx, dy are the grid that was used. `solver`

@@ -193,7 +193,7 @@
 #define CONTACT_NORMAL_PRECISION_MIXED 2
 
 /*
- `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
+ `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
  */
 #define CONTACT_NORMAL_UNTRUSTED_FORCE 1
 
@@ -221,6 +221,51 @@
  `limited_by`: the tolerance; it allows a larger error than that of the grid.
  */
 #define CONTACT_NORMAL_LIMITED_BY_TOLERANCE 2
+
+/*
+ `quantity`: the force, or the approach where the force is prescribed.
+ */
+#define CONTACT_NORMAL_QUANTITY_FORCE 0
+
+/*
+ `quantity`: the largest pressure.
+ */
+#define CONTACT_NORMAL_QUANTITY_MAX_PRESSURE 1
+
+/*
+ `quantity`: the corrected contact area.
+ */
+#define CONTACT_NORMAL_QUANTITY_CONTACT_AREA 2
+
+/*
+ `obstacle`: none; the accuracy is to be had.
+ */
+#define CONTACT_NORMAL_OBSTACLE_NONE 0
+
+/*
+ `obstacle`: no grid is known to do: the largest pressure is singular or not resolved, or contact is on single elements.
+ */
+#define CONTACT_NORMAL_OBSTACLE_SINGULAR 1
+
+/*
+ `obstacle`: the target is below round-off.
+ */
+#define CONTACT_NORMAL_OBSTACLE_ROUND_OFF 2
+
+/*
+ `obstacle`: it takes more elements than `accuracy->max_elements`.
+ */
+#define CONTACT_NORMAL_OBSTACLE_ELEMENTS 3
+
+/*
+ `obstacle`: it takes more memory than `accuracy->max_bytes`.
+ */
+#define CONTACT_NORMAL_OBSTACLE_MEMORY 4
+
+/*
+ `obstacle`: it takes longer than `accuracy->max_seconds`.
+ */
+#define CONTACT_NORMAL_OBSTACLE_TIME 5
 
 /*
  Log level: nothing.
@@ -947,7 +992,69 @@ typedef struct contact_normal_accuracy {
    Out: seconds for all grids together.
    */
   double seconds;
+  /*
+   Estimated relative error of the largest pressure at most; 0 (default): not asked for.
+   */
+  double max_pressure_target;
+  /*
+   Estimated relative error of the corrected contact area at most; 0 (default): not asked for.
+   */
+  double contact_area_target;
 } contact_normal_accuracy;
+
+/*
+ One row of the price list: what one accuracy costs. All of it is predicted.
+ */
+typedef struct contact_normal_price {
+  /*
+   The relative error that is wanted.
+   */
+  double target;
+  /*
+   Relative error that the grid and the tolerance leave; < 0: not known.
+   */
+  double error;
+  /*
+   The tolerance to ask for; a smaller one would be wasted.
+   */
+  double tolerance;
+  /*
+   Seconds of set-up and solve with `options->threads`; < 0: not known.
+   */
+  double seconds;
+  /*
+   Seconds with one thread; < 0: not known.
+   */
+  double seconds_one_thread;
+  /*
+   Bytes held by the solver; 0: not known.
+   */
+  int64_t bytes;
+  /*
+   Elements in x of the coarsest grid that does; 0: not known.
+   */
+  int32_t mx;
+  /*
+   Elements in y.
+   */
+  int32_t my;
+  /*
+   Element size in x.
+   */
+  double dx;
+  /*
+   Element size in y.
+   */
+  double dy;
+  /*
+   What keeps the accuracy from being had.
+   */
+  int32_t obstacle;
+  /*
+   0.
+   */
+  int32_t reserved;
+} contact_normal_price;
 
 /*
  The exact Hertz solution.
@@ -1235,19 +1342,37 @@ void contact_normal_accuracy_init(struct contact_normal_accuracy *accuracy);
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
- undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
- OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
- surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases
- `contact_normal_last_error` says the best reached, and report and handle hold it: the finest grid that was solved. `*solver`
- (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
- `contact_normal_solver_free`; NULL if cancelled before a grid was solved. Since 0.1.
+ `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
+ corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
+ scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
+ max_pressure_target / 100. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
+ grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
+ largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
+ hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+ `contact_normal_solver_free`; NULL if cancelled before a grid was solved. What it costs beforehand:
+ `contact_normal_cost_of_accuracy`. Since 0.1.
  */
 contact_normal_status contact_normal_solve_to_accuracy(const struct contact_normal_scene *scene,
                                                        const struct contact_normal_options *options,
                                                        struct contact_normal_accuracy *accuracy,
                                                        struct contact_normal_solver **solver,
                                                        struct contact_normal_report *report);
+
+/*
+ Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`. The scene is solved on small
+ grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
+ the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
+ would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
+ and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
+ what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.1.
+ */
+contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
+                                                      const struct contact_normal_options *options,
+                                                      const struct contact_normal_accuracy *accuracy,
+                                                      int32_t quantity,
+                                                      int32_t n,
+                                                      const double *targets,
+                                                      struct contact_normal_price *rows);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`

@@ -1,168 +1,136 @@
-//! What accuracy costs: errors against seconds and work units, for closed-form problems and for surfaces that refer to a grid four times
-//! finer; by all methods, tolerances and grids. Prints comma-separated lines; `make accuracy` draws them.
+//! What accuracy costs, and what the library says of it, against what is true: the tables of docs/accuracy.md and docs/notes/accuracy.md.
 //!
-//! `accuracy [--quick]`
+//! `accuracy [estimates] [searches] [prices] [study] [--quick]`: those tables, or all. The study is written to build/accuracy.csv, from
+//! which benches/accuracy.py draws. Every run counts; seeds are fixed.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::collections::BTreeMap;
 
-use contact_normal::analytic::hertz;
-use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, Scene};
-use contact_normal::solver::{solve, Method, Options};
+use contact_normal::solver::Stop;
 
 #[path = "../../benches/performance/case.rs"]
 #[allow(dead_code)]
 mod case;
+mod judge;
+#[path = "../../campaign/src/random.rs"]
+#[allow(dead_code)]
+mod random;
+mod study;
+mod surfaces;
 
-const METHODS: [Method; 4] = [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm];
-/// E* = 1.
-const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
-
-/// A problem on any number of elements, and what is exactly found.
-struct Problem {
-    name: &'static str,
-    grid: Grid,
-    h: Vec<f64>,
-    bodies: Bodies,
-    load: Load,
-    exact: f64,
-}
-
-fn on_square(
-    name: &'static str,
-    m: usize,
-    size: (f64, f64),
-    h: impl Fn(f64, f64) -> f64,
-    bodies: Bodies,
-    load: Load,
-    exact: f64,
-) -> Problem {
-    let grid = Grid::new(m, m, size.0 / m as f64, size.1 / m as f64).expect("a grid");
-    let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
-    let h = (0..m * m).map(|i| h(centre(i % m, grid.dx), centre(i / m, grid.dy))).collect();
-    Problem { name, grid, h, bodies, load, exact }
-}
-
-fn closed_form(name: &str, m: usize) -> Problem {
-    match name {
-        "ellipse" => {
-            let exact = hertz(0.0016681, 0.0030671, 0.1091, 0.72 / 82000.0).expect("a contact").force;
-            let h = |x: f64, y: f64| 0.0016681 * x * x + 0.0030671 * y * y;
-            on_square("ellipse", m, (20.0, 12.0), h, Bodies::same(82000.0, 0.28), Load::Approach(0.1091), exact)
-        }
-        "sphere" => {
-            let exact = hertz(0.5, 0.5, 0.13, 1.0).expect("a contact").force;
-            on_square("sphere", m, (1.0, 1.0), |x, y| 0.5 * (x * x + y * y), UNIT, Load::Approach(0.13), exact)
-        }
-        "cone" => on_square(
-            "cone",
-            m,
-            (1.0, 1.0),
-            f64::hypot,
-            UNIT,
-            Load::Approach(FRAC_PI_2 * 0.37),
-            FRAC_PI_2 * 0.37 * 0.37,
-        ),
-        _ => {
-            let h = |x: f64, y: f64| if x.hypot(y) < 0.37 { 0.0 } else { f64::INFINITY };
-            on_square("flat punch", m, (1.0, 1.0), h, UNIT, Load::Approach(0.1), 2.0 * 0.37 * 0.1)
-        }
-    }
-}
-
-/// Westergaard (1939): a wave of length 1 and amplitude D on a half-space; the mean pressure that closes half of it is
-/// `p* sin^2(pi/4)`, p* = pi E* D. What is found is the part of the area in contact.
-fn westergaard(m: usize) -> Problem {
-    let amplitude = 0.01;
-    let grid = Grid::new(m, 4, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
-    let h = (0..grid.len())
-        .map(|i| amplitude * (1.0 - (TAU * ((i % m) as f64 + 0.5 - 0.5 * m as f64) / m as f64).cos()))
-        .collect();
-    let force = 0.5 * PI * amplitude * grid.element_area() * grid.len() as f64;
-    Problem { name: "wavy (area)", grid, h, bodies: UNIT, load: Load::Force(force), exact: 0.5 }
-}
-
-/// Solves; what was found, seconds, work units, cycles. None if the method does not get there.
-fn run(problem: &Problem, method: Method, tolerance: f64) -> Option<(f64, f64, f64, u64)> {
-    let mut scene = Scene::new(problem.grid, &problem.h, problem.bodies, problem.load);
-    let periodic = problem.name.starts_with("wavy");
-    if periodic {
-        scene.period = Some(Period { x: true, y: true });
-    }
-    let options = Options { method, tolerance, max_cycles: 3000, estimates: periodic, ..Options::default() };
-    let (_, _, report) = solve(&scene, &options).ok()?;
-    let measures = report.measures;
-    let found = if periodic {
-        measures.corrected_area / (problem.grid.len() as f64 * problem.grid.element_area())
-    } else {
-        measures.found(problem.load)
-    };
-    Some((found, report.setup_seconds + report.solve_seconds, report.work_units, report.cycles))
-}
-
-fn of_case(case: case::Case, name: &'static str, exact: f64) -> Problem {
-    Problem { name, grid: case.grid, h: case.h, bodies: case.bodies, load: case.load, exact }
-}
+const SIZES: [usize; 6] = [64, 100, 128, 200, 256, 300];
 
 fn main() {
-    let quick = std::env::args().any(|argument| argument == "--quick");
-    let largest = if quick { 256 } else { 2048 };
-    println!("case,method,mx,tolerance,seconds,work,cycles,error");
-    let study = |problem: &Problem, method: Method, tolerance: f64| {
-        // NORM's products grow with the size, cycles with sweeps are slow: they show it on grids up to these.
-        let most = match method {
-            Method::Norm | Method::Multigrid => 256,
-            Method::FullMultigrid => 512,
-            _ => usize::MAX,
-        };
-        if problem.grid.mx > most {
-            return;
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let quick = arguments.iter().any(|argument| argument == "--quick");
+    let named = arguments.iter().any(|argument| argument != "--quick");
+    let wanted = |name: &str| !named || arguments.iter().any(|argument| argument == name);
+    let seeds = if quick { 1 } else { 6 };
+    let sets: [(&str, judge::Surfaces); 2] = [("measured by", surfaces::studied), ("held back", surfaces::held_back)];
+    for (set, surfaces) in sets {
+        if wanted("estimates") {
+            estimates(set, surfaces, seeds);
         }
-        if let Some((found, mut seconds, work, cycles)) = run(problem, method, tolerance) {
-            // The median of three; long runs are their own.
-            if seconds < 0.3 {
-                let mut times = [seconds; 3];
-                times[1..]
-                    .iter_mut()
-                    .for_each(|time| *time = run(problem, method, tolerance).map_or(*time, |again| again.1));
-                times.sort_by(f64::total_cmp);
-                seconds = times[1];
-            }
-            let error = (found / problem.exact - 1.0).abs();
-            let (name, mx) = (problem.name, problem.grid.mx);
-            println!("{name},{method:?},{mx},{tolerance:e},{seconds:.3e},{work:.2},{cycles},{error:.3e}");
+        if wanted("searches") {
+            searches(set, surfaces, seeds);
         }
-    };
+        if wanted("prices") {
+            prices(set, surfaces, seeds.min(2));
+        }
+    }
+    if wanted("study") {
+        std::fs::create_dir_all("build").expect("a folder");
+        std::fs::write("build/accuracy.csv", study::study(quick)).expect("a writable build/accuracy.csv");
+    }
+}
 
-    let sizes: Vec<usize> = (4..12).map(|k| 1 << k).filter(|m| *m <= largest).collect();
-    for name in ["ellipse", "sphere", "cone", "flat punch", "wavy"] {
-        for &m in &sizes {
-            let problem = if name == "wavy" { westergaard(m) } else { closed_form(name, m) };
-            for method in METHODS {
-                // Work against precision at one size, and what the grid gives at a tolerance that does not limit it.
-                let all = m == 128 && name == "ellipse" || m == 256 && name == "sphere";
-                let tolerances: &[f64] = if all {
-                    &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
-                } else {
-                    &[1e-4, 1e-8]
-                };
-                tolerances.iter().for_each(|tolerance| study(&problem, method, *tolerance));
-            }
-        }
+fn estimates(set: &str, surfaces: judge::Surfaces, seeds: u64) {
+    println!(
+        "\nEstimated over true error, surfaces {set}, elements {SIZES:?}, {seeds} seeds, by approach and by force\n"
+    );
+    println!("| of | surface | runs | unknown | infinite, trusted | below 0.3 | least | median | 95 % |\n|---|---|---|---|---|---|---|---|---|");
+    for ((quantity, family), found) in judge::estimates(surfaces, 0..seeds, &SIZES) {
+        let number =
+            |part: f64| if found.ratios.is_empty() { "".into() } else { format!("{:.2}", found.quantile(part)) };
+        println!(
+            "| {} | {family} | {} | {:.0} % | {} | {:.0} % | {} | {} | {} |",
+            judge::QUANTITIES[quantity],
+            found.runs,
+            100.0 * found.unknown(),
+            found.trusted_infinite,
+            100.0 * found.low(),
+            number(0.0),
+            number(0.5),
+            number(0.95)
+        );
     }
-    for m in [64, 128, 256, 512].into_iter().filter(|m| 4 * m <= largest) {
-        let exact = run(&of_case(case::rough(4 * m), "rough", 1.0), Method::Auto, 1e-9).map_or(f64::NAN, |run| run.0);
-        let problem = of_case(case::rough(m), "rough", exact);
-        METHODS
-            .iter()
-            .for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
+}
+
+fn searches(set: &str, surfaces: judge::Surfaces, seeds: u64) {
+    let all = judge::searches(surfaces, 0..seeds);
+    let ok: Vec<_> = all.iter().filter(|search| search.stop == Stop::Converged).collect();
+    let (beyond, worst) = (ok.iter().filter(|s| s.miss > 1.0).count(), ok.iter().map(|s| s.miss).fold(0.0, f64::max));
+    let mut ratios: Vec<f64> = ok.iter().filter_map(|s| Some(s.elements as f64 / s.cheapest? as f64)).collect();
+    ratios.sort_by(f64::total_cmp);
+    println!("\nsolve_to_accuracy, surfaces {set}: {} searches, {} OK; {beyond} beyond the target, the worst {worst:.2} times", all.len(), ok.len());
+    let at = |part: f64| ratios[(part * (ratios.len() - 1) as f64) as usize];
+    println!(
+        "elements over those of the cheapest safe grid ({} known): median {}, 90 % {}, most {}",
+        ratios.len(),
+        at(0.5),
+        at(0.9),
+        at(1.0)
+    );
+    let across = |search: &&judge::Search| {
+        search.across.0.min(if search.family.contains("wave") { usize::MAX } else { search.across.1 })
+    };
+    println!("elements across the contact: at least {}", ok.iter().map(across).min().unwrap_or(0));
+    for search in ok.iter().filter(|search| search.miss > 1.0) {
+        let judge::Search { family, by_force, target, miss, .. } = search;
+        println!("beyond: {family}, by force: {by_force}, {target:e}: {miss:.2}");
     }
-    for refinement in [1, 2] {
-        let rail = |refinement| case::wheel_rail("y4_82kN", refinement);
-        let exact = run(&of_case(rail(4 * refinement), "", 1.0), Method::Auto, 1e-9).map_or(f64::NAN, |run| run.0);
-        let problem = of_case(rail(refinement), "wheel-rail", exact);
-        METHODS
-            .iter()
-            .for_each(|method| [1e-4, 1e-8].iter().for_each(|tolerance| study(&problem, *method, *tolerance)));
+    let mut stops: BTreeMap<(&str, String), usize> = BTreeMap::new();
+    for search in all.iter().filter(|search| search.stop != Stop::Converged) {
+        let why = search.reason.split(" is in the way").next().unwrap_or_default();
+        *stops.entry((search.family, format!("{:?}: {why}", search.stop))).or_default() += 1;
+    }
+    for ((family, stop), count) in stops {
+        println!("not reached: {count} of {family}, {stop}");
+    }
+}
+
+fn prices(set: &str, surfaces: judge::Surfaces, seeds: u64) {
+    let all = judge::prices(surfaces, 0..seeds, 1024);
+    let mut ratios: Vec<f64> =
+        all.iter().filter(|paid| paid.seconds > 0.0).map(|paid| paid.price.seconds_one_thread / paid.seconds).collect();
+    ratios.sort_by(f64::total_cmp);
+    let known = all
+        .iter()
+        .filter_map(|paid| paid.price.grid.and(paid.doublings.1).map(|cheapest| paid.doublings.0 - cheapest as i32));
+    let doublings: Vec<i32> = known.collect();
+    let near = doublings.iter().filter(|k| k.abs() <= 1).count();
+    let within = ratios.iter().filter(|ratio| (1.0 / 1.5..=1.5).contains(*ratio)).count();
+    let at = |part: f64| ratios[(part * (ratios.len() - 1) as f64) as usize];
+    let beyond = all.iter().filter(|paid| paid.seconds > 0.0 && paid.error > paid.price.target).count();
+    println!("\nThe price list, surfaces {set}: {} rows, {} solved; grid within one doubling of the cheapest safe one: {near} of {}; beyond the target: {beyond}", all.len(), ratios.len(), doublings.len());
+    println!(
+        "predicted over paid seconds: 5 % {:.2}, median {:.2}, 95 % {:.2}; within a factor 1.5: {within} of {}",
+        at(0.05),
+        at(0.5),
+        at(0.95),
+        ratios.len()
+    );
+    let mut lists: Vec<f64> = all.iter().map(|paid| paid.list).collect();
+    lists.sort_by(f64::total_cmp);
+    println!("seconds of a price list: median {:.3}, most {:.3}", lists[lists.len() / 2], lists[lists.len() - 1]);
+    println!("\n| surface | load | target | grid | tolerance | predicted | paid | predicted error | true error | |\n|---|---|---|---|---|---|---|---|---|---|");
+    for paid in &all {
+        let grid = paid.price.grid.map_or("".into(), |grid| format!("{} x {}", grid.mx, grid.my));
+        let load = if paid.by_force { "force" } else { "approach" };
+        let (price, obstacle) =
+            (&paid.price, paid.price.obstacle.map_or(String::new(), |obstacle| format!("{obstacle:?}")));
+        println!(
+            "| {} | {load} | {:.0e} | {grid} | {:.0e} | {:.2e} | {:.2e} | {:.1e} | {:.1e} | {obstacle} |",
+            paid.family, price.target, price.tolerance, price.seconds_one_thread, paid.seconds, price.error, paid.error
+        );
     }
 }

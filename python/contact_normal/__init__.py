@@ -12,6 +12,7 @@ from ._arguments import SolveOptions
 from ._callbacks import Progress, set_log
 from ._constants import *  # noqa: F403
 from ._library import VERSION, ContactNormalError
+from ._prices import Price, cost_of_accuracy
 from ._result import Ledger, Result
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
@@ -25,12 +26,14 @@ __all__ = [
     "ContactNormalError",
     "HertzSolution",
     "Ledger",
+    "Price",
     "Progress",
     "Result",
     "SolveOptions",
     "Solver",
     "SubsurfaceStress",
     "VERSION",
+    "cost_of_accuracy",
     "hertz",
     "influence_half_space",
     "set_log",

@@ -24,6 +24,7 @@ from ._structs import (
     Patches,
     Period,
     PressureLimit,
+    Price,
     Report,
     RowTables,
     Scene,
@@ -60,6 +61,10 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "solve_to_accuracy": (
         c_int32,
         [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],
+    ),
+    "cost_of_accuracy": (
+        c_int32,
+        [POINTER(Scene), POINTER(Options), POINTER(Accuracy), c_int32, c_int32, POINTER(c_double), POINTER(Price)],
     ),
     "hertz": (
         c_int32,

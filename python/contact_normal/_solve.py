@@ -141,6 +141,8 @@ def solve_to_accuracy(
     dy: float,
     *,
     target: float = 1e-3,
+    max_pressure_target: float = 0.0,
+    contact_area_target: float = 0.0,
     max_seconds: float = 0.0,
     max_bytes: int = 0,
     max_elements: int = 0,
@@ -165,7 +167,9 @@ def solve_to_accuracy(
     dx, dy : float
         Element sizes of the first grid.
     target : float
-        Relative error.
+        Relative error of the force (of the approach, if the force is prescribed).
+    max_pressure_target, contact_area_target : float
+        Relative errors of the largest pressure and of the corrected contact area; 0: not asked for.
     max_seconds, max_bytes, max_elements : number
         What it may cost; 0: no limit.
     shape : (my, mx), optional
@@ -206,6 +210,7 @@ def solve_to_accuracy(
     watched = Watched(progress, struct, None)
     accuracy, handle = initialised("accuracy"), c_void_p()
     accuracy.target, accuracy.max_seconds = target, max_seconds
+    accuracy.max_pressure_target, accuracy.contact_area_target = max_pressure_target, contact_area_target
     accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
     if surface:
         accuracy.surface = surface.callback

@@ -238,6 +238,27 @@ class Accuracy(ctypes.Structure):
         ("dy", c_double),
         ("reached", c_double),
         ("seconds", c_double),
+        ("max_pressure_target", c_double),
+        ("contact_area_target", c_double),
+    ]
+
+
+class Price(ctypes.Structure):
+    """contact_normal_price: what one accuracy costs, predicted."""
+
+    _fields_ = [
+        ("target", c_double),
+        ("error", c_double),
+        ("tolerance", c_double),
+        ("seconds", c_double),
+        ("seconds_one_thread", c_double),
+        ("bytes", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("obstacle", c_int32),
+        ("reserved", c_int32),
     ]
 
 

@@ -3,6 +3,7 @@
 mod admissible;
 mod balance;
 mod certificate;
+mod curvature;
 mod exchange;
 mod guard;
 mod outline;
@@ -12,6 +13,7 @@ mod state;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};
+pub use curvature::Curvature;
 pub use exchange::{admit, truncate};
 pub use guard::ExchangeGuard;
 pub use outline::Outline;

@@ -9,62 +9,120 @@
 //!
 //! c is a mean over all directions of the outline, in units of the elements: of elements that are not square the outline is
 //! stretched to one on square ones, where N_a and M are the same, and the area shrinks by dx dy with it.
+//!
+//! Along a straight outline that lies as the elements do there is no mean over directions: all of it is off by the same part of an
+//! element. Such pieces are counted.
 
 use std::f64::consts::{LN_2, PI};
 
 use super::State;
+use crate::grid::Grid;
 
 /// Part of an element by which each change overestimates the area.
 const SHARE: f64 = (PI - 1.0 + LN_2) / 24.0;
+/// A piece of so many elements is straight.
+const STRAIGHT: usize = 8;
 
 /// The outline of a contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outline {
     /// M: changes between contact and an exterior element that has a surface, along all rows and columns.
     pub changes: usize,
-    /// Sides of elements in contact that lie on the border of the grid, or beside an element without a surface.
+    /// Those of them in straight pieces, of 8 elements and more or from one end of the grid to the other: along columns, along rows.
+    pub straight: (usize, usize),
+    /// Sides of elements in contact beside an element without a surface.
     pub edges: usize,
+    /// Those of them in straight pieces.
+    pub straight_edges: usize,
+    /// Sides on the border of the grid: on its first and last column, and on its first and last row.
+    pub border: (usize, usize),
+    /// Rows with contact.
+    pub rows: usize,
+}
+
+/// Rows, one after the other, with the same contact.
+#[derive(Default)]
+struct Same {
+    rows: usize,
+    changes: usize,
+    edges: usize,
 }
 
 impl Outline {
     /// Follows the rows and columns of a contact area; those without contact cost next to nothing.
     pub fn of(state: &State) -> Outline {
         let (mx, my) = (state.grid.mx, state.grid.my);
-        let holes = |h: &[f64]| h.iter().fold(false, |any, h| any | h.is_infinite());
         let mut outline = Outline::default();
-        let (mut above, mut above_touches, mut above_holes): (&[bool], bool, Option<bool>) = (&[], false, None);
+        let (mut above, mut same): (&[bool], Same) = (&[], Same::default());
+        let (mut above_touches, mut above_holes) = (false, None);
         for (iy, row) in state.contact.chunks_exact(mx).enumerate() {
             let touches = row.contains(&true);
             let mut row_holes = None;
             if touches || above_touches {
                 let start = iy * mx;
-                outline.changes += differing(&row[1..], &row[..mx - 1]) + differing(row, above);
-                outline.edges += usize::from(row[0]) + usize::from(row[mx - 1]);
-                if iy == 0 || iy + 1 == my {
-                    let count = row.iter().filter(|&&inside| inside).count();
-                    outline.edges += if my == 1 { 2 * count } else { count };
-                }
+                let (along, across) = (differing(&row[1..], &row[..mx - 1]), differing(row, above));
                 let with_holes = holes(&state.h[start..start + mx]);
                 row_holes = Some(with_holes);
                 let above_with_holes = above_holes.unwrap_or_else(|| holes(&state.h[start.saturating_sub(mx)..start]));
+                let (mut ends_along, mut ends_across) = (0, 0);
                 if with_holes || above_with_holes {
                     let ends = |i: usize, j: usize| {
                         state.contact[i] != state.contact[j] && state.h[i].max(state.h[j]).is_infinite()
                     };
-                    let along = (start..start + mx - 1).filter(|&i| ends(i, i + 1)).count();
-                    let across = if iy > 0 { (start..start + mx).filter(|&i| ends(i - mx, i)).count() } else { 0 };
-                    outline.changes -= along + across;
-                    outline.edges += along + across;
+                    ends_along = (start..start + mx - 1).filter(|&i| ends(i, i + 1)).count();
+                    ends_across = if iy > 0 { (start..start + mx).filter(|&i| ends(i - mx, i)).count() } else { 0 };
                 }
+                outline.changes += along + across - ends_along - ends_across;
+                outline.edges += ends_along + ends_across;
+                if across >= STRAIGHT.min(mx) && across >= STRAIGHT.min(mx) * pieces(row, above) {
+                    outline.straight.1 += across - ends_across;
+                    outline.straight_edges += ends_across;
+                }
+                if across > 0 || above.is_empty() {
+                    outline.close(&mut same, my);
+                }
+                same = Same { rows: same.rows + 1, changes: along - ends_along, edges: ends_along };
+                outline.add_border(row, iy, my);
             }
+            outline.rows += usize::from(touches);
             (above, above_touches, above_holes) = (row, touches, row_holes);
         }
+        outline.close(&mut same, my);
         outline
+    }
+
+    fn add_border(&mut self, row: &[bool], iy: usize, my: usize) {
+        self.border.0 += usize::from(row[0]) + usize::from(row[row.len() - 1]);
+        if iy == 0 || iy + 1 == my {
+            let count = row.iter().filter(|&&inside| inside).count();
+            self.border.1 += if my == 1 { 2 * count } else { count };
+        }
+    }
+
+    /// The rows with the same contact end here.
+    fn close(&mut self, same: &mut Same, my: usize) {
+        let Same { rows, changes, edges } = std::mem::take(same);
+        if rows >= STRAIGHT.min(my) {
+            self.straight.0 += rows * changes;
+            self.straight_edges += rows * edges;
+        }
+    }
+
+    /// Sides where the contact area ends with the surface or with the grid, which repeats itself in x and y or not.
+    pub fn ends(&self, repeats: (bool, bool)) -> usize {
+        let border = |sides: usize, repeats: bool| if repeats { 0 } else { sides };
+        self.edges + border(self.border.0, repeats.0) + border(self.border.1, repeats.1)
+    }
+
+    /// Sides in straight pieces, each with the size of elements across it.
+    pub fn straight_length(&self, grid: &Grid) -> f64 {
+        self.straight.0 as f64 * grid.dx + self.straight.1 as f64 * grid.dy
     }
 
     /// Mean length of the runs of `count` elements in contact, along rows and columns alike.
     pub fn chord(&self, count: usize) -> f64 {
-        4.0 * count as f64 / (self.changes + self.edges).max(1) as f64
+        let sides = self.changes + self.edges + self.border.0 + self.border.1;
+        4.0 * count as f64 / sides.max(1) as f64
     }
 
     /// A*: the area of `count` elements in contact, corrected.
@@ -73,11 +131,22 @@ impl Outline {
     }
 }
 
+/// Whether a row has elements without a surface.
+fn holes(h: &[f64]) -> bool {
+    h.iter().fold(false, |any, h| any | h.is_infinite())
+}
+
 /// Elements in contact in one of two rows only. Counts in bytes, of which one instruction adds many.
 fn differing(a: &[bool], b: &[bool]) -> usize {
     const BYTE: usize = u8::MAX as usize;
     let pairs = a.chunks(BYTE).zip(b.chunks(BYTE));
     pairs.map(|(a, b)| usize::from(a.iter().zip(b).map(|(a, b)| u8::from(a != b)).sum::<u8>())).sum()
+}
+
+/// Pieces without a gap of the elements that differ between two rows.
+fn pieces(a: &[bool], b: &[bool]) -> usize {
+    let differs = |i: usize| a[i] != b[i];
+    (0..a.len()).filter(|&i| differs(i) && (i == 0 || !differs(i - 1))).count()
 }
 
 #[cfg(test)]

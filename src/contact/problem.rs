@@ -89,6 +89,16 @@ impl Problem {
         self.coefficients.at(0, 0)
     }
 
+    /// E* of half-spaces with the coefficients of the kernel, as far as that is an elastic body's.
+    pub fn modulus(&self) -> f64 {
+        self.grid.modulus(self.coefficients.kernel().at(0, 0))
+    }
+
+    /// The compliance c of the layer on element `i`.
+    pub fn layer(&self, i: usize) -> f64 {
+        self.coefficients.layer(i)
+    }
+
     /// See [`State::round_off`].
     pub fn round_off(&self) -> f64 {
         ROUND_OFF * self.self_influence()

@@ -54,9 +54,13 @@ pub struct contact_normal_accuracy {
     pub reached: f64,
     /// Out: seconds for all grids together.
     pub seconds: f64,
+    /// Estimated relative error of the largest pressure at most; 0 (default): not asked for.
+    pub max_pressure_target: f64,
+    /// Estimated relative error of the corrected contact area at most; 0 (default): not asked for.
+    pub contact_area_target: f64,
 }
 
-versioned! { contact_normal_accuracy, 96, target: 1e-3, reached: -1.0 }
+versioned! { contact_normal_accuracy, 112, target: 1e-3, reached: -1.0 }
 
 /// Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
 #[no_mangle]
@@ -66,13 +70,15 @@ pub unsafe extern "C" fn contact_normal_accuracy_init(accuracy: *mut contact_nor
 }
 
 /// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
-/// `accuracy->target` times the force (or the approach, when the force is prescribed), on 32 or more elements across. With `accuracy->surface` the scene's
-/// undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10.
-/// OK: the target is met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next grid. CANCELLED: by the
-/// surface or the progress callback. STAGNATED: the target is below round-off, or no estimate can be trusted. In these cases
-/// `contact_normal_last_error` says the best reached, and report and handle hold it: the finest grid that was solved. `*solver`
-/// (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
-/// `contact_normal_solver_free`; NULL if cancelled before a grid was solved. Since 0.1.
+/// `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
+/// corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
+/// scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
+/// max_pressure_target / 100. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
+/// grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
+/// largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
+/// hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+/// `contact_normal_solver_free`; NULL if cancelled before a grid was solved. What it costs beforehand:
+/// `contact_normal_cost_of_accuracy`. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     scene: *const contact_normal_scene,
@@ -103,16 +109,8 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
         // SAFETY: as above.
         let scene = unsafe { named.with_distance(&h)? };
-        let (asked, user) = (translate(&given)?, given.user);
-
-        let mut write = given.surface.map(|surface| {
-            // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
-            move |grid: &Grid, h: &mut [f64]| {
-                in_host_environment(|| unsafe {
-                    surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
-                })
-            }
-        });
+        let asked = translate(&given)?;
+        let mut write = surface(&given);
         let mut callback = watcher(&translated);
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
         let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
@@ -135,13 +133,26 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     })
 }
 
-fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Refusal> {
+/// What writes the caller's surface; none where there is none.
+pub(super) fn surface(given: &contact_normal_accuracy) -> Option<impl FnMut(&Grid, &mut [f64]) -> bool> {
+    let (surface, user) = (given.surface?, given.user);
+    Some(move |grid: &Grid, h: &mut [f64]| {
+        // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
+        in_host_environment(|| unsafe {
+            surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
+        })
+    })
+}
+
+pub(super) fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Refusal> {
     let limit = |name: &str, value: i64| {
         let refuse = |_| Refusal::invalid(format!("{name} is {value}; it must be positive, or 0 for no limit"));
         u64::try_from(value).map_err(refuse)
     };
     Ok(Accuracy {
         target: given.target,
+        max_pressure_target: given.max_pressure_target,
+        contact_area_target: given.contact_area_target,
         max_seconds: given.max_seconds,
         max_bytes: limit("max_bytes", given.max_bytes)?,
         max_elements: limit("max_elements", given.max_elements)?,

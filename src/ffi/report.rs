@@ -22,7 +22,7 @@ pub struct contact_normal_fields {
 
 versioned! { contact_normal_fields, 40 }
 
-/// `untrusted`: the error of the force (or the approach) cannot be estimated: coarser grids do not converge to it.
+/// `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
 pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
 /// `untrusted`: that of the largest pressure (singular at an edge, or on a surface that the grid does not resolve).
 pub const CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE: i32 = 2;

@@ -46,9 +46,19 @@ impl Coefficients {
         &*self.kernel
     }
 
+    /// Whether there is a layer.
+    pub fn has_layer(&self) -> bool {
+        self.diagonal.is_some()
+    }
+
     /// What the layer adds to the coefficient at offset (0, 0), everywhere.
     fn least(&self) -> f64 {
         self.diagonal.as_ref().map_or(0.0, |layer| layer.least)
+    }
+
+    /// What element `i` has on the diagonal beyond the kernel: the compliance of its layer.
+    pub fn layer(&self, i: usize) -> f64 {
+        self.least() + self.diagonal().map_or(0.0, |more| more[i])
     }
 
     /// The coefficient at offset `(kx, ky)`, without factors between patches; of row tables the mean over rows.
@@ -67,7 +77,7 @@ impl Coefficients {
     pub fn entry_of(&self, kernel: f64, i: usize, j: usize) -> f64 {
         let coupled = self.coupling.as_ref().map_or(kernel, |patches| patches.between(i, j) * kernel);
         match i == j {
-            true => coupled + self.least() + self.diagonal().map_or(0.0, |more| more[i]),
+            true => coupled + self.layer(i),
             false => coupled,
         }
     }

@@ -49,8 +49,8 @@ impl Measures {
     }
 }
 
-/// Estimated errors (module `estimates`). Negative: not known, because it was not asked for, or there are no coarser grids, or, with
-/// its bit in `untrusted`, because the values on the coarser grids do not converge as an estimate needs them to.
+/// Estimated errors (module `estimates`). Negative: not known, because it was not asked for, or, with its bit in `untrusted`,
+/// because the grid does not resolve the contact, or the peak is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscretisationError {
     /// Of the force (of the approach, when the force is prescribed).

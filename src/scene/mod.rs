@@ -9,7 +9,7 @@ pub use crate::effects::{Coating, CoatingLayer, Layer, Patches, Period, Pressure
 pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
-pub use refine::refine;
+pub use refine::{refine, sample};
 
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};

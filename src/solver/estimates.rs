@@ -1,85 +1,115 @@
-//! How wrong an answer is: errors estimated from what coarser grids find.
+//! How wrong an answer is, estimated from the answer alone: no other grid is solved.
 //!
-//! Let v be a value on the grid, v_a and v_b those that the same surface, sampled, has with elements a and b > a times as large. Where
-//! the error is `v - v* = C d^q` in the size d of the elements,
+//! *Force and approach.* A product of constant pressures on elements, taken at their centres, is that of smooth pressures but for
+//! `(1/24)(dx^2 u_xx + dy^2 u_yy)` (each element is a mean over itself), and in contact `u = approach - h`. Approaches change by the mean
+//! of such a change of h with weights q, the pressures of a flat punch of force 1 on the same contact area (Betti). At the rim, where
+//! pressures fall to 0 as a square root, elements take half of it back: so
 //!
 //! ```text
-//! v_a - v = (a^q - 1) (v - v*),    (v_b - v)/(v_a - v) = (b^q - 1)/(a^q - 1)
+//! approach* - approach = s b,    F - F* = S s b,    b = mean with q of (dx^2 h_xx + dy^2 h_yy)/24 over C,    S = dF/d(approach)
 //! ```
 //!
-//! the second gives the order q, the first the error (Richardson 1911; Roache 1998). For smooth bodies q is 2 in force, approach and
-//! largest pressure, but each value jitters by how the rim of the contact area lies on the elements. So a and b are large
-//! (4 and 8 or more: what the jitter does to v_a - v is small), and an order of 1.2 or more counts as 2. Where pressures are singular at an
-//! edge, it is 1 at most. An order below 1/2, or none, is no convergence: the estimate is not trusted. Rough surfaces on which no grid
-//! resolves the shortest waves are so in their largest pressure. That one may also miss a peak between the elements: [`missed_peak`].
+//! with s = 1/2, measured, to a third of it on 32 elements across: the rim lies on the elements as it happens. What lies along a straight
+//! outline is off by the same part everywhere, up to some times more. ([`Curvature`] has b; docs/accuracy.md the measurements.)
 //!
-//! The contact area is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
-//! (measured: docs/accuracy.md) that of the corrected area.
+//! Where the surface itself ends pressures are infinite, and a part of an element is missing: of the force on a circle of radius a
+//! about `d/3a`.
+//!
+//! *Pressures.* Their second differences within the contact area and across its rim are what elements do not show: of the largest
+//! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
+//!
+//! *The contact area* is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
+//! that of the corrected area; straight pieces are off by half an element, ends of the surface in steps by the root of their number.
 
 use super::report::{Halving, Limit};
-use crate::contact::{Outline, State};
-use crate::methods::projected_cg::Sample;
+use crate::contact::{Curvature, Outline, Problem, State};
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
-/// Orders from which on theory's own is taken, and below which nothing converges.
-const CLEAN: f64 = 0.6;
-const NO_ORDER: f64 = 0.5;
-/// Part of the correction of the contact area by which it is off.
+/// s: of the bend the part by which approaches are off, in the mean, and so that few are off by more.
+const PART: f64 = 0.5;
+const AT_MOST: f64 = 0.62;
+/// What is added for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over
+/// E*; along straight lines it is twice as much), and for chords of few elements: `(chord/4)^-2`.
+const STRAIGHT: f64 = 0.2;
+const SHORT_CHORD: f64 = 4.0;
+/// With shorter chords contact is on single elements: nothing is known.
+const LEAST_CHORD: f64 = 1.5;
+/// Error at ends of the surface, in elements of a circle's radius.
+const AT_ENDS: f64 = 0.33;
+/// Second differences of the pressures: what of them is missed of the largest, and in the rms; and when they say that a peak is singular.
+const PEAK: f64 = 0.1;
+const PRESSURES: f64 = 0.25;
+const SINGULAR: f64 = 0.18;
+const SHARP: f64 = 0.08;
+/// Part of the correction of the contact area by which it is off, and elements along straight outlines.
 const CORRECTION_OFF: f64 = 0.3;
+const STRAIGHT_OFF: f64 = 0.4;
 /// Seconds grow with this power of the number of elements (docs/performance.md).
 pub const SECONDS_EXPONENT: f64 = 1.13;
 
-/// q of `(b^q - 1)/(a^q - 1) = ratio`; none where it is not positive, at most 4.
-fn order(ratio: f64, a: f64, b: f64) -> Option<f64> {
-    let of = |q: f64| (b.powf(q) - 1.0) / (a.powf(q) - 1.0);
-    let (mut low, mut high) = (1e-3, 4.0);
-    if !(ratio > of(low)) {
-        return None;
+/// Errors of the force (or the approach) on a grid, positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Parts {
+    /// By the bend: of second order in the size of the elements.
+    pub smooth: f64,
+    /// By ends of the surface: of first order.
+    pub ends: f64,
+    /// The first in the mean, with its sign.
+    likely: f64,
+}
+
+impl Parts {
+    /// Of a state; none where contact is on single elements.
+    pub fn of(problem: &Problem, state: &State, curvature: &Curvature, outline: &Outline) -> Option<Parts> {
+        let count = state.contact_count();
+        let chord = outline.chord(count);
+        if count == 0 || chord < LEAST_CHORD {
+            return None;
+        }
+        let (force, depth) = (state.force(), curvature.depth);
+        let stiffness = match state.load {
+            Load::Force(_) => 1.0,
+            Load::Approach(_) => stiffness(problem, force, depth, count as f64 * state.grid.element_area()),
+        };
+        let of_approach = PART * curvature.bend * stiffness;
+        let pressure = force / (count as f64 * state.grid.element_area());
+        let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
+        let widened = 1.0 + (SHORT_CHORD / chord).powi(2);
+        let smooth = AT_MOST * stiffness * (widened * curvature.bend.abs() + along_lines);
+        let ends = outline.ends(problem.coefficients.repeats(&state.grid)) as f64;
+        // A circle of radius a, in elements, has 8 a sides and pi a^2 elements.
+        let found = if matches!(state.load, Load::Force(_)) { depth } else { force };
+        let ends = AT_ENDS * std::f64::consts::PI / 8.0 * ends / count as f64 * found.abs();
+        let likely = if matches!(state.load, Load::Force(_)) { -of_approach } else { of_approach };
+        let parts = Parts { smooth, ends, likely };
+        (smooth + ends).is_finite().then_some(parts)
     }
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        *(if of(middle) < ratio { &mut low } else { &mut high }) = middle;
-    }
-    Some(low)
-}
 
-/// The order to take, when differences `near` to the grid of elements a times as large and `far` to that of b (if there is one) are seen, and
-/// theory's is `highest`. None: not to be trusted.
-fn trusted_order(near: (f64, f64), far: Option<(f64, f64)>, highest: f64) -> Option<f64> {
-    let Some((b, far)) = far else { return Some(highest) };
-    let (a, near) = near;
-    let seen = order(far / near, a, b)?;
-    if seen >= CLEAN * highest {
-        Some(highest)
-    } else {
-        Some(seen).filter(|q| *q >= NO_ORDER)
+    /// Together.
+    pub fn error(&self) -> f64 {
+        self.smooth + self.ends
     }
 }
 
-/// The error of `value`, with its sign, and its order.
-fn richardson(value: f64, near: (f64, f64), far: Option<(f64, f64)>, highest: f64) -> Option<(f64, f64)> {
-    let difference = |(size, found): (f64, f64)| (size, found - value);
-    let q = trusted_order(difference(near), far.map(difference), highest)?;
-    let error = (near.1 - value) / (near.0.powf(q) - 1.0);
-    error.is_finite().then_some((error, q))
+/// dF/d(approach): that of a circle of the same area, or where contact is in many places or endless that of a parabola, 3/2 F/depth.
+fn stiffness(problem: &Problem, force: f64, depth: f64, area: f64) -> f64 {
+    let of_parabola = 1.5 * force / depth;
+    if problem.coefficients.has_layer() {
+        return of_parabola;
+    }
+    of_parabola.max(2.0 * problem.modulus() * (area / std::f64::consts::PI).sqrt())
 }
 
-/// Relative discretisation error that samples suggest for the force (or the approach) on the finest grid before that is solved.
-pub fn predict(near: &Sample, far: &Sample) -> f64 {
-    let error_near = (far.found - near.found) / ((far.size / near.size).powi(2) - 1.0);
-    known((error_near / near.found).abs() / (near.size * near.size))
-}
-
-/// The same from the last two rows of a ledger: their step is 3/4 of the coarser one's error, which falls by 4 with every grid.
-pub fn predict_from_ledger(rows: &[LedgerRow], load: Load) -> f64 {
-    let [.., before, last] = rows else { return 0.0 };
-    let (before, last) = (before.measures.found(load), last.measures.found(load));
-    known(((before - last) / last).abs() / 12.0)
-}
-
-/// 0 for what is not known.
-fn known(error: f64) -> f64 {
+/// Relative discretisation error of the force (or the approach), from a state that is near the solution; 0 where it is not known.
+pub fn predict(problem: &Problem, state: &State) -> f64 {
+    let outline = Outline::of(state);
+    let curvature = Curvature::of(problem, state, outline.rows);
+    let found = match state.load {
+        Load::Approach(_) => state.force(),
+        Load::Force(_) => state.approach,
+    };
+    let error = Parts::of(problem, state, &curvature, &outline).map_or(0.0, |parts| parts.error() / found.abs());
     if error.is_finite() {
         error
     } else {
@@ -87,89 +117,74 @@ fn known(error: f64) -> f64 {
     }
 }
 
-/// Writes the errors of all rows, of which the last is that of `finest`; `samples`: of a, then b, or a alone, or none. What limits
-/// the answer, and what the next finer grid would bring.
+/// Writes the errors of all rows, of which the last is that of `finest`. What limits the answer, and what the next finer grid would
+/// bring.
 pub fn estimate(
     ledger: &mut [LedgerRow],
+    problem: &Problem,
     finest: &State,
     outline: &Outline,
-    samples: &[Sample],
     seconds: f64,
 ) -> (Limit, Halving) {
-    let Some(last) = ledger.last().copied() else { return Default::default() };
-    let (near, far) = (samples.first(), samples.get(1));
-    let highest = if outline.edges > 0 { 1.0 } else { 2.0 };
-    let measures = last.measures;
-    let found = measures.found(finest.load);
-    let of = |value: f64, part: fn(&Sample) -> f64| {
-        near.and_then(|near| richardson(value, (near.size, part(near)), far.map(|far| (far.size, part(far))), highest))
+    let Some(last) = ledger.last().copied().filter(|last| last.measures.contact_count > 0) else {
+        return Default::default();
     };
-    let force = of(found, |sample| sample.found);
-    let max_pressure = of(measures.max_pressure, |sample| sample.max_pressure);
-    // The distance is an rms over the field; its order is at most 1, from the square root at the rim.
-    let pressure = near.and_then(|near| {
-        let q = trusted_order((near.size, near.distance), far.map(|far| (far.size, far.distance)), 1.0)?;
-        Some((near.distance / (near.size.powf(q) - 1.0), q)).filter(|(error, _)| error.is_finite())
-    });
-    let untrusted = if near.is_some() { untrusted(force, max_pressure, pressure) } else { 0 };
-    let (area, residual) = (measures.corrected_area, measures.certificate.residual);
-    for row in ledger.iter_mut() {
-        let row_size = (finest.grid.len() as f64 / (row.mx * row.my) as f64).sqrt();
-        // From the extrapolated value, and what the last residual may hide of that
-        let off = |value: f64, last: f64, estimate: Option<(f64, f64)>| match estimate {
-            Some((error, _)) => (value - (last - error)).abs() + residual * last.abs(),
-            None => -1.0,
-        };
+    let measures = last.measures;
+    let curvature = Curvature::of(problem, finest, outline.rows);
+    let parts = Parts::of(problem, finest, &curvature, outline);
+    let peak = Curvature::of_peak(problem, finest, measures.max_pressure).filter(|bend| *bend <= SINGULAR);
+    let pressure = parts.map(|_| PRESSURES * curvature.pressure);
+    let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
+    let residual = measures.certificate.residual;
+    let found = measures.found(finest.load);
+    let sizes = (outline.edges - outline.straight_edges) as f64;
+    let straight = (outline.straight.0 + outline.straight.1) as f64;
+    let lines = (STRAIGHT_OFF * straight + sizes.sqrt()) * finest.grid.element_area();
+    let count = ledger.len();
+    for (i, row) in ledger.iter_mut().enumerate() {
+        let is_last = i + 1 == count;
+        let size = (finest.grid.len() as f64 / (row.mx * row.my) as f64).sqrt();
+        // Coarser rows: off from the value without its likely error.
+        let force = parts.map(|parts| match is_last {
+            true => parts.error(),
+            false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.ends,
+        });
+        let highest = peak.map(|bend| {
+            let missed = PEAK * bend * (1.0 + (bend / SHARP).powi(2)) * measures.max_pressure;
+            missed + (row.measures.max_pressure - measures.max_pressure).abs()
+        });
         let correction = (row.measures.contact_area - row.measures.corrected_area).abs();
+        let off = if is_last { correction } else { (row.measures.contact_area - measures.corrected_area).abs() };
+        let hidden = |value: f64| residual * value.abs();
         row.error = DiscretisationError {
-            force: off(row.measures.found(finest.load), found, force),
-            max_pressure: off(row.measures.max_pressure, measures.max_pressure, max_pressure),
-            contact_area: (row.measures.contact_area - area).abs(),
-            corrected_area: CORRECTION_OFF * correction,
-            pressure: pressure.map_or(-1.0, |(error, q)| error * row_size.powf(q) + residual),
+            force: force.map_or(-1.0, |error| error + hidden(found)),
+            max_pressure: highest.map_or(-1.0, |error| error + hidden(measures.max_pressure)),
+            contact_area: off + lines * size,
+            corrected_area: CORRECTION_OFF * correction + lines * size,
+            pressure: pressure.map_or(-1.0, |error| error * size + residual),
             untrusted,
         };
     }
-    if let (Some(row), Some(_)) = (ledger.last_mut(), max_pressure) {
-        row.error.max_pressure = row.error.max_pressure.max(missed_peak(finest, measures.max_pressure));
-    }
-
-    let Some((error, q)) = force else { return Default::default() };
+    let Some(parts) = parts else { return Default::default() };
     let hidden = residual * found.abs();
-    let halved = error.abs() / 2.0_f64.powf(q);
+    let halved = parts.smooth / 4.0 + parts.ends / 2.0;
     let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
-    let limit = if error.abs() >= hidden { Limit::Grid } else { Limit::Tolerance };
+    let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }
 
 /// The bits of the errors that cannot be estimated; says so in the log.
-fn untrusted(force: Option<(f64, f64)>, max_pressure: Option<(f64, f64)>, pressure: Option<(f64, f64)>) -> u32 {
+fn untrusted(force: bool, max_pressure: bool, pressure: bool) -> u32 {
     let mut untrusted = 0;
-    for (estimate, bit, what) in [
-        (force, DiscretisationError::FORCE, "force or approach"),
-        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure"),
-        (pressure, DiscretisationError::PRESSURE, "pressures"),
+    for (known, bit, what, why) in [
+        (force, DiscretisationError::FORCE, "force or approach", "contact is on single elements"),
+        (max_pressure, DiscretisationError::MAX_PRESSURE, "largest pressure", "its peak is singular or not resolved"),
+        (pressure, DiscretisationError::PRESSURE, "pressures", "contact is on single elements"),
     ] {
-        if estimate.is_none() {
+        if !known {
             untrusted |= bit;
-            log::info!("the error of the {what} cannot be estimated: coarser grids do not converge to it");
+            log::info!("the error of the {what} cannot be estimated: {why}");
         }
     }
     untrusted
 }
-
-/// What the largest pressure may miss of a peak between the elements: half of the most, `(d^2 p)/8` of the second differences there.
-/// Samples that happen to agree do not show it.
-fn missed_peak(state: &State, max_pressure: f64) -> f64 {
-    let (mx, my) = (state.grid.mx, state.grid.my);
-    let Some(peak) = state.p.iter().position(|p| *p == max_pressure) else { return 0.0 };
-    let (x, y) = (peak % mx, peak / mx);
-    let beside = |lower: usize, upper: usize| 2.0 * state.p[peak] - state.p[lower] - state.p[upper];
-    let along = if x > 0 && x + 1 < mx { beside(peak - 1, peak + 1) } else { 0.0 };
-    let across = if y > 0 && y + 1 < my { beside(peak - mx, peak + mx) } else { 0.0 };
-    (along + across) / 16.0
-}
-
-#[cfg(test)]
-#[path = "../../tests/unit/estimates.rs"]
-mod tests;

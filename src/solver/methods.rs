@@ -77,7 +77,7 @@ impl Methods {
             if from_nothing {
                 self.start(stage, task, from)?;
                 if error_ratio > 0.0 {
-                    let predicted = self.predicted_error(stage, task)?;
+                    let predicted = estimates::predict(task.problem, task.state);
                     task.goal.tolerance = task.goal.tolerance.max(error_ratio * predicted);
                 }
             }
@@ -158,20 +158,6 @@ impl Methods {
                 task.state.start(task.problem.self_influence());
                 Ok(())
             }
-        }
-    }
-
-    /// Relative discretisation error of the force (or the approach) that the coarser grids suggest before the finest is solved; 0 where
-    /// it is not known.
-    fn predicted_error<S>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<f64> {
-        match stage {
-            Stage::Direct | Stage::ProjectedCg => {
-                let samples = self.projected_cg.early_samples(task.problem, task.state, task.monitor)?;
-                let ([near, far], count) = samples;
-                Ok(if count == 2 { estimates::predict(&near, &far) } else { 0.0 })
-            }
-            Stage::FullMultigrid => Ok(estimates::predict_from_ledger(&task.monitor.ledger.rows, task.state.load)),
-            _ => Ok(0.0),
         }
     }
 

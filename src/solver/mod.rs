@@ -23,7 +23,9 @@ pub use crate::operator::Precision;
 pub use crate::progress::{Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop};
 pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
-pub use refinement::{solve_to_accuracy, Accuracy, Outcome, SurfaceCallback};
+pub use refinement::{
+    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Outcome, Price, Quantity, SurfaceCallback,
+};
 pub use report::{Halving, Limit, Report};
 
 use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State, Survey};
@@ -152,13 +154,13 @@ impl Solver {
             None => self.run(scene, NonNegative, options, guess, &mut monitor),
             Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
         };
-        let outcome = outcome.and_then(|(stop, tolerance)| {
+        let outcome = outcome.map(|(stop, tolerance)| {
             let mut report = Report::of(&monitor, tolerance);
-            if options.estimates && stop != Stop::Cancelled {
-                self.estimate(scene, options, &mut monitor, &mut report)?;
+            if options.estimates {
+                self.estimate(scene, options, &mut monitor, &mut report);
             }
             report.solve_seconds = monitor.seconds();
-            Ok((stop, report))
+            (stop, report)
         });
         self.has_result &= outcome.is_ok();
         self.ledger = monitor.ledger.rows;
@@ -246,25 +248,15 @@ impl Solver {
         Ok((stop, task.goal.tolerance))
     }
 
-    /// The errors of the report and the ledger, from what coarser grids find. With limits the samples would be other problems.
-    fn estimate(
-        &mut self,
-        scene: &Scene<'_>,
-        options: &Options,
-        monitor: &mut Monitor<'_>,
-        report: &mut Report,
-    ) -> Result<()> {
+    /// The errors of the report and the ledger. Limits have other rims, row tables other displacements than the estimates know.
+    fn estimate(&self, scene: &Scene<'_>, options: &Options, monitor: &mut Monitor<'_>, report: &mut Report) {
         if !self.problem.symmetric || options.is_fixed() || scene.pressure_limit.is_some() {
-            return Ok(());
+            return;
         }
-        let chord = monitor.ledger.outline.chord(self.state.contact_count());
-        let (samples, count) = self.methods.projected_cg.samples(&self.problem, &self.state, chord, monitor)?;
         let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
-        let estimated = estimates::estimate(&mut ledger.rows, &self.state, &ledger.outline, &samples[..count], seconds);
-        (report.limit, report.halving) = estimated;
+        let (rows, outline) = (&mut ledger.rows, &ledger.outline);
+        (report.limit, report.halving) = estimates::estimate(rows, &self.problem, &self.state, outline, seconds);
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
-        report.work_units = monitor.count.work_units;
-        Ok(())
     }
 
     /// The result: pressures, displacements, contact area and approach.

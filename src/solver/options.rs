@@ -67,8 +67,7 @@ pub struct Options {
     /// What has to become small.
     pub criterion: Criterion,
     /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
-    /// approach, whichever is not prescribed). Needs the coarser grids of a start
-    /// from nothing by full multigrid or projected conjugate gradients.
+    /// approach, whichever is not prescribed), as the start from nothing suggests it by full multigrid or projected conjugate gradients.
     pub error_ratio: f64,
     /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid at most.
     pub max_cycles: usize,

@@ -1,17 +1,22 @@
-//! Accuracy instead of a grid: finer and finer grids until the estimated error of the force or the approach is small enough.
+//! Accuracy instead of a grid: finer and finer grids until the estimated errors are small enough.
 
 mod next_grid;
+mod outlook;
+mod price_list;
 
 use std::time::Instant;
 
 pub use next_grid::Accuracy;
+pub use outlook::Quantity;
+pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::{InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
-use crate::scene::{refine, Load, Scene};
+use crate::scene::{refine, sample, Scene};
 use next_grid::{Next, Past};
+use outlook::Outlook;
 
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
@@ -37,29 +42,18 @@ pub struct Outcome {
 struct Solved {
     solver: Solver,
     report: Report,
-    relative: Option<f64>,
+    outlook: Outlook,
 }
 
 /// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
 type OnGrid = std::result::Result<Solved, (Stop, String, Option<Solved>)>;
 
-/// Below this no estimate means anything: some hundred units of round-off.
-const ROUND_OFF: f64 = 1e-13;
-/// Residuals below this are not asked for.
-const LEAST_TOLERANCE: f64 = 1e-12;
-/// The residual, relative to the target: what it adds to the error does not count.
-const TOLERANCE_PER_TARGET: f64 = 0.1;
-/// With fewer elements across, a grid's estimate is not believed, and need not be there.
-const ENOUGH_ACROSS: usize = 32;
-/// Grids with more that have none, before it is given up.
-const MOST_WITHOUT_ESTIMATE: usize = 3;
-
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
-/// nothing, until the estimated relative error is at most the target. `surface` writes the undeformed distance of each grid (that
-/// of `scene` is then not read); without one the scene's is [refined](refine).
+/// nothing, until the estimated relative errors are at most the targets on 32 elements across the contact in both directions. `surface`
+/// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](refine).
 ///
-/// The first grid is solved whatever the limits are. What a finer grid does not get solved to the tolerance, cancelled
-/// or out of time or memory, is dropped: the result is then that of the grid before.
+/// The first grid is solved whatever the limits are. A finer grid that runs out of time or cycles counts only if it is estimated to be
+/// the better one all the same, and none that is cancelled; else the result is that of the grid before.
 pub fn solve_to_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -70,62 +64,64 @@ pub fn solve_to_accuracy(
     let began = Instant::now();
     accuracy.check()?;
     check(scene, options, surface.is_some())?;
-    let tolerance = options.tolerance.min(TOLERANCE_PER_TARGET * accuracy.target).max(LEAST_TOLERANCE);
-    let options = Options { tolerance, estimates: true, ..*options };
-    let mut best: Option<Solved> = None;
-    let (mut parts, mut without_estimate, mut without_contact) = (1, 0, 0);
+    let options = Options { tolerance: accuracy.tolerance(options.tolerance), estimates: true, ..*options };
+    let (mut best, mut before): (Option<Solved>, Option<Past>) = (None, None);
+    let (mut doublings, mut without_estimate, mut without_contact) = (0, 0, 0);
     let (stop, why) = loop {
-        let (entered, before) = (began.elapsed().as_secs_f64(), best.is_some());
-        let late = |_: &Progress| before && accuracy.is_late(began.elapsed().as_secs_f64());
-        let solved = match on_grid(scene, &options, parts, &mut surface, &mut progress, &late) {
+        let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
+        let late = |_: &Progress| !is_first && accuracy.is_late(began.elapsed().as_secs_f64());
+        let solved = match on_grid(scene, &options, doublings, &mut surface, &mut progress, &late) {
             Ok(Ok(solved)) => solved,
             Ok(Err((stop, why, unfinished))) => {
-                best = best.or(unfinished);
+                let counts = stop == Stop::IterationLimit || best.is_none();
+                best = better(best, unfinished.filter(|_| counts), accuracy);
                 break (stop, why);
             }
-            Err(Error::OutOfMemory(message)) if before => break (Stop::IterationLimit, message),
+            Err(Error::OutOfMemory(message)) if !is_first => break (Stop::IterationLimit, message),
             Err(error) => return Err(error),
         };
-        let (grid, report, relative) = (solved.solver.problem.grid, solved.report, solved.relative);
-        best = Some(solved);
-
-        let judged = grid.mx.max(grid.my) >= ENOUGH_ACROSS;
-        without_contact = if report.measures.contact_count == 0 { without_contact + 1 } else { 0 };
-        without_estimate += usize::from(judged && relative.is_none());
-        let met = judged && relative.is_some_and(|relative| relative <= accuracy.target);
-        if met && accuracy.target >= ROUND_OFF {
-            break (Stop::Converged, "the target is met".into());
-        }
-        if without_contact == MOST_WITHOUT_ESTIMATE {
-            break (Stop::Converged, "there is no contact on three grids".into());
-        }
-        if accuracy.target < ROUND_OFF {
-            break (Stop::Stagnated, format!("target is {:e}, below round-off", accuracy.target));
-        }
-        if without_estimate == MOST_WITHOUT_ESTIMATE {
-            break (Stop::Stagnated, "no estimate of the error can be trusted".into());
-        }
         let now = began.elapsed().as_secs_f64();
-        let falls_by = relative.map(|_| report.error.force / report.halving.force).filter(|ratio| *ratio > 0.0);
-        let past = Past { grid, relative, falls_by, bytes: report.bytes, seconds: now - entered, elapsed: now };
+        let past = Past::of(&solved, accuracy, (now - entered, now), before.as_ref());
+        let no_contact = solved.report.measures.contact_count == 0;
+        best = Some(solved);
+        without_contact = if no_contact { without_contact + 1 } else { 0 };
+        without_estimate += usize::from(past.lacks_estimate());
+        if let Some(end) = accuracy.end(&past, without_contact, without_estimate) {
+            break end;
+        }
         match accuracy.next(&past) {
-            Next::Refine(doublings) => parts <<= doublings,
+            Next::Refine(more) => doublings += more as i32,
             Next::Limit(why) => break (Stop::IterationLimit, why),
         }
-        let next = relative.map_or("unknown".into(), |relative| format!("{relative:.1e}"));
-        log::info!("estimated relative error {next} on {} x {}: refining", grid.mx, grid.my);
+        log::info!("on {} x {}: {past}; refining", past.grid.mx, past.grid.my);
+        before = Some(past);
     };
     Ok(Outcome::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
+/// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
+fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
+    let worst = |solved: &Option<Solved>| {
+        let excesses = solved.as_ref().map(|solved| solved.outlook.excesses(accuracy));
+        excesses.map_or(f64::INFINITY, |all| {
+            all.iter().map(|one| one.map_or(f64::INFINITY, |one| one.now())).fold(0.0, f64::max)
+        })
+    };
+    match (worst(&unfinished) < worst(&last), last.is_some()) {
+        (false, true) => last,
+        _ => unfinished,
+    }
+}
+
 impl Outcome {
     fn of(best: Option<Solved>, stop: Stop, why: String, seconds: f64) -> Outcome {
-        let Some(Solved { solver, report, relative }) = best else {
+        let Some(Solved { solver, report, outlook }) = best else {
             let reason = format!("{why}; nothing was solved");
             return Outcome { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
         // Without contact there is nothing to be off.
-        let reached = relative.or((stop == Stop::Converged).then_some(0.0));
+        let without = report.measures.contact_count == 0 && stop == Stop::Converged;
+        let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
         let grid = solver.problem.grid;
         let reason = format!("{why}; the best reached is {number} on {} x {} elements", grid.mx, grid.my);
@@ -155,17 +151,31 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     scene.check()
 }
 
-/// Solves on the grid with `parts` elements for each of the scene's. `late`: asked after each cycle; true ends the solve.
+/// The grid over the same rectangle with twice the elements in both directions, so many times; with half of them if the number is
+/// negative. Refused if that is no grid.
+fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
+    let Grid { mx, my, dx, dy } = *grid;
+    if doublings >= 0 {
+        let parts = 1_usize << doublings;
+        return Grid::new(mx * parts, my * parts, dx / parts as f64, dy / parts as f64);
+    }
+    let joined = 1_usize << -doublings;
+    if mx % joined > 0 || my % joined > 0 {
+        return invalid(format!("{mx} x {my} elements cannot be joined {joined} by {joined}"));
+    }
+    Grid::new(mx / joined, my / joined, dx * joined as f64, dy * joined as f64)
+}
+
+/// Solves on the [scaled] grid. `late`: asked after each cycle; true ends the solve.
 fn on_grid(
     scene: &Scene<'_>,
     options: &Options,
-    parts: usize,
+    doublings: i32,
     surface: &mut Option<SurfaceCallback<'_>>,
     progress: &mut Option<ProgressCallback<'_>>,
     late: &dyn Fn(&Progress) -> bool,
 ) -> Result<OnGrid> {
-    let Grid { mx, my, dx, dy } = scene.grid;
-    let grid = Grid::new(mx * parts, my * parts, dx / parts as f64, dy / parts as f64)?;
+    let grid = scaled(&scene.grid, doublings)?;
     let on = |what: &str| format!("{what} on {} x {} elements", grid.mx, grid.my);
     let refined = match surface {
         Some(surface) => {
@@ -177,8 +187,9 @@ fn on_grid(
             }
             h
         }
-        None if parts == 1 => Vec::new(),
-        None => refine(scene.undeformed_distance, &scene.grid, parts)?,
+        None if doublings == 0 => Vec::new(),
+        None if doublings > 0 => refine(scene.undeformed_distance, &scene.grid, 1 << doublings)?,
+        None => sample(scene.undeformed_distance, &scene.grid, 1 << -doublings)?,
     };
     let h = if refined.is_empty() { scene.undeformed_distance } else { &refined };
     let scene = Scene { grid, undeformed_distance: h, ..scene.clone() };
@@ -193,9 +204,8 @@ fn on_grid(
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
     let (stop, report) = solver.solve(&scene, options, None, Some(&mut watch))?;
-    // What is not solved has no estimate.
-    let relative = if stop == Stop::Converged { relative_error(scene.load, &report) } else { None };
-    let solved = Solved { solver, report, relative };
+    let outlook = Outlook::of(&solver, &report, scene.load);
+    let solved = Solved { solver, report, outlook };
     Ok(match stop {
         Stop::Converged => Ok(solved),
         Stop::Cancelled if is_late => Err((Stop::IterationLimit, on("max_seconds was reached"), Some(solved))),
@@ -203,10 +213,4 @@ fn on_grid(
         Stop::IterationLimit => Err((stop, on("max_cycles was reached"), Some(solved))),
         Stop::Stagnated => Err((stop, on("the solver made no further progress"), Some(solved))),
     })
-}
-
-/// Estimated error of the force, or of the approach when the force is prescribed, over its value.
-fn relative_error(load: Load, report: &Report) -> Option<f64> {
-    let relative = report.error.force / report.measures.found(load).abs();
-    (relative >= 0.0 && relative.is_finite()).then_some(relative)
 }

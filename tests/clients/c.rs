@@ -276,7 +276,11 @@ fn c_and_rust_agree_on_every_struct() {
             halved_seconds, halved_error_force, edge_count, tolerance
         }
         contact_normal_accuracy {
-            struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds
+            struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds,
+            max_pressure_target, contact_area_target
+        }
+        contact_normal_price {
+            target, error, tolerance, seconds, seconds_one_thread, bytes, mx, my, dx, dy, obstacle, reserved
         }
         contact_normal_hertz_solution {
             semi_axis_x, semi_axis_y, max_pressure, approach, force, area

@@ -232,7 +232,9 @@ fn derived_types_are_laid_out_as_the_structs() {
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
             untrusted, limited_by, halved_seconds, halved_error_force, edge_count, tolerance;
         contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
-            user, mx, my, dx, dy, reached, seconds;
+            user, mx, my, dx, dy, reached, seconds, max_pressure_target, contact_area_target;
+        contact_normal_price: target, error, tolerance, seconds, seconds_one_thread, bytes, mx, my, dx, dy,
+            obstacle, reserved;
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
         contact_normal_coating: struct_size, thickness, shear_modulus, poisson_ratio;

@@ -16,6 +16,7 @@ program fortran_layout
   type(contact_normal_ledger_row), target :: row
   type(contact_normal_report), target :: report
   type(contact_normal_accuracy), target :: accuracy
+  type(contact_normal_price), target :: price
   type(contact_normal_hertz_solution), target :: solution
   type(contact_normal_coating), target :: coating
   type(contact_normal_stress_maximum), target :: largest
@@ -201,6 +202,23 @@ program fortran_layout
   call show("contact_normal_accuracy.dy", c_loc(accuracy%dy))
   call show("contact_normal_accuracy.reached", c_loc(accuracy%reached))
   call show("contact_normal_accuracy.seconds", c_loc(accuracy%seconds))
+  call show("contact_normal_accuracy.max_pressure_target", c_loc(accuracy%max_pressure_target))
+  call show("contact_normal_accuracy.contact_area_target", c_loc(accuracy%contact_area_target))
+
+  base = place(c_loc(price))
+  print '(a, i0)', "contact_normal_price ", c_sizeof(price)
+  call show("contact_normal_price.target", c_loc(price%target))
+  call show("contact_normal_price.error", c_loc(price%error))
+  call show("contact_normal_price.tolerance", c_loc(price%tolerance))
+  call show("contact_normal_price.seconds", c_loc(price%seconds))
+  call show("contact_normal_price.seconds_one_thread", c_loc(price%seconds_one_thread))
+  call show("contact_normal_price.bytes", c_loc(price%bytes))
+  call show("contact_normal_price.mx", c_loc(price%mx))
+  call show("contact_normal_price.my", c_loc(price%my))
+  call show("contact_normal_price.dx", c_loc(price%dx))
+  call show("contact_normal_price.dy", c_loc(price%dy))
+  call show("contact_normal_price.obstacle", c_loc(price%obstacle))
+  call show("contact_normal_price.reserved", c_loc(price%reserved))
 
   base = place(c_loc(solution))
   print '(a, i0)', "contact_normal_hertz_solution ", c_sizeof(solution)

@@ -47,6 +47,7 @@ program fortran_module
   type(contact_normal_ledger_row), target :: ledger(8)
   type(contact_normal_solver) :: solver
   type(contact_normal_accuracy) :: accuracy
+  type(contact_normal_price) :: prices(2)
   type(contact_normal_fields) :: none_wanted
   real(dp), target :: h(M, M), p(M, M), u(M, M), e(M*M), cf(-M:M - 1, -M:M - 1)
   real(dp) :: half_space(M, M)
@@ -102,6 +103,12 @@ program fortran_module
   call contact_normal_fields_init(none_wanted)
   call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_OK, "no fields wanted")
   call contact_normal_solver_free(solver)
+  ! What accuracies cost: the second is dearer; the largest pressure is one of its own.
+  call hold(contact_normal_cost_of_accuracy(scene, [1e-2_dp, 1e-3_dp], prices) == CONTACT_NORMAL_OK, "a price list")
+  call hold(all(prices%obstacle == CONTACT_NORMAL_OBSTACLE_NONE .and. prices%seconds > 0 .and. prices%mx > 0), "its rows")
+  call hold(prices(2)%mx >= prices(1)%mx .and. prices(2)%tolerance < prices(1)%tolerance, "in order")
+  call hold(contact_normal_cost_of_accuracy(scene, [1e-2_dp], prices, CONTACT_NORMAL_QUANTITY_MAX_PRESSURE, options, &
+                                            accuracy) == CONTACT_NORMAL_OK .and. prices(1)%error <= 1e-2_dp, "with all")
   calls = 0
   accuracy%user = c_loc(calls)
   call contact_normal_set_surface(accuracy, cancelling_surface)

@@ -22,6 +22,7 @@ fn the_committed_header_is_the_generated_one() {
         "solver",
         "batch",
         "accuracy",
+        "price_list",
         "special",
         "stress",
         "log",

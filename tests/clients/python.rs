@@ -111,6 +111,18 @@ fn the_to_accuracy_example_prints_what_is_expected() {
 }
 
 #[test]
+fn the_price_list_example_prints_what_is_expected_and_draws() {
+    let folder = scratch("python_price_list");
+    let example = root().join("python_examples/price_list.py");
+    let printed = run(python_in(&folder).arg(&example).arg("picture.png"));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("price_list.expected");
+    assert_eq!(printed, expected);
+    let picture = std::fs::read(folder.join("picture.png")).expect("the picture");
+    let reader = png::Decoder::new(std::io::Cursor::new(picture)).read_info().expect("a PNG");
+    assert!(reader.info().width > 400 && reader.info().height > 300);
+}
+
+#[test]
 fn the_ledger_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_ledger");
     let example = root().join("python_examples/ledger.py");
@@ -367,7 +379,26 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         dx,
         dy,
         reached,
-        seconds
+        seconds,
+        max_pressure_target,
+        contact_area_target
+    );
+    layout!(
+        ours,
+        "Price",
+        contact_normal_price,
+        target,
+        error,
+        tolerance,
+        seconds,
+        seconds_one_thread,
+        bytes,
+        mx,
+        my,
+        dx,
+        dy,
+        obstacle,
+        reserved
     );
     layout!(
         ours,
@@ -482,6 +513,9 @@ with cn.Solver(10, 12, 0.2, 0.2, threads=2, **steel) as solver:
 ball = lambda x, y: 0.01 * (x ** 2 + y ** 2)
 near = cn.solve_to_accuracy(0.04 * h, 0.5, 0.5, target=1e-2, approach=0.1, **steel)
 print(near.status, near.reached <= 1e-2, near.pressure.shape[1] * near.dx, near.seconds > 0, len(near.ledger) > 1)
+prices = cn.cost_of_accuracy(0.04 * h, 0.5, 0.5, targets=(1e-2, 1e-15), approach=0.1, **steel)
+assert prices[0].seconds > 0 and prices[0].shape[0] >= 12 and not prices[0].obstacle, prices
+assert prices[1].obstacle == 'below round-off' and prices[1].shape == (0, 0), prices
 far = cn.solve_to_accuracy(ball, 0.5, 0.5, shape=(10, 12), target=1e-9, max_elements=40 * 48, approach=0.1, **steel)
 print(far.status == cn.ITERATION_LIMIT, far.pressure.shape, 'max_elements' in far.message and '48 x 40' in far.message)
 for bad in (dict(shape=(10, 12)), dict()):

@@ -159,7 +159,9 @@ fn a_solve_that_does_not_converge_ends_it() {
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
     assert_eq!(outcome.stop, Stop::IterationLimit);
     assert!(outcome.reason.contains("max_cycles was reached on 16 x 16"), "{}", outcome.reason);
-    assert!(outcome.reached.is_none() && outcome.report.measures.force > 0.0);
+    // What the residual hides is part of it.
+    let residual = outcome.report.measures.certificate.residual;
+    assert!(outcome.reached.is_some_and(|reached| reached >= residual) && residual > 1e-6);
 }
 
 #[test]
@@ -222,7 +224,7 @@ fn without_an_estimate_it_is_given_up() {
     let outcome = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-2), Some(&mut surface), None)
         .expect("a scene");
     assert_eq!((outcome.stop, outcome.reached), (Stop::Stagnated, None), "{}", outcome.reason);
-    // 16 x 16 does not count, 32, 64 and 128 do.
+    // 16 x 16 does not count, 32 and finer ones do.
     assert_eq!(grid_of(&outcome).mx, 128);
     assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);
 }

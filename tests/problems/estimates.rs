@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use contact_normal::analytic::hertz;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, DiscretisationError, LedgerRow, Limit, Method, Options, Report, Stop};
+use contact_normal::solver::{solve, DiscretisationError, LedgerRow, Limit, Method, Options, Report, Solver, Stop};
 
 use crate::performance as case;
 
@@ -86,13 +86,18 @@ fn punch() -> Exact {
 impl Exact {
     /// Solves on m x m elements; the rows of the ledger, the report.
     fn solve(&self, m: usize, by_force: bool, options: &Options) -> (Vec<LedgerRow>, Report) {
+        let (solver, report) = self.solver(m, by_force, options);
+        (solver.ledger().to_vec(), report)
+    }
+
+    fn solver(&self, m: usize, by_force: bool, options: &Options) -> (Solver, Report) {
         let grid = Grid::new(m, m, self.size.0 / m as f64, self.size.1 / m as f64).unwrap();
         let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
         let h: Vec<f64> = (0..m * m).map(|i| (self.h)(centre(i % m, grid.dx), centre(i / m, grid.dy))).collect();
         let load = if by_force { Load::Force(self.force) } else { Load::Approach(self.approach) };
         let (solver, stop, report) = solve(&Scene::new(grid, &h, self.bodies, load), options).unwrap();
         assert_eq!(stop, Stop::Converged);
-        (solver.ledger().to_vec(), report)
+        (solver, report)
     }
 
     /// True error of what the load does not prescribe.
@@ -109,61 +114,73 @@ fn estimating(method: Method) -> Options {
     Options { estimates: true, method, ..Options::default() }
 }
 
-/// Estimates that held their bound, and those that the library refused to give.
-#[derive(Debug, Default)]
-struct Judged {
-    held: usize,
-    refused: usize,
+/// Estimates against true errors: none is far too small, and in the mean they are right to a factor of 3. (Single ones are too large
+/// where errors of opposite sign happen to cancel.)
+fn assert_honest(mut ratios: Vec<f64>, what: &str) {
+    ratios.sort_by(f64::total_cmp);
+    let (least, median) = (ratios[0], ratios[ratios.len() / 2]);
+    println!("{what}: {} ratios, from {least:.2}, median {median:.2}", ratios.len());
+    assert!(least >= 0.3 && (0.5..=3.0).contains(&median), "{what}: from {least}, median {median}");
 }
 
-impl Judged {
-    /// An estimate may be refused on grids of odd counts only, which are 2 of 9; and by no more than half of them.
-    fn assert_mostly_given(&self) {
-        assert!(self.held >= 8 * self.refused && self.held > 0, "{self:?}");
-    }
-}
-
-/// The bounds that the project sets itself: an estimate is right to a factor of 3 or so, here on every level from 64 up.
+/// On every level of the ledger from 64 up.
 #[test]
 fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3() {
-    let (mut forces, mut pressures) = (Judged::default(), Judged::default());
+    let (mut forces, mut pressures) = (Vec::new(), Vec::new());
     for exact in [ellipse(), sphere(), cone()] {
         for (by_force, method) in [false, true].into_iter().flat_map(|by| METHODS.map(|method| (by, method))) {
             for m in if method == Method::Auto { [64, 96, 128, 200, 256, 512].iter() } else { [64, 128, 256].iter() } {
                 let (rows, report) = exact.solve(*m, by_force, &estimating(method));
-                // Rims and peaks lie on coarser grids of odd counts as on no other: then an estimate may be refused.
-                if !m.is_power_of_two() && report.error.untrusted & DiscretisationError::FORCE != 0 {
-                    assert_eq!(report.limit, Limit::Unknown);
-                    forces.refused += 1;
-                    continue;
-                }
                 assert_eq!(report.limit, Limit::Grid);
                 for row in rows.iter().filter(|row| row.mx >= 64) {
                     let what = format!("{} {m}, by force: {by_force}, {method:?}, level {}", exact.name, row.mx);
-                    let force = row.error.force / exact.error(row, by_force);
-                    assert!((0.3..=3.0).contains(&force), "{what}: {force}");
-                    forces.held += 1;
                     assert_eq!(row.error.untrusted & DiscretisationError::FORCE, 0, "{what}");
-                    if let Some(p) = exact.max_pressure {
-                        // Centres of elements lie beside the peak on some of the coarser grids and on it on others.
-                        if !m.is_power_of_two() && row.error.untrusted & DiscretisationError::MAX_PRESSURE != 0 {
-                            pressures.refused += 1;
-                            continue;
+                    forces.push(row.error.force / exact.error(row, by_force));
+                    match exact.max_pressure {
+                        Some(p) => {
+                            assert_eq!(row.error.untrusted & DiscretisationError::MAX_PRESSURE, 0, "{what}");
+                            pressures.push(row.error.max_pressure / (row.measures.max_pressure - p).abs());
                         }
-                        let pressure = row.error.max_pressure / (row.measures.max_pressure - p).abs();
-                        assert!((0.3..=3.0).contains(&pressure), "{what}: max pressure {pressure}");
-                        pressures.held += 1;
-                    } else if m.is_power_of_two() && *m >= 128 {
                         // infinite: there is no estimate, and the report says so
-                        assert!(row.error.max_pressure < 0.0, "{what}");
-                        assert_ne!(row.error.untrusted & DiscretisationError::MAX_PRESSURE, 0, "{what}");
+                        None => {
+                            assert!(row.error.max_pressure < 0.0, "{what}");
+                            assert_ne!(row.error.untrusted & DiscretisationError::MAX_PRESSURE, 0, "{what}");
+                        }
                     }
                 }
             }
         }
     }
-    forces.assert_mostly_given();
-    pressures.assert_mostly_given();
+    assert_honest(forces, "force and approach");
+    assert_honest(pressures, "largest pressure");
+}
+
+/// The rms of the errors of the pressures, of elements against their means, for a sphere and a flat punch: closed forms, Johnson (4.24)
+/// and (3.34), by 8 x 8 points on an element.
+#[test]
+fn estimates_of_the_pressures_are_right_to_a_factor_of_3() {
+    let (a, p0) = (0.26_f64.sqrt() / 2.0_f64.sqrt(), 2.0 / PI * (0.13_f64).sqrt());
+    let of_sphere = |r: f64| p0 * (1.0 - (r / a).powi(2)).max(0.0).sqrt();
+    let of_punch = |r: f64| if r < 0.37 { 0.1 / PI / (0.37_f64.powi(2) - r * r).sqrt() } else { 0.0 };
+    let mut ratios = Vec::new();
+    for (exact, pressure) in [(sphere(), &of_sphere as &dyn Fn(f64) -> f64), (punch(), &of_punch)] {
+        assert!((pressure(0.0) - exact.max_pressure.unwrap_or(0.1 / PI / 0.37)).abs() < 1e-12 * p0, "{}", exact.name);
+        for m in [64, 100, 128, 256] {
+            let (solver, report) = exact.solver(m, false, &estimating(Method::Auto));
+            let (p, d) = (&solver.state().p, 1.0 / m as f64);
+            let (mut errors, mut squares) = (0.0, 0.0);
+            for (i, p) in p.iter().enumerate() {
+                let at = |k: usize, i: usize| (i as f64 + (k as f64 + 0.5) / 8.0) * d - 0.5;
+                let sum: f64 = (0..64).map(|k| pressure(at(k % 8, i % m).hypot(at(k / 8, i / m)))).sum();
+                errors += (p - sum / 64.0).powi(2);
+                squares += p * p;
+            }
+            let ratio = report.error.pressure / f64::sqrt(errors / squares);
+            println!("{} {m}: {ratio:.2}", exact.name);
+            ratios.push(ratio);
+        }
+    }
+    assert_honest(ratios, "pressures");
 }
 
 /// The corrected area is the better one in the mean of many grids, and its correction the error of the area by counting.
@@ -194,7 +211,7 @@ fn what_is_singular_is_not_trusted() {
 
 /// On surfaces without exact solutions the reference has elements of a quarter of the size.
 #[test]
-fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_a_tenth_of_the_error() {
+fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_below_a_third_of_the_error() {
     let tight = Options { tolerance: 1e-8, ..estimating(Method::Auto) };
     let mut pairs: Vec<(case::Case, case::Case)> =
         [64, 128, 256].map(|m| (case::rough(m), case::rough(4 * m))).into_iter().collect();
@@ -216,11 +233,13 @@ fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_a_tenth_of_the_error()
                 (found.error.max_pressure, found.measures.max_pressure, exact.max_pressure),
             ] {
                 if error < 0.0 {
+                    // The peak of rough surfaces is not resolved.
+                    assert!(coarse.name.starts_with("rough"), "{}", coarse.name);
                     flagged += 1;
                     continue;
                 }
                 let effectivity = error / (found - exact).abs();
-                assert!(effectivity >= 0.1, "{} {load:?}: {effectivity}", coarse.name);
+                assert!(effectivity >= 0.3, "{} {load:?}: {effectivity}", coarse.name);
             }
         }
     }

@@ -1,15 +1,24 @@
 //! What the library computes: every number is compared with a closed form, a direct sum or a certificate recomputed.
 
 // Cases that the examples and benchmarks have too.
+#[path = "../../examples/accuracy/judge.rs"]
+#[allow(dead_code)]
+mod judge;
 #[path = "../../examples/paper_tables/case.rs"]
 #[allow(dead_code)]
 mod paper;
 #[path = "../../benches/performance/case.rs"]
 #[allow(dead_code)]
 mod performance;
+#[path = "../../campaign/src/random.rs"]
+#[allow(dead_code)]
+mod random;
 #[path = "../../examples/smoothers/rough.rs"]
 mod rough;
+#[path = "../../examples/accuracy/surfaces.rs"]
+mod surfaces;
 
+mod accuracy;
 mod accuracy_target;
 mod batch;
 mod coating;

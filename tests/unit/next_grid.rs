@@ -2,37 +2,54 @@
 
 use super::*;
 
-fn past(relative: Option<f64>) -> Past {
+fn past(excess: Option<Falling>) -> Past {
     Past {
         grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"),
-        relative,
-        falls_by: None,
+        across: (40, 33),
+        excesses: vec![excess],
         bytes: 100,
         seconds: 1.0,
+        exponent: SECONDS_EXPONENT,
         elapsed: 1.5,
     }
 }
 
+fn by_four(by_four: f64) -> Option<Falling> {
+    Some(Falling { by_four, ..Falling::default() })
+}
+
 #[test]
-fn as_many_doublings_as_the_estimate_asks_for() {
+fn as_many_doublings_as_the_estimates_ask_for() {
     let accuracy = Accuracy::new(1e-4);
-    // In powers of four, rounded up beyond a quarter: 4^1.25 = 5.66, 4^2.25 = 22.6.
-    for (relative, doublings) in
-        [(1.01e-4, 1), (5.6e-4, 1), (5.7e-4, 2), (22e-4, 2), (23e-4, 3), (0.5, 3), (f64::MAX, 3)]
-    {
-        assert_eq!(accuracy.next(&past(Some(relative))), Next::Refine(doublings), "{relative}");
+    for (excess, doublings) in [(1.01, 1), (3.9, 1), (4.1, 2), (15.9, 2), (16.1, 3), (5e3, 3), (f64::MAX, 3)] {
+        assert_eq!(accuracy.next(&past(by_four(excess))), Next::Refine(doublings), "{excess}");
     }
     assert_eq!(accuracy.next(&past(None)), Next::Refine(1));
-    // An order of 1, and one that is not believed: 2^2.25 = 4.76, 2^1.125 = 2.18.
-    for (falls_by, relative, doublings) in [(2.0, 4.7e-4, 2), (2.0, 4.8e-4, 3), (1.0, 2.1e-4, 2), (1.0, 2.2e-4, 3)] {
-        let past = Past { falls_by: Some(falls_by), ..past(Some(relative)) };
-        assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{past:?}");
+    for (by_two, doublings) in [(1.9, 1), (2.1, 2), (4.1, 3)] {
+        let excess = Some(Falling { by_two, ..Falling::default() });
+        assert_eq!(accuracy.next(&past(excess)), Next::Refine(doublings), "{by_two}");
     }
+    // The largest of several, and what one residual hides no grid brings back.
+    let both = Past { excesses: vec![by_four(2.0), by_four(5.0)], ..past(None) };
+    assert_eq!((accuracy.next(&both), both.worst()), (Next::Refine(2), Some(5.0)));
+    let unknown = Past { excesses: vec![by_four(2.0), None], ..past(None) };
+    assert_eq!(unknown.worst(), None);
+}
+
+#[test]
+fn there_are_enough_elements_across_the_contact() {
+    let accuracy = Accuracy::new(1e-4);
+    for (across, doublings) in [((5, 64), 3), ((9, 9), 2), ((64, 16), 1), ((0, 0), 1)] {
+        let past = Past { across, ..past(by_four(0.5)) };
+        assert!(!past.is_resolved() && accuracy.end(&past, 0, 0).is_none(), "{across:?}");
+        assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{across:?}");
+    }
+    assert_eq!(accuracy.end(&past(by_four(0.9)), 0, 0).map(|end| end.0), Some(Stop::Converged));
 }
 
 #[test]
 fn limits_shorten_the_step_and_then_end_it() {
-    let far = past(Some(1.0));
+    let far = past(by_four(1e4));
     let limited = |change: fn(&mut Accuracy, u32)| {
         // The last that is allowed for k doublings.
         (1..=3).for_each(|k| {
@@ -51,14 +68,14 @@ fn limits_shorten_the_step_and_then_end_it() {
     assert_eq!(elements, "max_elements, 2048, is in the way of 128 x 64 elements");
     let bytes = limited(|accuracy, k| accuracy.max_bytes = 100 + (100 << (2 * k)));
     assert!(bytes.starts_with("max_bytes, 200 of the 500 predicted,"), "{bytes}");
-    // 1.5 s so far, and 4^(1.13 k) more: 4.79, 22.9 and 110.
-    let seconds = limited(|accuracy, k| accuracy.max_seconds = [6.2, 6.4, 24.5, 111.5][k as usize]);
-    assert!(seconds.starts_with("max_seconds, 6.2 of the 6.290 predicted,"), "{seconds}");
+    // 1.5 s so far, and 4^(1.13 k) more: 4.79, 22.9 and 110; one doubling is tried up to 1.2 times the limit.
+    let seconds = limited(|accuracy, k| accuracy.max_seconds = [5.2, 5.3, 24.5, 111.5][k as usize]);
+    assert!(seconds.starts_with("max_seconds, 5.2 of the 6.290 predicted,"), "{seconds}");
 }
 
 #[test]
 fn no_grid_is_larger_than_grids_can_be() {
-    let mut huge = past(Some(1.0));
+    let mut huge = past(by_four(1e4));
     (huge.grid.mx, huge.grid.my) = (32768, 32768);
     let accuracy = Accuracy { max_elements: i32::MAX as u64, ..Accuracy::new(1e-4) };
     assert!(matches!(accuracy.next(&huge), Next::Limit(_)));

@@ -34,8 +34,6 @@ const LIMITED_ITERATIONS: u64 = 5;
 pub(super) struct Coarse {
     pub(super) level: Level,
     pub(super) state: State,
-    /// Means of the finest grid's pressures, while the grid is a sample.
-    pub(super) means: Vec<f64>,
     /// Limits of the pressures, while a scene has any.
     limits: Vec<f64>,
 }
@@ -61,7 +59,6 @@ impl CoarseGrids {
             grids.push(Coarse {
                 level: Level::new(fine, influence.clone(), precision, threads),
                 state: State::new(fine, h, load, 0.0)?,
-                means: Vec::new(),
                 limits: Vec::new(),
             });
         }
@@ -70,10 +67,7 @@ impl CoarseGrids {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.grids
-            .iter()
-            .map(|grid| grid.level.bytes() + grid.state.bytes() + grid.means.len() * size_of::<f64>())
-            .sum()
+        self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum()
     }
 
     /// See [`Level::forget_window`].

@@ -2,7 +2,6 @@
 //! iteration over the grids.
 
 mod coarse_grids;
-mod coarser_solutions;
 mod iteration;
 mod level;
 mod limits;
@@ -15,7 +14,6 @@ mod step;
 mod vectors;
 mod window;
 
-pub use coarser_solutions::Sample;
 pub use iteration::{Cycle, End};
 pub use step::ProjectedCg;
 pub use vectors::Iteration;

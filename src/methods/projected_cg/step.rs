@@ -5,7 +5,6 @@
 //! A solve from nothing begins on the coarser grids (`coarse_grids`), a step in time from what the last ones found (`predictor`).
 
 use super::coarse_grids::CoarseGrids;
-use super::coarser_solutions::{Sample, PREDICTS, SHOWS_ORDER};
 use super::level::Level;
 use super::predictor::Predictor;
 use super::End;
@@ -105,27 +104,6 @@ impl ProjectedCg {
     /// There is no solution before the last any more.
     pub fn forget_solutions(&mut self) {
         self.predictor = Predictor::default();
-    }
-
-    /// What the scene of `state` is on coarser grids: up to two samples, for contact areas of chords of length `chord`.
-    pub fn samples(
-        &mut self,
-        problem: &Problem,
-        state: &State,
-        chord: f64,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<([Sample; 2], usize)> {
-        coarse_grids(&mut self.coarse, problem, self.precision)?.samples(state, chord, SHOWS_ORDER, monitor)
-    }
-
-    /// The same before the finest grid is solved.
-    pub fn early_samples(
-        &mut self,
-        problem: &Problem,
-        state: &State,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<([Sample; 2], usize)> {
-        coarse_grids(&mut self.coarse, problem, self.precision)?.samples(state, 0.0, PREDICTS, monitor)
     }
 
     /// The update of the last step, as far as it proves anything: not where u was of single precision, or pressures were owed.

@@ -1,5 +1,9 @@
 //! Which grid comes next, and whether the limits allow it.
 
+use std::fmt;
+
+use super::outlook::{across, Falling, Quantity};
+use super::{Solved, Stop};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::solver::estimates::SECONDS_EXPONENT;
@@ -9,6 +13,10 @@ use crate::solver::estimates::SECONDS_EXPONENT;
 pub struct Accuracy {
     /// Relative error of the force, or of the approach when the force is prescribed.
     pub target: f64,
+    /// Relative error of the largest pressure; 0: not asked for.
+    pub max_pressure_target: f64,
+    /// Relative error of the corrected contact area; 0: not asked for.
+    pub contact_area_target: f64,
     /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
     pub max_seconds: f64,
     /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
@@ -20,22 +28,25 @@ pub struct Accuracy {
 impl Accuracy {
     /// A target, no limits but the number of elements.
     pub fn new(target: f64) -> Accuracy {
-        Accuracy { target, max_seconds: 0.0, max_bytes: 0, max_elements: 0 }
+        let (max_pressure_target, contact_area_target) = (0.0, 0.0);
+        Accuracy { target, max_pressure_target, contact_area_target, max_seconds: 0.0, max_bytes: 0, max_elements: 0 }
     }
 }
 
 /// What the last grid has shown.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Past {
     pub grid: Grid,
-    /// Estimated relative error, if known.
-    pub relative: Option<f64>,
-    /// By what the error falls with a doubling, if known: 4 where it is of second order in the element size.
-    pub falls_by: Option<f64>,
+    /// Elements across the contact area.
+    pub across: (usize, usize),
+    /// The errors over their targets, where known.
+    pub excesses: Vec<Option<Falling>>,
     /// Bytes held by its solver.
     pub bytes: u64,
     /// Seconds that it took: undeformed distance, set-up and solve.
     pub seconds: f64,
+    /// The power of the number of elements with which they grow.
+    pub exponent: f64,
     /// Seconds since the first grid was begun.
     pub elapsed: f64,
 }
@@ -50,21 +61,89 @@ pub(super) enum Next {
 }
 
 /// Without a limit of the caller's.
-const MOST_ELEMENTS: u64 = 4096 * 4096;
+pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
 /// Elements that a grid can have at all.
 const ALL_ELEMENTS: u64 = i32::MAX as u64;
+/// Below this no estimate means anything: some hundred units of round-off.
+pub(super) const ROUND_OFF: f64 = 1e-13;
+/// Residuals below this are not asked for.
+const LEAST_TOLERANCE: f64 = 1e-12;
+/// The residual, relative to the target of the force, and of the largest pressure: what it adds to the error does not count.
+const TOLERANCE_PER_TARGET: f64 = 0.1;
+const TOLERANCE_PER_PRESSURE: f64 = 0.01;
+/// With fewer elements across, a grid's estimate is not believed, and need not be there.
+pub(super) const ENOUGH_ACROSS: usize = 32;
+/// Grids with more that have none, and grids without contact, before it is given up.
+const MOST_WITHOUT: usize = 3;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
-/// By what errors of the force fall with a doubling on smooth bodies, and the least that is believed: order 1/2.
-const FALLS_BY: (f64, f64) = (4.0, std::f64::consts::SQRT_2);
-/// The target may be missed by a quarter of a doubling: a grid too few costs a quarter more, one too many four times as much.
-const SLACK: f64 = 0.25;
+/// Powers of the number of elements with which seconds can grow.
+const EXPONENTS: (f64, f64) = (0.9, 1.25);
+/// A grid that is predicted to take so much more than the time left is tried: what it found by then may be the better answer.
+const WORTH_A_TRY: f64 = 1.2;
+
+impl Past {
+    /// `seconds`: of this grid, and since the first was begun.
+    pub fn of(solved: &Solved, accuracy: &Accuracy, seconds: (f64, f64), before: Option<&Past>) -> Past {
+        let problem = &solved.solver.problem;
+        let seen = before.map(|before| {
+            let ratio = problem.grid.len() as f64 / before.grid.len() as f64;
+            (seconds.0 / before.seconds).ln() / ratio.ln()
+        });
+        let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(SECONDS_EXPONENT);
+        Past {
+            grid: problem.grid,
+            across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
+            excesses: solved.outlook.excesses(accuracy),
+            bytes: solved.report.bytes,
+            seconds: seconds.0,
+            exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
+            elapsed: seconds.1,
+        }
+    }
+
+    /// Whether there are enough elements across the contact.
+    pub fn is_resolved(&self) -> bool {
+        self.across.0.min(self.across.1) >= ENOUGH_ACROSS
+    }
+
+    /// Whether there should be an estimate, and is none.
+    pub fn lacks_estimate(&self) -> bool {
+        self.grid.mx.max(self.grid.my) >= ENOUGH_ACROSS && self.worst().is_none()
+    }
+
+    /// The largest error over its target, if all are known.
+    pub fn worst(&self) -> Option<f64> {
+        self.after(0)
+    }
+
+    fn after(&self, doublings: u32) -> Option<f64> {
+        self.excesses.iter().try_fold(0.0, |worst: f64, one| one.map(|one| worst.max(one.after(doublings as i32))))
+    }
+}
+
+impl fmt::Display for Past {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, y) = self.across;
+        match self.worst() {
+            Some(worst) => {
+                write!(f, "the estimated error is {worst:.2} times the target, {x} x {y} elements across the contact")
+            }
+            None => write!(f, "no estimate, {x} x {y} elements across the contact"),
+        }
+    }
+}
 
 impl Accuracy {
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
         let (target, seconds) = (self.target, self.max_seconds);
         require(target > 0.0 && target.is_finite(), "target", target, "it must be positive and finite")?;
+        let more =
+            [("max_pressure_target", self.max_pressure_target), ("contact_area_target", self.contact_area_target)];
+        for (name, target) in more {
+            require(target >= 0.0 && target.is_finite(), name, target, "it must be positive, or 0 for none")?;
+        }
         require(
             seconds >= 0.0 && seconds.is_finite(),
             "max_seconds",
@@ -80,9 +159,40 @@ impl Accuracy {
         Ok(())
     }
 
+    /// What is asked for.
+    pub(super) fn targets(&self) -> Vec<(Quantity, f64)> {
+        let all = [
+            (Quantity::Force, self.target),
+            (Quantity::MaxPressure, self.max_pressure_target),
+            (Quantity::ContactArea, self.contact_area_target),
+        ];
+        all.into_iter().filter(|(_, target)| *target > 0.0).collect()
+    }
+
+    /// The tolerance that it takes, at most that of the caller.
+    pub(super) fn tolerance(&self, at_most: f64) -> f64 {
+        let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
+        self.targets().into_iter().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
+    }
+
     /// Whether the time is over.
     pub(super) fn is_late(&self, elapsed: f64) -> bool {
         self.max_seconds > 0.0 && elapsed > self.max_seconds
+    }
+
+    /// Whether and why it ends here.
+    pub(super) fn end(&self, past: &Past, without_contact: usize, without_estimate: usize) -> Option<(Stop, String)> {
+        let least = self.targets().into_iter().map(|(_, target)| target).fold(f64::INFINITY, f64::min);
+        if least < ROUND_OFF {
+            return Some((Stop::Stagnated, format!("target is {least:e}, below round-off")));
+        }
+        if past.is_resolved() && past.worst().is_some_and(|worst| worst <= 1.0) {
+            return Some((Stop::Converged, "the target is met".into()));
+        }
+        if without_contact == MOST_WITHOUT {
+            return Some((Stop::Converged, "there is no contact on three grids".into()));
+        }
+        (without_estimate == MOST_WITHOUT).then(|| (Stop::Stagnated, "no estimate of the error can be trusted".into()))
     }
 
     /// The next grid: the one that is predicted to meet the target, or as many doublings towards it as the limits allow.
@@ -97,12 +207,15 @@ impl Accuracy {
         }
     }
 
-    /// Doublings that the estimate asks for; one if there is none.
+    /// Doublings that the estimates ask for, and the elements across the contact; one if there are no estimates.
     fn doublings(&self, past: &Past) -> u32 {
-        let falls_by = past.falls_by.unwrap_or(FALLS_BY.0).clamp(FALLS_BY.1, FALLS_BY.0);
-        let wanted = past.relative.map_or(1.0, |relative| (relative / self.target).log(falls_by) - SLACK);
-        // `as` saturates, and takes a NaN for 0.
-        (wanted.ceil() as u32).clamp(1, MOST_DOUBLINGS)
+        let across = past.across.0.min(past.across.1);
+        if across == 0 || past.worst().is_none() {
+            return 1;
+        }
+        let enough = |k: u32| across.saturating_mul(1 << k) >= ENOUGH_ACROSS;
+        let met = |k: u32| enough(k) && past.after(k).is_none_or(|worst| worst <= 1.0);
+        (1..MOST_DOUBLINGS).find(|k| met(*k)).unwrap_or(MOST_DOUBLINGS)
     }
 
     /// The limit that so many doublings would break, if any.
@@ -119,12 +232,19 @@ impl Accuracy {
         if self.max_bytes > 0 && bytes > self.max_bytes as f64 {
             return in_the_way(format!("max_bytes, {} of the {bytes:.0} predicted,", self.max_bytes));
         }
-        let seconds = past.elapsed + past.seconds * ratio.powf(SECONDS_EXPONENT);
-        if self.is_late(seconds) {
+        let seconds = past.elapsed + past.seconds * ratio.powf(past.exponent);
+        let left = if doublings == 1 { WORTH_A_TRY } else { 1.0 };
+        if self.is_late(seconds / left) {
             return in_the_way(format!("max_seconds, {} of the {seconds:.3} predicted,", self.max_seconds));
         }
         None
     }
+}
+
+/// The residual that leaves of a target what it is.
+pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
+    let part = if quantity == Quantity::MaxPressure { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
+    part * target
 }
 
 #[cfg(test)]

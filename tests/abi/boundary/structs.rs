@@ -17,7 +17,7 @@ const SIZES: [(&str, i64); 11] = [
     ("options", 96),
     ("fields", 40),
     ("report", 264),
-    ("accuracy", 96),
+    ("accuracy", 112),
 ];
 
 /// The size that a struct of the call declares; the scene names it.

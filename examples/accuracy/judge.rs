@@ -1,0 +1,254 @@
+//! What the library says of its errors, of accuracies and of their prices, against what is true. Every run is counted.
+
+use std::collections::BTreeMap;
+
+use contact_normal::grid::Grid;
+use contact_normal::solver::{
+    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Price, Quantity, Report, Stop, SurfaceCallback,
+};
+
+use super::random::Random;
+use super::surfaces::Surface;
+
+/// Which surfaces; those of one seed.
+pub type Surfaces = fn(&mut Random) -> Vec<Surface>;
+
+/// Targets of the force or the approach.
+pub const TARGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
+/// Elements in a direction that a search for an accuracy begins with.
+const START: usize = 16;
+/// Doublings from there to the finest grid that is looked at.
+const DOUBLINGS: usize = 5;
+
+/// All surfaces of some seeds, by approach and by force.
+fn all(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> impl Iterator<Item = (Surface, bool)> {
+    let of_seed = move |seed| surfaces(&mut Random::new(seed));
+    seeds.flat_map(move |seed| of_seed(seed).into_iter().zip(of_seed(seed))).flat_map(|(a, b)| [(a, false), (b, true)])
+}
+
+/// Estimates of one quantity on one family of surfaces.
+#[derive(Debug, Default)]
+pub struct Estimates {
+    pub runs: usize,
+    /// Where the value is finite: no estimate.
+    pub unknown: usize,
+    /// Where it is infinite: an estimate.
+    pub trusted_infinite: usize,
+    /// Estimated over true error, sorted.
+    pub ratios: Vec<f64>,
+}
+
+impl Estimates {
+    fn count(&mut self, found: f64, exact: Option<f64>, error: f64) {
+        self.runs += 1;
+        match exact {
+            None => self.trusted_infinite += usize::from(error >= 0.0),
+            Some(_) if error < 0.0 => self.unknown += 1,
+            Some(exact) => self.ratios.push(error / (found - exact).abs().max(f64::MIN_POSITIVE)),
+        }
+    }
+
+    /// Of the runs the part whose estimate is below 0.3 of the true error.
+    pub fn low(&self) -> f64 {
+        self.ratios.iter().filter(|ratio| **ratio < 0.3).count() as f64 / self.runs as f64
+    }
+
+    /// Of the runs the part without an estimate.
+    pub fn unknown(&self) -> f64 {
+        self.unknown as f64 / self.runs as f64
+    }
+
+    /// The ratio that a part of them is below.
+    pub fn quantile(&self, part: f64) -> f64 {
+        let at = (part * (self.ratios.len() as f64 - 1.0)).round() as usize;
+        self.ratios.get(at).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// What is estimated.
+pub const QUANTITIES: [&str; 4] = ["force, approach", "largest pressure", "area", "corrected area"];
+
+/// Estimates by quantity and family.
+pub fn estimates(
+    surfaces: Surfaces,
+    seeds: std::ops::Range<u64>,
+    sizes: &[usize],
+) -> BTreeMap<(usize, &'static str), Estimates> {
+    let mut found: BTreeMap<_, Estimates> = BTreeMap::new();
+    let options = Options { tolerance: 1e-8, estimates: true, ..Options::default() };
+    for (surface, by_force) in all(surfaces, seeds) {
+        for &m in sizes {
+            let report = solved(&surface, m, by_force, &options);
+            let (value, error) = (report.measures, report.error);
+            let exact = Some(surface.exact(by_force));
+            let of_quantity = [
+                (value.found(surface.load(by_force)), exact, error.force),
+                (value.max_pressure, surface.max_pressure, error.max_pressure),
+                (value.contact_area, Some(surface.area), error.contact_area),
+                (value.corrected_area, Some(surface.area), error.corrected_area),
+            ];
+            // The wave's area is a part of its period, which is 1.
+            for (quantity, (value, exact, error)) in of_quantity.into_iter().enumerate() {
+                found.entry((quantity, surface.family)).or_default().count(value, exact, error);
+            }
+        }
+    }
+    found.values_mut().for_each(|estimates| estimates.ratios.sort_by(f64::total_cmp));
+    found
+}
+
+fn solved(surface: &Surface, m: usize, by_force: bool, options: &Options) -> Report {
+    let grid = surface.grid(m);
+    let h = surface.distance(&grid);
+    let (_, stop, report) = solve(&surface.scene(grid, &h, by_force), options).expect("a solvable scene");
+    assert_eq!(stop, Stop::Converged, "{} {m}", surface.family);
+    report
+}
+
+/// True relative errors of the force or the approach on START and its doublings.
+fn true_errors(surface: &Surface, by_force: bool) -> Vec<f64> {
+    let options = Options { tolerance: 1e-8, ..Options::default() };
+    let on = |k: usize| {
+        let found = solved(surface, START << k, by_force, &options).measures.found(surface.load(by_force));
+        (found / surface.exact(by_force) - 1.0).abs()
+    };
+    (0..=DOUBLINGS).map(on).collect()
+}
+
+/// Doublings to the coarsest grid from which on errors stay below a target; none if that is finer than studied.
+fn cheapest_safe(errors: &[f64], target: f64) -> Option<usize> {
+    (0..errors.len()).find(|k| errors[*k..].iter().all(|error| *error <= target))
+}
+
+/// One search for an accuracy.
+pub struct Search {
+    pub family: &'static str,
+    pub by_force: bool,
+    pub target: f64,
+    pub stop: Stop,
+    /// True error over the target.
+    pub miss: f64,
+    /// Columns and rows of contact.
+    pub across: (usize, usize),
+    pub elements: usize,
+    /// Those of the cheapest safe grid, on which 32 elements lie across the contact, if that was studied.
+    pub cheapest: Option<usize>,
+    pub reason: String,
+}
+
+/// Solves to accuracies, from 16 elements on.
+pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> {
+    let mut found = Vec::new();
+    for (surface, by_force) in all(surfaces, seeds) {
+        let errors = true_errors(&surface, by_force);
+        let (start, resolved) = (surface.grid(START), resolved(&surface, by_force));
+        for target in TARGETS {
+            let accuracy = Accuracy { max_elements: (surface.grid(1024).len() + 1) as u64, ..Accuracy::new(target) };
+            let mut write = |grid: &Grid, h: &mut [f64]| {
+                surface.write(grid, h);
+                false
+            };
+            let scene = surface.scene(start, &[], by_force);
+            let surface_callback: SurfaceCallback<'_> = &mut write;
+            let outcome = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(surface_callback), None)
+                .expect("a solvable scene");
+            let solver = outcome.solver.as_ref().expect("a result");
+            let value = outcome.report.measures.found(surface.load(by_force));
+            let across = spans(&solver.state().contact, solver.grid());
+            let cheapest = cheapest_safe(&errors, target).map(|k| k.max(resolved));
+            found.push(Search {
+                family: surface.family,
+                by_force,
+                target,
+                stop: outcome.stop,
+                miss: (value / surface.exact(by_force) - 1.0).abs() / target,
+                across,
+                elements: solver.grid().len(),
+                cheapest: cheapest.map(|k| start.len() << (2 * k)),
+                reason: outcome.reason,
+            });
+        }
+    }
+    found
+}
+
+/// Doublings from the start to the coarsest grid on which 32 elements lie across the contact.
+fn resolved(surface: &Surface, by_force: bool) -> usize {
+    let grid = surface.grid(START << DOUBLINGS);
+    let h = surface.distance(&grid);
+    let (solver, ..) = solve(&surface.scene(grid, &h, by_force), &Options::default()).expect("a solvable scene");
+    let (x, y) = spans(&solver.state().contact, &grid);
+    let least = if surface.period.is_some() { x } else { x.min(y) };
+    (0..=DOUBLINGS).find(|k| least >> (DOUBLINGS - k) >= 32).unwrap_or(DOUBLINGS)
+}
+
+/// Columns and rows that the contact area spans.
+fn spans(contact: &[bool], grid: &Grid) -> (usize, usize) {
+    let columns = (0..grid.mx).filter(|x| (0..grid.my).any(|y| contact[grid.index(*x, y)])).count();
+    (columns, contact.chunks(grid.mx).filter(|row| row.contains(&true)).count())
+}
+
+/// A price beside what was paid.
+pub struct Paid {
+    pub family: &'static str,
+    pub by_force: bool,
+    pub price: Price,
+    /// Doublings from the start to the grid of the price, and to the cheapest safe one, if that was studied.
+    pub doublings: (i32, Option<usize>),
+    /// Seconds on that grid with that tolerance; less than 0: not solved, there is no grid or it is too fine.
+    pub seconds: f64,
+    /// True relative error there.
+    pub error: f64,
+    /// Seconds of the price list.
+    pub list: f64,
+}
+
+/// Price lists, and what each row of at most `most` columns costs in truth.
+pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> Vec<Paid> {
+    let mut found = Vec::new();
+    for (surface, by_force) in all(surfaces, seeds) {
+        let errors = true_errors(&surface, by_force);
+        let start = surface.grid(START);
+        let mut write = |grid: &Grid, h: &mut [f64]| {
+            surface.write(grid, h);
+            false
+        };
+        let resolved = resolved(&surface, by_force);
+        let began = std::time::Instant::now();
+        let wanted = (Quantity::Force, &TARGETS[..]);
+        let scene = surface.scene(start, &[], by_force);
+        let list = cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(1.0), wanted, Some(&mut write))
+            .expect("a price list")
+            .1;
+        let list_seconds = began.elapsed().as_secs_f64();
+        for price in list {
+            let columns = price.grid.map_or(0, |grid| grid.mx);
+            let k = (columns.max(1) as f64 / start.mx as f64).log2().round() as i32;
+            let (mut seconds, mut error) = (-1.0, f64::NAN);
+            if price.obstacle.is_none() && columns <= most {
+                let options = Options { tolerance: price.tolerance, threads: 1, ..Options::default() };
+                let mut times = Vec::new();
+                // The least of five, as samples are timed: what a machine does that is not busy with something else.
+                for _ in 0..5 {
+                    let began = std::time::Instant::now();
+                    let report = solved(&surface, START << k, by_force, &options);
+                    times.push(began.elapsed().as_secs_f64());
+                    error = (report.measures.found(surface.load(by_force)) / surface.exact(by_force) - 1.0).abs();
+                }
+                times.sort_by(f64::total_cmp);
+                seconds = times[0];
+            }
+            let cheapest = cheapest_safe(&errors, price.target).map(|k| k.max(resolved));
+            found.push(Paid {
+                family: surface.family,
+                by_force,
+                price,
+                doublings: (k, cheapest),
+                seconds,
+                error,
+                list: list_seconds,
+            });
+        }
+    }
+    found
+}

@@ -1,0 +1,75 @@
+"""What accuracy costs, before it is paid for: the price list of a sphere on a flat, each row solved and compared with Hertz.
+
+    python3 price_list.py [picture.png]
+
+For each error of the force that is wanted: whether the grid and the tolerance of the price list give it. The picture, if named, has
+error against seconds: predicted, and true; the accuracy that is bought (0.1 %) is marked.
+"""
+
+import sys
+import time
+
+import numpy as np
+
+import contact_normal
+
+APPROACH, CURVATURE, SIDE = 0.02, 0.005, 6.0  # mm, 1/mm, mm
+STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
+TARGETS = (1e-2, 1e-3, 1e-4)
+BOUGHT = 1e-3
+
+
+def undeformed_distance(x, y):
+    """At the centres (x, y) of elements."""
+    return CURVATURE * (x**2 + y**2)
+
+
+def pay(price):
+    """Seconds and force on the grid, and to the tolerance, of a row of the price list."""
+    my, mx = price.shape
+    x, y = ((np.arange(m) + 0.5) * SIDE / m - 0.5 * SIDE for m in (mx, my))
+    began = time.perf_counter()
+    h = undeformed_distance(x[None, :], y[:, None])
+    result = contact_normal.solve(h, SIDE / mx, SIDE / my, approach=APPROACH, tolerance=price.tolerance, **STEEL)
+    return time.perf_counter() - began, result.force
+
+
+def draw(prices, paid, path):
+    """Error against seconds."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(6.4, 4.2), layout="constrained")
+    axes.loglog([price.seconds for price in prices], [price.error for price in prices], "o-", label="predicted")
+    axes.loglog(*zip(*paid), "s--", label="true")
+    for price in prices:
+        label = f"{price.shape[1]} x {price.shape[0]}"
+        axes.annotate(label, (price.seconds, price.error), fontsize=8, xytext=(5, 5), textcoords="offset points")
+        if price.target == BOUGHT:
+            axes.plot(price.seconds, price.error, "o", ms=16, mfc="none", color="tab:red", label="bought")
+    axes.set(xlabel="seconds", ylabel="relative error of the force", title="What accuracy costs: sphere on flat")
+    axes.legend()
+    figure.savefig(path, dpi=120)
+
+
+def main(picture=None):
+    """The whole example."""
+    exact = contact_normal.hertz(CURVATURE, CURVATURE, approach=APPROACH, **STEEL)
+    prices = contact_normal.cost_of_accuracy(
+        undeformed_distance, SIDE / 16, SIDE / 16, shape=(16, 16), targets=TARGETS, approach=APPROACH, **STEEL
+    )
+    paid = []
+    print(f"{'target':>8}{'to be had':>12}{'met in fact':>14}")
+    for price in prices:
+        seconds, force = pay(price)
+        error = abs(force / exact.force - 1.0)
+        paid.append((seconds, error))
+        print(f"{price.target:8.0e}{price.obstacle or 'yes':>12}{'yes' if error <= price.target else 'no':>14}")
+    if picture:
+        draw(prices, paid, picture)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,141 @@
+//! How much the undeformed distance and the pressures bend within an element: what elements cannot show.
+
+use super::{Problem, State};
+
+/// Rows of the contact area that are looked at, at least: the means over more of them are the same.
+const ROWS: usize = 32;
+
+/// Second differences of h and p over the contact area.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Curvature {
+    /// `(dx^2 h_xx + dy^2 h_yy)/24`, its mean over the contact area with the weights of a flat punch's pressures. With a layer c,
+    /// of h + c p.
+    pub bend: f64,
+    /// The approach above the lowest h.
+    pub depth: f64,
+    /// rms of the second differences of p, over that of p.
+    pub pressure: f64,
+}
+
+/// Sums over some elements.
+#[derive(Default)]
+struct Sums {
+    bend: f64,
+    count: f64,
+    rim_bend: f64,
+    rim_count: f64,
+    differences: f64,
+    squares: f64,
+    lowest: f64,
+}
+
+impl Curvature {
+    /// Of a state with `rows` rows that hold contact.
+    pub fn of(problem: &Problem, state: &State, rows: usize) -> Curvature {
+        let stride = (rows / ROWS).max(1);
+        let (mx, my) = (state.grid.mx, state.grid.my);
+        let (repeats, layered) = (problem.coefficients.repeats(&state.grid), problem.coefficients.has_layer());
+        let mut sums = Sums { lowest: f64::INFINITY, ..Sums::default() };
+        let touched = state.contact.chunks_exact(mx).enumerate().filter(|(_, row)| row.contains(&true));
+        for (iy, row) in touched.skip(stride / 2).step_by(stride) {
+            let first = row.iter().position(|&inside| inside).unwrap_or(0);
+            let end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
+            let plain = !layered && iy > 0 && iy + 1 < my;
+            for ix in (first..end).filter(|&ix| row[ix]) {
+                if plain && ix > 0 && ix + 1 < mx {
+                    sums.add_inner(state, iy * mx + ix);
+                } else {
+                    sums.add(problem, state, repeats, ix, iy);
+                }
+            }
+        }
+        sums.curvature(state.approach)
+    }
+
+    /// The second differences of the pressures at their peak, over it: small where elements resolve the peak. None without pressures.
+    pub fn of_peak(problem: &Problem, state: &State, peak: f64) -> Option<f64> {
+        let at = state.p.iter().position(|p| *p == peak && peak > 0.0)?;
+        let (mx, my) = (state.grid.mx, state.grid.my);
+        let (x, y) = problem.coefficients.repeats(&state.grid);
+        let (ix, iy) = (at % mx, at / mx);
+        let beside = |neighbours: [Option<usize>; 2]| {
+            2.0 * peak - neighbours.iter().map(|i| i.map_or(0.0, |i| state.p[i])).sum::<f64>()
+        };
+        let along = if mx > 1 { beside(neighbours(ix, mx, x).map(|n| n.map(|ix| iy * mx + ix))) } else { 0.0 };
+        let across = if my > 1 { beside(neighbours(iy, my, y).map(|n| n.map(|iy| iy * mx + ix))) } else { 0.0 };
+        Some((along + across) / peak)
+    }
+}
+
+impl Sums {
+    /// An element with four neighbours, without a layer.
+    #[inline]
+    fn add_inner(&mut self, state: &State, at: usize) {
+        let State { h, p, contact, grid, .. } = state;
+        let (left, right, below, above) = (at - 1, at + 1, at - grid.mx, at + grid.mx);
+        let second = |values: &[f64], a: usize, b: usize| values[a] + values[b] - 2.0 * values[at];
+        let finite = |difference: f64| if difference.is_finite() { difference / 24.0 } else { 0.0 };
+        let bend = finite(second(h, left, right)) + finite(second(h, below, above));
+        let rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
+        let difference = second(p, left, right) + second(p, below, above);
+        self.count_in(state, at, (bend, difference, rim));
+    }
+
+    /// Any element.
+    fn add(&mut self, problem: &Problem, state: &State, (x, y): (bool, bool), ix: usize, iy: usize) {
+        let (mx, my) = (state.grid.mx, state.grid.my);
+        let at = iy * mx + ix;
+        let along = neighbours(ix, mx, x).map(|n| n.map(|ix| iy * mx + ix));
+        let across = neighbours(iy, my, y).map(|n| n.map(|iy| iy * mx + ix));
+        let yields = |i: usize| state.h[i] + problem.layer(i) * state.p[i];
+        let (mut bend, mut difference, mut rim) = (0.0, 0.0, false);
+        for pair in [along, across] {
+            if let [Some(a), Some(b)] = pair {
+                let of_h = yields(a) + yields(b) - 2.0 * yields(at);
+                bend += if of_h.is_finite() { of_h / 24.0 } else { 0.0 };
+                rim |= !state.contact[a] || !state.contact[b];
+            }
+            if pair != [None, None] {
+                let p = |i: Option<usize>| i.map_or(0.0, |i| state.p[i]);
+                difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[at];
+            }
+        }
+        self.count_in(state, at, (bend, difference, rim));
+    }
+
+    #[inline]
+    fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, bool)) {
+        self.bend += bend;
+        self.count += 1.0;
+        if rim {
+            self.rim_bend += bend;
+            self.rim_count += 1.0;
+        }
+        self.differences += difference * difference;
+        self.squares += state.p[at] * state.p[at];
+        self.lowest = self.lowest.min(state.h[at]);
+    }
+
+    /// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
+    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10.
+    fn curvature(&self, approach: f64) -> Curvature {
+        let mean = self.bend / self.count.max(1.0);
+        let rim = if self.rim_count > 0.0 { self.rim_bend / self.rim_count } else { mean };
+        Curvature {
+            bend: (2.0 * mean + rim) / 3.0,
+            depth: if self.count > 0.0 { approach - self.lowest } else { 0.0 },
+            pressure: if self.squares > 0.0 { (self.differences / self.squares).sqrt() } else { 0.0 },
+        }
+    }
+}
+
+/// The elements before and behind element `i` of `m`; none beyond the end of what does not repeat itself.
+fn neighbours(i: usize, m: usize, repeats: bool) -> [Option<usize>; 2] {
+    match (i, repeats && m > 1) {
+        (_, _) if m == 1 => [None, None],
+        (0, true) => [Some(m - 1), Some(1)],
+        (0, false) => [None, Some(1)],
+        (_, true) => [Some(i - 1), Some((i + 1) % m)],
+        (_, false) => [Some(i - 1), Some(i + 1).filter(|next| *next < m)],
+    }
+}

@@ -1,0 +1,157 @@
+//! `contact_normal_cost_of_accuracy`: what accuracies cost, before they are paid for.
+
+use super::accuracy::{self, contact_normal_accuracy};
+use super::arguments::{count, required, Regions};
+use super::guard::guard;
+use super::options::{self, contact_normal_options};
+use super::scene::{contact_normal_scene, Named};
+use super::solve::Outcome;
+use super::status::{contact_normal_status, Refusal};
+use super::structs::{self, Versioned};
+use crate::solver::{cost_of_accuracy, Obstacle, Price, Quantity, SurfaceCallback};
+
+/// `quantity`: the force, or the approach where the force is prescribed.
+pub const CONTACT_NORMAL_QUANTITY_FORCE: i32 = 0;
+/// `quantity`: the largest pressure.
+pub const CONTACT_NORMAL_QUANTITY_MAX_PRESSURE: i32 = 1;
+/// `quantity`: the corrected contact area.
+pub const CONTACT_NORMAL_QUANTITY_CONTACT_AREA: i32 = 2;
+
+/// `obstacle`: none; the accuracy is to be had.
+pub const CONTACT_NORMAL_OBSTACLE_NONE: i32 = 0;
+/// `obstacle`: no grid is known to do: the largest pressure is singular or not resolved, or contact is on single elements.
+pub const CONTACT_NORMAL_OBSTACLE_SINGULAR: i32 = 1;
+/// `obstacle`: the target is below round-off.
+pub const CONTACT_NORMAL_OBSTACLE_ROUND_OFF: i32 = 2;
+/// `obstacle`: it takes more elements than `accuracy->max_elements`.
+pub const CONTACT_NORMAL_OBSTACLE_ELEMENTS: i32 = 3;
+/// `obstacle`: it takes more memory than `accuracy->max_bytes`.
+pub const CONTACT_NORMAL_OBSTACLE_MEMORY: i32 = 4;
+/// `obstacle`: it takes longer than `accuracy->max_seconds`.
+pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
+
+/// One row of the price list: what one accuracy costs. All of it is predicted.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_price {
+    /// The relative error that is wanted.
+    pub target: f64,
+    /// Relative error that the grid and the tolerance leave; < 0: not known.
+    pub error: f64,
+    /// The tolerance to ask for; a smaller one would be wasted.
+    pub tolerance: f64,
+    /// Seconds of set-up and solve with `options->threads`; < 0: not known.
+    pub seconds: f64,
+    /// Seconds with one thread; < 0: not known.
+    pub seconds_one_thread: f64,
+    /// Bytes held by the solver; 0: not known.
+    pub bytes: i64,
+    /// Elements in x of the coarsest grid that does; 0: not known.
+    pub mx: i32,
+    /// Elements in y.
+    pub my: i32,
+    /// Element size in x.
+    pub dx: f64,
+    /// Element size in y.
+    pub dy: f64,
+    /// What keeps the accuracy from being had.
+    pub obstacle: i32,
+    /// 0.
+    pub reserved: i32,
+}
+
+impl From<&Price> for contact_normal_price {
+    fn from(price: &Price) -> Self {
+        // Grids beyond what an int holds are none.
+        let count = |n: usize| i32::try_from(n).unwrap_or(0);
+        contact_normal_price {
+            target: price.target,
+            error: price.error,
+            tolerance: price.tolerance,
+            seconds: price.seconds,
+            seconds_one_thread: price.seconds_one_thread,
+            bytes: i64::try_from(price.bytes).unwrap_or(i64::MAX),
+            mx: price.grid.map_or(0, |grid| count(grid.mx)),
+            my: price.grid.map_or(0, |grid| count(grid.my)),
+            dx: price.grid.map_or(0.0, |grid| grid.dx),
+            dy: price.grid.map_or(0.0, |grid| grid.dy),
+            obstacle: match price.obstacle {
+                None => CONTACT_NORMAL_OBSTACLE_NONE,
+                Some(Obstacle::Singular) => CONTACT_NORMAL_OBSTACLE_SINGULAR,
+                Some(Obstacle::RoundOff) => CONTACT_NORMAL_OBSTACLE_ROUND_OFF,
+                Some(Obstacle::Elements) => CONTACT_NORMAL_OBSTACLE_ELEMENTS,
+                Some(Obstacle::Memory) => CONTACT_NORMAL_OBSTACLE_MEMORY,
+                Some(Obstacle::Time) => CONTACT_NORMAL_OBSTACLE_TIME,
+            },
+            reserved: 0,
+        }
+    }
+}
+
+/// Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`. The scene is solved on small
+/// grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
+/// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
+/// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
+/// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
+/// what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
+    scene: *const contact_normal_scene,
+    options: *const contact_normal_options,
+    accuracy: *const contact_normal_accuracy,
+    quantity: i32,
+    n: i32,
+    targets: *const f64,
+    rows: *mut contact_normal_price,
+) -> contact_normal_status {
+    guard(|| {
+        let n = count("n", n)?;
+        // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
+        let (given, translated, named, targets) = unsafe {
+            (
+                structs::read_optional(accuracy, "accuracy")?,
+                options::translate(options)?,
+                Named::read(scene)?,
+                required("targets", targets, n)?,
+            )
+        };
+        if rows.is_null() {
+            return Err(Refusal::null("rows"));
+        }
+        let mut regions = Regions::default();
+        named.add_to(&mut regions, scene)?;
+        translated.add_to(&mut regions, options)?;
+        if let Some(given) = &given {
+            regions.input_struct(accuracy, given)?;
+        }
+        regions.input("targets", targets.as_ptr(), n)?;
+        regions.output("rows", rows, n)?;
+        regions.check()?;
+        let given = given.unwrap_or_else(contact_normal_accuracy::defaults);
+        // SAFETY: as above.
+        let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
+        // SAFETY: as above.
+        let scene = unsafe { named.with_distance(&h)? };
+        let quantity = match quantity {
+            CONTACT_NORMAL_QUANTITY_FORCE => Quantity::Force,
+            CONTACT_NORMAL_QUANTITY_MAX_PRESSURE => Quantity::MaxPressure,
+            CONTACT_NORMAL_QUANTITY_CONTACT_AREA => Quantity::ContactArea,
+            other => {
+                return Err(Refusal::invalid(format!(
+                    "quantity is {other}; it must be FORCE 0, MAX_PRESSURE 1 or CONTACT_AREA 2"
+                )))
+            }
+        };
+        let asked = accuracy::translate(&given)?;
+        let mut write = accuracy::surface(&given);
+        let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
+        // A copy: callbacks may write into the caller's.
+        let targets = targets.to_vec();
+        let (stop, prices) = cost_of_accuracy(&scene, &translated.options, &asked, (quantity, &targets), surface)?;
+        for (i, price) in prices.iter().enumerate() {
+            // SAFETY: the caller has n rows.
+            unsafe { rows.add(i).write(price.into()) };
+        }
+        Outcome { status: stop.into(), message: "the surface callback cancelled".into() }.conclude()
+    })
+}
