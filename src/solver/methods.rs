@@ -14,7 +14,7 @@ use crate::methods::multigrid::CycleShape;
 use crate::methods::norm::Norm;
 use crate::methods::projected_cg::ProjectedCg;
 use crate::methods::{Start, Step};
-use crate::progress::Stop;
+use crate::progress::{Stop, UPDATE_RESIDUAL};
 
 /// A guess, or a stalled iterate, whose violation is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
@@ -78,7 +78,9 @@ impl Methods {
                 self.start(stage, task, from)?;
                 if error_ratio > 0.0 {
                     let predicted = estimates::predict(task.problem, task.state);
-                    task.goal.tolerance = task.goal.tolerance.max(error_ratio * predicted);
+                    // An answer whose residual is larger than that is none, however coarse the grid.
+                    let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);
+                    task.goal.tolerance = task.goal.tolerance.max(enough);
                 }
             }
             stop = self.run(stage, task)?;
