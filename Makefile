@@ -104,7 +104,7 @@ analysis: tools
 	$(CARGO) run --release --locked -p local_fourier_analysis target/local_fourier_analysis
 	"$(find_python)" local_fourier_analysis/picture.py target/local_fourier_analysis docs/local_fourier_analysis.png
 
-# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/accuracy.md on the screen, and the
+# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen, and the
 # picture. ACCURACY="--quick", or some of estimates, searches, prices, study.
 ACCURACY ?=
 accuracy: tools

@@ -1,4 +1,4 @@
-"""Draws what `cargo run --release --example accuracy` printed, and prints the tables of docs/accuracy.md and docs/notes/accuracy.md.
+"""Draws what `cargo run --release --example accuracy` printed, and prints the tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md.
 
     accuracy.py accuracy.csv folder
 """

@@ -1,4 +1,4 @@
-//! What accuracy costs, and what the library says of it, against what is true: the tables of docs/accuracy.md and docs/notes/accuracy.md.
+//! What accuracy costs, and what the library says of it, against what is true: the tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md.
 //!
 //! `accuracy [estimates] [searches] [prices] [study] [--quick]`: those tables, or all. The study is written to build/accuracy.csv, from
 //! which benches/accuracy.py draws. Every run counts; seeds are fixed.
