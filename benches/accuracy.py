@@ -65,7 +65,8 @@ def tables(rows):
         cells = []
         for target, *_ in TARGETS:
             r = price(rows, case, target)
-            cells.append(f"{r['mx']}: {r['seconds'] * 1e3:.2g} ms" if r else "finer than studied")
+            milliseconds = f"{1e3 * r['seconds']:.2g}" if r else ""
+            cells.append(f"{r['mx']}: {float(milliseconds):g} ms" if r else "finer than studied")
         print(f"| {case} | " + " | ".join(cells) + " |")
     print()
     print("| tolerance | " + " | ".join(LABELS.values()) + " |")
