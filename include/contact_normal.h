@@ -644,7 +644,7 @@ typedef struct contact_normal_options {
    */
   double error_ratio;
   /*
-   Cycles (or iterations) on the finest grid at most; default 1000.
+   Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000.
    */
   int32_t max_cycles;
   /*

@@ -15,6 +15,7 @@
 
 #include <contact_normal.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -134,6 +135,15 @@ public:
         layer_->compliances = per_element("layer", compliances);
         return *this;
     }
+    /// A coating on body 0 or 1 of the scene: an elastic layer of this thickness and material, bonded to the body.
+    scene &coating(std::size_t body, double thickness, const contact_normal::body &material)
+    {
+        std::optional<contact_normal_coating> &coating = coating_.at(body);
+        contact_normal_coating_init(&coating.emplace());
+        coating->thickness = thickness, coating->shear_modulus = material.shear_modulus;
+        coating->poisson_ratio = material.poisson_ratio;
+        return *this;
+    }
     /// No pressure is larger: one limit, or one per element.
     scene &pressure_limit(double limit)
     {
@@ -173,6 +183,7 @@ public:
         named.period = period_ ? &*period_ : nullptr;
         named.patches = patches_ ? &*patches_ : nullptr;
         named.row_tables = row_tables_ ? &*row_tables_ : nullptr;
+        for (std::size_t body : {0u, 1u}) named.coating[body] = coating_[body] ? &*coating_[body] : nullptr;
         return named;
     }
     /// Elements of the grid.
@@ -195,6 +206,7 @@ private:
     std::optional<contact_normal_period> period_;
     std::optional<contact_normal_patches> patches_;
     std::optional<contact_normal_row_tables> row_tables_;
+    std::array<std::optional<contact_normal_coating>, 2> coating_;
 };
 
 /// How a scene is solved: `contact_normal_options`, filled with the defaults.

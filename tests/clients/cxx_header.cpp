@@ -79,6 +79,11 @@ static void scenes()
     const double many = cn::solve(cn::scene(scene).layer(compliances)).report.approach;
     // The tolerance is 1e-6, of the residual; without the layer the approach is 40 percent less.
     expect(std::abs(many / one - 1.0) < 1e-5 && one > 1.1 * found.report.approach, "a layer of one number or of many");
+    // A coating of the body's own material changes nothing, a soft one does; a copy keeps it.
+    const cn::result same = cn::solve(cn::scene(scene).coating(0, 0.1, STEEL));
+    const cn::result soft = cn::solve(cn::scene(scene).coating(1, 0.1, {8200.0, 0.28}));
+    expect(std::abs(same.report.approach / found.report.approach - 1.0) < 1e-4, "a coating of the same material");
+    expect(soft.report.approach > 1.05 * found.report.approach, "a soft coating");
     const std::vector<std::int32_t> patch(h.size(), 0);
     const std::array<double, 1> factors{1.0};
     expect(std::abs(cn::solve(cn::scene(scene).patches(1, patch, factors)).report.approach / found.report.approach - 1.0) < 1e-5,
