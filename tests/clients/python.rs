@@ -168,7 +168,7 @@ fn the_effects_print_what_is_expected_and_draw() {
     let printed = run(python_in(&folder).arg(&example).arg("."));
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("effects.expected");
     assert_eq!(printed, expected);
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating"] {
         let picture = std::fs::metadata(folder.join(format!("effects_{name}.png"))).expect("a picture");
         assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
     }
