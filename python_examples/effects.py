@@ -1,4 +1,4 @@
-"""The effects layer, pressure_limit, period, patches and row_tables, one after the other: `python3 effects.py [pictures]`, the folder of pictures
+"""The effects layer, pressure_limit, period, patches, row_tables and coating, one after the other: `python3 effects.py [pictures]`, the folder of pictures
 (effects_layer.png, ...), those of docs/effects.md."""
 
 import sys
@@ -75,7 +75,17 @@ def row_tables():
         yield f"normals turn by {curvature * y[-1]:.1f} rad to either side" if curvature else "a plane", y, found.pressure[:, M // 2]
 
 
-def draw(folder, layered, limited, periodic, patched, tabled):
+def coatings():
+    h, x = ball(10.0, 0.012)  # a steel ball on a coated steel plate
+    plain = dict(force=100.0, shear_modulus=80000.0, poisson_ratio=0.3)
+    print("G of coating  thickness  approach  max pressure  contact area")
+    for modulus, thickness in ((80000.0, 0.0), (8000.0, 0.05), (8000.0, 0.2), (400000.0, 0.05), (400000.0, 0.2)):
+        found = cn.solve(h, 0.012, 0.012, coating=(None, (thickness, modulus, 0.3)), **plain)
+        print(f"{modulus:12.0f} {thickness:10.2f} {found.approach:9.6f} {found.report['max_pressure']:13.1f} {found.report['contact_area']:13.4f}")
+        yield f"{modulus / 80000:g} G, {thickness:g} mm" if thickness else "no coating", x, found.pressure[M // 2]
+
+
+def draw(folder, layered, limited, periodic, patched, tabled, coated):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -87,6 +97,13 @@ def draw(folder, layered, limited, periodic, patched, tabled):
     axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a coated plate, 1000 N")
     axes.legend()
     figure.savefig(f"{folder}/effects_layer.png", dpi=100, bbox_inches="tight")
+
+    figure, axes = plt.subplots(figsize=(7, 4))
+    for name, x, p in coated:
+        axes.plot(x, p, label=name, color="black" if name == "no coating" else None)
+    axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a plate with an elastic coating, 100 N")
+    axes.legend(title="shear modulus, thickness", fontsize="small")
+    figure.savefig(f"{folder}/effects_coating.png", dpi=100, bbox_inches="tight")
 
     figure, axes = plt.subplots(figsize=(7, 4))
     for name, x, p in patched:
@@ -124,6 +141,6 @@ def draw(folder, layered, limited, periodic, patched, tabled):
 
 
 if __name__ == "__main__":
-    found = [list(effect()) for effect in (layers, pressure_limits, periods, patches, row_tables)]
+    found = [list(effect()) for effect in (layers, pressure_limits, periods, patches, row_tables, coatings)]
     if len(sys.argv) > 1:
         draw(sys.argv[1], *found)

@@ -1,27 +1,13 @@
 //! 128 x 128 elements, 32 depths, one thread: pressures alone, and with tractions.
 
-use std::time::Instant;
-
 use contact_normal::grid::Grid;
 use contact_normal::stress::{subsurface_stress, Body, Loads, Wanted};
 use contact_normal::threads::Threads;
 
+use crate::{medians, RUNS};
+
 const M: usize = 128;
 const DEPTHS: usize = 32;
-const RUNS: usize = 9;
-
-/// The median of the times, in seconds.
-fn median(mut run: impl FnMut()) -> f64 {
-    let mut seconds: Vec<f64> = (0..RUNS)
-        .map(|_| {
-            let began = Instant::now();
-            run();
-            began.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    seconds[RUNS / 2]
-}
 
 /// Prints the table.
 pub fn report() {
@@ -41,9 +27,9 @@ pub fn report() {
         for (wanted, what) in
             [(tensor, "six components"), (mises, "von Mises"), (principal, "principal stresses"), (one, "zz")]
         {
-            let seconds = median(|| {
+            let [seconds] = medians([&mut || {
                 subsurface_stress(&body, &loads, &depths, &wanted, &Threads::One, None, |_, _| {}).unwrap();
-            });
+            }]);
             println!("| {of} | {what} | {seconds:.3} | {:.2} |", 1e3 * seconds / DEPTHS as f64);
         }
     }

@@ -113,7 +113,7 @@ def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of:
     filled = axes.contourf(places, depths, shown[order], 24, cmap="magma")
     row, column = np.unravel_index(np.argmax(np.abs(shown[order])), shown.shape)
     axes.plot(places[column], depths[row], "+", color="white", markersize=12, markeredgewidth=2)
-    axes.figure.colorbar(filled, ax=axes, label=of.replace("_", " "))
+    axes.figure.colorbar(filled, ax=axes, label={"von_mises": "von Mises"}.get(of, of.replace("_", " ")))
     axes.set(xlabel=across, ylabel="depth z", aspect="equal")
     axes.set_title(f"{name} = {where:.4g}: largest {shown[order][row, column]:.4g} at {across} = {places[column]:.4g}, z = {depths[row]:.4g}",
                    fontsize=10)

@@ -168,8 +168,22 @@ fn the_effects_print_what_is_expected_and_draw() {
     let printed = run(python_in(&folder).arg(&example).arg("."));
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("effects.expected");
     assert_eq!(printed, expected);
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating"] {
         let picture = std::fs::metadata(folder.join(format!("effects_{name}.png"))).expect("a picture");
+        assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
+    }
+}
+
+#[test]
+fn stresses_below_the_surface_print_what_is_expected_and_draw() {
+    let folder = scratch("python_subsurface");
+    let example = root().join("python_examples/subsurface.py");
+    let case = root().join("data/wheel_rail/y4_82kN.txt");
+    let printed = run(python_in(&folder).arg(&example).arg(case).arg("."));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("subsurface.expected");
+    assert_eq!(printed, expected);
+    for name in ["depth", "sliding", "wheel_rail"] {
+        let picture = std::fs::metadata(folder.join(format!("stress_{name}.png"))).expect("a picture");
         assert!(picture.len() > 10_000, "{name}: {} bytes", picture.len());
     }
 }

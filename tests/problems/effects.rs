@@ -1,18 +1,27 @@
 //! Pairs of effects: solved, and then the conditions hold, or refused by names; none silently ignored.
 
+use std::f64::consts::PI;
+
 use contact_normal::contact::State;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Kernel, Periodic, RowTables, Table};
-use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::influence::{radial, Coated, CoatedBody, HalfSpace, Kernel, Periodic, RowTables, Table};
+use contact_normal::scene::{Bodies, Coating, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
-const EFFECTS: [&str; 7] =
-    ["influence", "layer", "pressure_limit", "period", "patches", "row_tables", "excluded elements"];
+const EFFECTS: [&str; 8] =
+    ["influence", "layer", "pressure_limit", "period", "patches", "row_tables", "excluded elements", "coating"];
 
 /// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
-const REFUSED: [(&str, &str); 4] =
-    [("influence", "period"), ("period", "patches"), ("influence", "row_tables"), ("period", "row_tables")];
+const REFUSED: [(&str, &str); 7] = [
+    ("influence", "period"),
+    ("period", "patches"),
+    ("influence", "row_tables"),
+    ("period", "row_tables"),
+    ("influence", "coating"),
+    ("period", "coating"),
+    ("row_tables", "coating"),
+];
 
 /// The contact conditions, by a direct sum over the coefficients.
 fn assert_conditions(
@@ -67,6 +76,10 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
         })
         .collect();
     let row_tables = RowTables::new(20, 18, &row_tables, &grid).unwrap();
+    // A soft coating of two elements: its coefficients are tested by themselves.
+    let below = CoatedBody { compliance: 0.7 / (2.0 * PI), layer: None };
+    let above = CoatedBody { compliance: 0.6 / (2.0 * PI * 0.3), layer: Some((0.2, radial(0.3, [0.4, 0.3]))) };
+    let coated = Coated::new([above, below], &grid).unwrap();
     let with = |names: [&str; 2]| {
         let has = |name: &str| names.contains(&name);
         Scene {
@@ -75,6 +88,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
             patches: has("patches").then_some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.2, 0.2, 1.0] }),
             row_tables: has("row_tables").then(|| row_tables.clone()),
+            coating: has("coating").then_some(Coating::of_body_1(0.2, 0.3, 0.4)),
             period: has("period").then_some(Period { x: true, y: false }),
             ..Scene::new(
                 grid,
@@ -90,6 +104,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
             (Some(_), ..) => table_at(ix - jx, iy - jy),
             (_, Some(_), _) => half_space.at(ix - jx, iy - jy) * answers(iy) * answers(jy),
             (.., Some(_)) => periodic.at(ix - jx, iy - jy),
+            _ if scene.coating.is_some() => coated.at(ix - jx, iy - jy),
             _ => half_space.at(ix - jx, iy - jy),
         };
         let factor = if scene.patches.is_some() && patch[i] != patch[j] { 0.2 } else { 1.0 };

@@ -117,11 +117,6 @@ impl Coated {
         }
         Ok(Coated { bodies, half_space, mx: grid.mx, table: Arc::new(table) })
     }
-
-    /// The displacement of a wave of wave number k > 0 by a pressure wave of amplitude 1.
-    pub fn compliance(&self, k: f64) -> f64 {
-        self.bodies.iter().map(|body| body.of_wave(k)).sum()
-    }
 }
 
 /// The first offset in a row whose distance is not below this, or the row's end.
@@ -135,6 +130,11 @@ fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
 }
 
 impl CoatedBody {
+    /// c B(k t), to three digits.
+    fn roughly(&self, k: f64) -> f64 {
+        self.layer.as_ref().map_or(self.compliance, |(t, radial)| self.compliance * radial.roughly(k * t))
+    }
+
     /// c b, near or far.
     fn base(&self, of_substrate: bool) -> f64 {
         match &self.layer {
@@ -166,19 +166,30 @@ impl Kernel for Coated {
     }
 
     fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        let (x, y, n) = (kx as usize, ky.unsigned_abs() as usize, out.len());
+        if kx >= 0 && x + n <= self.mx && y < self.table.len() / self.mx {
+            return out.copy_from_slice(&self.table[y * self.mx + x..][..n]);
+        }
         out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
     }
 
+    // The aliases that matter: k and k - 2 pi/d in each direction. Of all of them sin(k d/2) is the same, but for its sign.
     fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
-        let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
-        let aliases = |k: f64, d: f64| [-1.0, 0.0, 1.0].map(|n| k + 2.0 * PI * n / d);
+        let aliases = |k: f64, d: f64| {
+            let half = 0.5 * k * d;
+            let sine = half.sin();
+            let mean = if half == 0.0 { 1.0 } else { sine / half };
+            [(k, mean), (k - 2.0 * PI / d, -sine / (half - PI))]
+        };
         let mut sum = 0.0;
-        for kx in aliases(kx, grid.dx) {
-            for ky in aliases(ky, grid.dy) {
-                sum += self.compliance(kx.hypot(ky)) * sinc(0.5 * kx * grid.dx) * sinc(0.5 * ky * grid.dy);
+        let in_y = aliases(ky, grid.dy);
+        for (kx, mean_x) in aliases(kx, grid.dx) {
+            for (ky, mean_y) in in_y {
+                let k = (kx * kx + ky * ky).sqrt();
+                sum += mean_x * mean_y / k * self.bodies.iter().map(|body| body.roughly(k)).sum::<f64>();
             }
         }
-        Some(sum)
+        Some(2.0 * PI * sum)
     }
 
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {

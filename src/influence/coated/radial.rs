@@ -52,7 +52,13 @@ pub struct Radial {
     panels: Vec<([f64; P], [f64; P + 1])>,
     /// Where they end.
     far: f64,
+    /// B at [`FIRST`] and on, eight values an octave.
+    roughly: Vec<f64>,
 }
+
+/// Where the rough values of B begin and how many octaves they take.
+const FIRST: f64 = 1.0 / (1u64 << 32) as f64;
+const OCTAVES: usize = 38;
 
 impl Radial {
     /// The table of a layer: takes milliseconds.
@@ -85,14 +91,40 @@ impl Radial {
             }
             low *= 2.0;
         }
-        Radial { transfer, taylor, panels, far: low }
+        let roughly =
+            (0..=8 * OCTAVES).map(|k| transfer.at(FIRST * (1u64 << (k / 8)) as f64 * (1.0 + (k % 8) as f64 / 8.0)));
+        Radial { transfer, taylor, panels, far: low, roughly: roughly.collect() }
+    }
+
+    /// B(s) to three digits, for preconditioners: linear between places an eighth of an octave apart.
+    pub fn roughly(&self, s: f64) -> f64 {
+        let eighths = (s / FIRST).to_bits() >> 49;
+        let first = 1023 << 3;
+        if eighths < first {
+            return self.transfer.substrate;
+        }
+        let k = (eighths - first) as usize;
+        let Some([low, high]) = self.roughly.get(k..k + 2) else { return 1.0 };
+        let place = f64::from_bits(eighths << 49) * FIRST;
+        let width = f64::from_bits((eighths + 1) << 49) * FIRST - place;
+        low + (high - low) * (s - place) / width
     }
 
     /// F at a distance rho in thicknesses; for the substrate as base rho > 0.
     pub fn f(&self, rho: f64, base: Base) -> f64 {
-        let mut value = [0.0];
-        self.fill_f((rho, 0.0, 0.0), base, &mut value);
-        value[0]
+        let w = 4.0 + rho * rho;
+        let (value, of) = if w < self.far {
+            let (panel, (low, high)) = panel_of(w);
+            let x = (w - 0.5 * (low + high)) * (2.0 / (high - low));
+            (evaluate(&self.panels[panel].0, x), if w < SMOOTH { Base::Layer } else { Base::Substrate })
+        } else {
+            (self.far_f(rho), Base::Substrate)
+        };
+        match (of, base) {
+            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate) / rho,
+            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate) / rho,
+            _ => value,
+        }
     }
 
     /// `out[k]` is F at distance `sqrt((x + k dx)^2 + y^2)`, all in thicknesses, x and y >= 0: a run of places at a time that have
@@ -165,26 +197,24 @@ impl Radial {
 
 /// Places that are computed at a time: a loop over them is vectorised.
 const LANES: usize = 8;
+const OFFSETS: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// `polynomial(((x + k dx)^2 + shift) scale)`.
+#[allow(clippy::needless_range_loop)] // indices, as a vector has them
 fn fill_run(polynomial: &[f64; P], (x, dx, shift, scale): (f64, f64, f64, f64), run: &mut [f64]) {
-    let lanes = |first: usize| {
-        let start = x + first as f64 * dx;
-        let mut at = [0.0; LANES];
-        for (i, at) in at.iter_mut().enumerate() {
-            let x = start + i as f64 * dx;
-            *at = (x * x + shift) * scale;
+    for (block, out) in run.chunks_mut(LANES).enumerate() {
+        let start = x + (block * LANES) as f64 * dx;
+        let (mut at, mut sum) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..LANES {
+            let x = start + OFFSETS[i] * dx;
+            at[i] = (x * x + shift) * scale;
         }
-        let mut sum = [0.0; LANES];
         for c in polynomial.iter().rev() {
-            for (sum, at) in sum.iter_mut().zip(&at) {
-                *sum = *sum * at + c;
+            for i in 0..LANES {
+                sum[i] = sum[i] * at[i] + c;
             }
         }
-        sum
-    };
-    for (k, out) in run.chunks_mut(LANES).enumerate() {
-        out.copy_from_slice(&lanes(k * LANES)[..out.len()]);
+        out.copy_from_slice(&sum[..out.len()]);
     }
 }
 
