@@ -148,12 +148,6 @@ class Result:
 
         return plot_traction(self, axes)
 
-
-def _value(value: Any) -> Any:
-    """A number, or a tuple of those of an array."""
-    return value if isinstance(value, (int, float)) else tuple(value)
-
-
     def subsurface(
         self,
         depths: npt.ArrayLike,
@@ -195,6 +189,11 @@ def _value(value: Any) -> Any:
         from ._stress import subsurface
 
         return subsurface(self._scene, self.pressure, depths, traction, body, principal, threads)
+
+
+def _value(value: Any) -> Any:
+    """A number, or a tuple of those of an array."""
+    return value if isinstance(value, (int, float)) else tuple(value)
 
 
 class Outputs:
