@@ -3,7 +3,8 @@
 !
 ! Compile this file with your program and link the library:
 !   gfortran contact_normal.f90 my_program.f90 -lcontact_normal
-! contact_normal_exports.inc and contact_normal_norm_solve.inc, which it includes, stand beside it.
+! contact_normal_exports.inc, contact_normal_norm_solve.inc and contact_normal_tang_solve.inc, which it includes, stand beside
+! it.
 !
 ! It mirrors contact_normal.h, which says what each member and each call does; what differs in Fortran is said here.
 !   * Arrays are a(mx, my), x first. A call returns a status: 0 OK; > 0 stopped early, outputs hold the best iterate;
@@ -58,6 +59,15 @@ module contact_normal
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_OBSTACLE_NONE = 0, CONTACT_NORMAL_OBSTACLE_SINGULAR = 1, &
     CONTACT_NORMAL_OBSTACLE_ROUND_OFF = 2, CONTACT_NORMAL_OBSTACLE_ELEMENTS = 3, CONTACT_NORMAL_OBSTACLE_MEMORY = 4, &
     CONTACT_NORMAL_OBSTACLE_TIME = 5
+  ! friction%motion
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_MOTION_SHIFT = 0, CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING = 1, &
+    CONTACT_NORMAL_MOTION_STEADY_ROLLING = 2
+  ! friction%prescribed
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_PRESCRIBED_CREEPAGE = 0, &
+    CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE = 1
+  ! Values of fields%adhesion
+  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_ADHESION_EXTERIOR = 0, CONTACT_NORMAL_ADHESION_STICK = 1, &
+    CONTACT_NORMAL_ADHESION_SLIP = 2
   ! contact_normal_set_log
   integer(c_int32_t), parameter, public :: CONTACT_NORMAL_LOG_OFF = 0, CONTACT_NORMAL_LOG_WARNING = 1, &
     CONTACT_NORMAL_LOG_INFO = 2
@@ -113,6 +123,25 @@ module contact_normal
     real(c_double) :: scale = 1
   end type
 
+  ! Friction; filled by contact_normal_set_friction. Since 0.1.
+  type, bind(C), public :: contact_normal_friction
+    integer(c_int64_t) :: struct_size = 0
+    real(c_double) :: coefficient = 0
+    type(c_ptr) :: coefficients = c_null_ptr
+    integer(c_int32_t) :: motion = CONTACT_NORMAL_MOTION_SHIFT
+    integer(c_int32_t) :: continues = 0
+    integer(c_int32_t) :: prescribed(2) = CONTACT_NORMAL_PRESCRIBED_CREEPAGE
+    real(c_double) :: creepage(2) = 0
+    real(c_double) :: spin = 0
+    real(c_double) :: spin_centre(2) = 0
+    real(c_double) :: force(2) = 0
+    real(c_double) :: rolling_distance = 0
+    real(c_double) :: rolling_direction = 0
+    real(c_double) :: spin_offset = 0
+    type(c_ptr) :: previous_traction(2) = c_null_ptr
+    type(c_ptr) :: rigid_slip(2) = c_null_ptr
+  end type
+
   ! What is simulated. Since 0.1.
   type, bind(C), public :: contact_normal_scene
     integer(c_int64_t) :: struct_size = 0
@@ -131,6 +160,7 @@ module contact_normal
     type(c_ptr) :: patches = c_null_ptr                   ! contact_normal_set_patches
     type(c_ptr) :: row_tables = c_null_ptr                ! contact_normal_set_row_tables
     type(c_ptr) :: coating(2) = c_null_ptr                ! contact_normal_set_coating
+    type(c_ptr) :: friction = c_null_ptr                  ! contact_normal_set_friction
   end type
 
   ! How it is solved. Since 0.1.
@@ -175,6 +205,9 @@ module contact_normal
     type(c_ptr) :: deformed_distance = c_null_ptr
     type(c_ptr) :: displacement = c_null_ptr
     type(c_ptr) :: contact = c_null_ptr
+    type(c_ptr) :: traction(2) = c_null_ptr
+    type(c_ptr) :: slip(2) = c_null_ptr
+    type(c_ptr) :: adhesion = c_null_ptr
   end type
 
   ! One row of the ledger. Since 0.1.
@@ -236,6 +269,15 @@ module contact_normal
     real(c_double) :: halved_error_force = -1
     integer(c_int64_t) :: edge_count = 0
     real(c_double) :: tolerance = 0
+    real(c_double) :: tangential_force(2) = 0             ! with friction, as are the following
+    real(c_double) :: tangential_moment = 0
+    real(c_double) :: creepage(2) = 0
+    real(c_double) :: tangential_residual = 0
+    real(c_double) :: tangential_gap = 0
+    integer(c_int64_t) :: stick_count = 0
+    integer(c_int64_t) :: slip_count = 0
+    real(c_double) :: tangential_products = 0
+    real(c_double) :: tangential_seconds = 0
   end type
 
   ! The accuracy that is asked for, what it may cost, and the grid that it took. Since 0.1.
@@ -346,9 +388,10 @@ module contact_normal
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
     contact_normal_cost_of_accuracy, contact_normal_solve_to_accuracy, contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
-    contact_normal_solver_free, norm_solve, &
+    contact_normal_solver_free, norm_solve, tang_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
-    contact_normal_set_row_tables, contact_normal_set_coating
+    contact_normal_set_row_tables, contact_normal_set_coating, contact_normal_set_friction, &
+    contact_normal_set_friction_fields
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
@@ -483,6 +526,36 @@ contains
     coating%shear_modulus = shear_modulus
     coating%poisson_ratio = poisson_ratio
     scene%coating(body) = c_loc(coating)
+  end subroutine
+
+  ! The scene has friction of one coefficient, or of one per element (mx, my), a shift of 0: set the other components of `friction`
+  ! after this. `previous_x` and `previous_y`: the tractions before; `slip_x` and `slip_y`: a rigid slip. Since 0.1.
+  subroutine contact_normal_set_friction(scene, friction, coefficient, coefficients, previous_x, previous_y, slip_x, slip_y)
+    type(contact_normal_scene), intent(inout) :: scene
+    type(contact_normal_friction), pointer, intent(in) :: friction
+    real(c_double), intent(in), optional :: coefficient
+    real(c_double), pointer, contiguous, intent(in), optional :: coefficients(..)
+    real(c_double), pointer, contiguous, intent(in), optional :: previous_x(..), previous_y(..), slip_x(..), slip_y(..)
+    call contact_normal_friction_init(friction)
+    if (present(coefficient)) friction%coefficient = coefficient
+    if (present(coefficients)) friction%coefficients = c_loc(coefficients)
+    if (present(previous_x)) friction%previous_traction(1) = c_loc(previous_x)
+    if (present(previous_y)) friction%previous_traction(2) = c_loc(previous_y)
+    if (present(slip_x)) friction%rigid_slip(1) = c_loc(slip_x)
+    if (present(slip_y)) friction%rigid_slip(2) = c_loc(slip_y)
+    scene%friction = c_loc(friction)
+  end subroutine
+
+  ! Attaches the arrays of friction that are wanted, (mx, my) each. Since 0.1.
+  subroutine contact_normal_set_friction_fields(fields, traction_x, traction_y, slip_x, slip_y, adhesion)
+    type(contact_normal_fields), intent(inout) :: fields
+    real(c_double), pointer, contiguous, intent(in), optional :: traction_x(..), traction_y(..), slip_x(..), slip_y(..)
+    integer(c_int32_t), pointer, contiguous, intent(in), optional :: adhesion(..)
+    if (present(traction_x)) fields%traction(1) = c_loc(traction_x)
+    if (present(traction_y)) fields%traction(2) = c_loc(traction_y)
+    if (present(slip_x)) fields%slip(1) = c_loc(slip_x)
+    if (present(slip_y)) fields%slip(2) = c_loc(slip_y)
+    if (present(adhesion)) fields%adhesion = c_loc(adhesion)
   end subroutine
 
   ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.
@@ -666,6 +739,8 @@ contains
   end subroutine
 
   include 'contact_normal_norm_solve.inc'
+
+  include 'contact_normal_tang_solve.inc'
 
 end module contact_normal
 

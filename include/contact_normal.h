@@ -92,6 +92,46 @@
 #define CONTACT_NORMAL_PRESCRIBED_FORCE 1
 
 /*
+ `motion`: sideways and about the normal, without rolling.
+ */
+#define CONTACT_NORMAL_MOTION_SHIFT 0
+
+/*
+ `motion`: a step of rolling, from the tractions before.
+ */
+#define CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING 1
+
+/*
+ `motion`: rolling that does not change any more. This version does not solve it (UNSUPPORTED): take steps of transient rolling.
+ */
+#define CONTACT_NORMAL_MOTION_STEADY_ROLLING 2
+
+/*
+ `prescribed`: the creepage of a direction is given.
+ */
+#define CONTACT_NORMAL_PRESCRIBED_CREEPAGE 0
+
+/*
+ `prescribed`: the tangential force of a direction is given, its creepage is found.
+ */
+#define CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE 1
+
+/*
+ `fields->adhesion`: the element is not in contact.
+ */
+#define CONTACT_NORMAL_ADHESION_EXTERIOR 0
+
+/*
+ `fields->adhesion`: it sticks.
+ */
+#define CONTACT_NORMAL_ADHESION_STICK 1
+
+/*
+ `fields->adhesion`: it slips.
+ */
+#define CONTACT_NORMAL_ADHESION_SLIP 2
+
+/*
  `method`: the fastest way known that is safe.
  */
 #define CONTACT_NORMAL_METHOD_AUTO 0
@@ -459,6 +499,74 @@ typedef struct contact_normal_coating {
 } contact_normal_coating;
 
 /*
+ Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
+ Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
+ gives a positive force in x. See docs/friction.md.
+ */
+typedef struct contact_normal_friction {
+  /*
+   Set by `contact_normal_friction_init`.
+   */
+  int64_t struct_size;
+  /*
+   mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
+   */
+  double coefficient;
+  /*
+   mu of each element, `[my][mx]`, or NULL (default).
+   */
+  const double *coefficients;
+  /*
+   CONTACT_NORMAL_MOTION_...; default SHIFT.
+   */
+  int32_t motion;
+  /*
+   1: the tractions before are those that this handle found last; 0 (default): `previous_traction`.
+   */
+  int32_t continues;
+  /*
+   Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
+   */
+  int32_t prescribed[2];
+  /*
+   In x and y; default 0. Not read where the force is prescribed.
+   */
+  double creepage[2];
+  /*
+   About the normal; default 0.
+   */
+  double spin;
+  /*
+   Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+   */
+  double spin_centre[2];
+  /*
+   The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
+   */
+  double force[2];
+  /*
+   The length rolled in the step; default 0: dx.
+   */
+  double rolling_distance;
+  /*
+   The direction of rolling: an angle from the x axis, in radians; default 0.
+   */
+  double rolling_direction;
+  /*
+   In rolling with spin: the part of the step by which places are ahead; default 1/6.
+   */
+  double spin_offset;
+  /*
+   The tractions before, in x and y, `[my][mx]` each, both or none; NULL (default): none, a start from rest.
+   */
+  const double *previous_traction[2];
+  /*
+   A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
+   */
+  const double *rigid_slip[2];
+} contact_normal_friction;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -539,6 +647,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
    */
   const struct contact_normal_coating *coating[2];
+  /*
+   Effect, or NULL (default): friction between the bodies.
+   */
+  const struct contact_normal_friction *friction;
 } contact_normal_scene;
 
 /*
@@ -694,6 +806,18 @@ typedef struct contact_normal_fields {
    0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
    */
   int32_t *contact;
+  /*
+   With friction: tractions q on body 1, in x and y; 0 where there is no contact, and without friction.
+   */
+  double *traction[2];
+  /*
+   With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
+   */
+  double *slip[2];
+  /*
+   With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
+   */
+  int32_t *adhesion;
 } contact_normal_fields;
 
 /*
@@ -921,6 +1045,43 @@ typedef struct contact_normal_report {
    an accuracy asks for.
    */
   double tolerance;
+  /*
+   With friction, as are the following: the sum of q dx dy in x and y, on body 1.
+   */
+  double tangential_force[2];
+  /*
+   The sum of (x qy - y qx) dx dy about the centre of spin.
+   */
+  double tangential_moment;
+  /*
+   Creepages in x and y, given or found.
+   */
+  double creepage[2];
+  /*
+   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift: to that or
+   the displacements, whichever is larger); with a fresh product in double precision.
+   */
+  double tangential_residual;
+  /*
+   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+   */
+  double tangential_gap;
+  /*
+   Elements that stick.
+   */
+  int64_t stick_count;
+  /*
+   Elements that slip.
+   */
+  int64_t slip_count;
+  /*
+   Products of two components on all grids, in products on the finest.
+   */
+  double tangential_products;
+  /*
+   Seconds of the tangential problem, which are part of `solve_seconds`.
+   */
+  double tangential_seconds;
 } contact_normal_report;
 
 /*
@@ -1245,6 +1406,11 @@ void contact_normal_layer_init(struct contact_normal_layer *layer);
 void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
 
 /*
+ Fills a friction with a coefficient of 0 and a shift of 0. Since 0.1.
+ */
+void contact_normal_friction_init(struct contact_normal_friction *friction);
+
+/*
  Fills options with the defaults. Since 0.1.
  */
 void contact_normal_options_init(struct contact_normal_options *options);
@@ -1310,6 +1476,18 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
  Frees a solver; NULL is ignored. In a callback of a call that uses it nothing is freed: free it after that call. Since 0.1.
  */
 void contact_normal_solver_free(struct contact_normal_solver *solver);
+
+/*
+ Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
+ contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
+ used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
+ `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.1.
+ */
+contact_normal_status contact_normal_solve_tangential(const struct contact_normal_scene *scene,
+                                                      const double *pressure,
+                                                      const struct contact_normal_options *options,
+                                                      struct contact_normal_fields *fields,
+                                                      struct contact_normal_report *report);
 
 /*
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the

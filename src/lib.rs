@@ -65,6 +65,7 @@ pub mod effects;
 pub mod error;
 #[allow(unsafe_code)]
 pub mod ffi;
+pub mod friction;
 pub mod grid;
 pub mod influence;
 mod memory;

@@ -71,6 +71,10 @@ class Result:
         The contact area, with the elements at the pressure limit.
     at_limit : ndarray of bool, (my, mx)
         The elements at the pressure limit.
+    traction, slip : ndarray of float, (2, my, mx)
+        With friction: q on body 1 and the slip of body 1 over body 2 in the step, in x and y; else zeros.
+    adhesion : ndarray of int, (my, mx)
+        With friction: 0 exterior, 1 stick, 2 slip.
     dx, dy : float
         Element sizes.
     report : dict
@@ -85,10 +89,11 @@ class Result:
         self.contact: npt.NDArray[np.bool_] = outputs.contact != 0
         self.at_limit: npt.NDArray[np.bool_] = outputs.contact == 2
         self._scene = scene
+        self.traction, self.slip, self.adhesion = outputs.traction, outputs.slip, outputs.adhesion
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         hidden = ("struct_size", "ledger", "ledger_capacity")
-        self.report: dict[str, float] = {name: getattr(report, name) for name in names(Report) if name not in hidden}
+        self.report: dict[str, Any] = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
         rows = outputs.rows[: min(report.ledger_rows, _LEDGER_ROOM)]
         members = [name for name in names(LedgerRow) if name != "reserved"]
         estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
@@ -97,12 +102,12 @@ class Result:
     @property
     def approach(self) -> float:
         """Approach of the bodies."""
-        return self.report["approach"]
+        return float(self.report["approach"])
 
     @property
     def force(self) -> float:
         """Normal force: the sum of p dx dy."""
-        return self.report["force"]
+        return float(self.report["force"])
 
     def __repr__(self) -> str:
         my, mx = self.pressure.shape
@@ -126,6 +131,22 @@ class Result:
 
         return plot_pressure(self, axes)
 
+    def plot_traction(self, axes: Axes | None = None) -> Axes:
+        """Draws the tractions as arrows over the stick and slip areas, seen from above.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot import plot_traction
+
+        return plot_traction(self, axes)
 
     def subsurface(
         self,
@@ -170,6 +191,11 @@ class Result:
         return subsurface(self._scene, self.pressure, depths, traction, body, principal, threads)
 
 
+def _value(value: Any) -> Any:
+    """A number, or a tuple of those of an array."""
+    return value if isinstance(value, (int, float)) else tuple(value)
+
+
 class Outputs:
     """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess."""
 
@@ -187,5 +213,10 @@ class Outputs:
         self.fields, self.report = initialised("fields"), initialised("report")
         self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(pointer, self.doubles)
         self.fields.contact = pointer(self.contact, c_int32)
+        self.traction, self.slip = np.zeros((2, *shape)), np.zeros((2, *shape))
+        self.adhesion = np.zeros(shape, dtype=np.int32)
+        for k in range(2):
+            self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
+        self.fields.adhesion = pointer(self.adhesion, c_int32)
         self.rows = (LedgerRow * _LEDGER_ROOM)()
         self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM

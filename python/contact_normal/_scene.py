@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import doubles, integer, integers, pair, pointer
-from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
+from ._constants import MOTION_SHIFT, PRESCRIBED_APPROACH, PRESCRIBED_FORCE, PRESCRIBED_TANGENTIAL_FORCE, value_of
 from ._library import initialised
 
 if TYPE_CHECKING:
@@ -70,7 +70,9 @@ class Scene:
 
     def _name(self, name: str, value: Any) -> None:
         """Names the effect `name` in the scene."""
-        if name in ("layer", "pressure_limit"):
+        if name == "friction":
+            effect, arrays = _friction(value, self.shape)
+        elif name in ("layer", "pressure_limit"):
             effect, arrays = _per_element(name, value, self.shape)
         else:
             effect, arrays = {"influence": influence, "period": _period, "row_tables": _row_tables}.get(
@@ -147,6 +149,43 @@ def _patches(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
     effect = initialised("patches")
     effect.count, effect.patch, effect.factors = len(factors), pointer(patch, c_int32), pointer(factors)
     return effect, (patch, factors)
+
+
+_FRICTION_NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
+_FRICTION_PAIRS = ("previous_traction", "rigid_slip")
+
+
+def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
+    known = ("coefficient", "motion", "creepage", "force", "continues", "spin_centre", *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
+    unknown = sorted(set(value) - set(known))
+    if unknown:
+        raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(known)}")
+    effect, kept = initialised("friction"), []
+    coefficient = value.get("coefficient", 0.0)
+    if np.ndim(coefficient) == 0:
+        effect.coefficient = coefficient
+    else:
+        kept.append(doubles("friction['coefficient']", coefficient, shape))
+        effect.coefficients = pointer(kept[-1])
+    motion = value.get("motion", MOTION_SHIFT)
+    effect.motion = value_of("motion", motion) if isinstance(motion, str) else motion
+    effect.continues = bool(value.get("continues", False))
+    effect.creepage = pair("friction['creepage']", value.get("creepage", 0.0))
+    effect.spin_centre = pair("friction['spin_centre']", value.get("spin_centre", 0.0))
+    forces = value.get("force", (None, None))
+    if np.ndim(forces) == 0 or len(forces) != 2:
+        raise ValueError(f"friction['force'] is {forces!r}; it must be a pair, None where the creepage is given")
+    for k, force in enumerate(forces):
+        if force is not None:
+            effect.prescribed[k], effect.force[k] = PRESCRIBED_TANGENTIAL_FORCE, force
+    for name in _FRICTION_NUMBERS:
+        if name in value:
+            setattr(effect, name, value[name])
+    for name in _FRICTION_PAIRS:
+        for k, field in enumerate(value.get(name) if value.get(name) is not None else ()):
+            kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
+            getattr(effect, name)[k] = pointer(kept[-1])
+    return effect, kept
 
 
 def _row_tables(value: Any) -> tuple[Any, Doubles]:

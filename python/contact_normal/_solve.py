@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from ctypes import c_void_p
 from typing import TYPE_CHECKING, Any
 
@@ -45,6 +45,7 @@ def solve(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     row_tables: Any = None,
     coating: Any = None,
+    friction: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
@@ -77,6 +78,11 @@ def solve(
     coating : (of body 1, of body 2), optional
         Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
         are then those of the body below.
+    friction : mapping, optional
+        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default) or "TRANSIENT_ROLLING"; "creepage",
+        a pair; "force", a pair of tangential forces, None where the creepage is given; "spin", "spin_centre", "rolling_distance",
+        "rolling_direction", "spin_offset"; "previous_traction" and "rigid_slip", pairs of (my, mx); "continues": from the tractions
+        that a `Solver` found last. docs/friction.md has the signs.
     pressure, contact : array_like, (my, mx), optional
         Initial guess; `contact` (booleans or integers) is the contact area with `active_set="FIXED"`.
     progress : callable or bool, optional
@@ -108,7 +114,7 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables, "coating": coating}
+               "row_tables": row_tables, "coating": coating, "friction": friction}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
     struct = options(given)
     outputs = Outputs(scene.shape, pressure, contact, struct)

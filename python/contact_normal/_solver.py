@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int32, c_void_p
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -90,8 +90,9 @@ class Solver:
             raise ValueError("this solver is closed")
         return c_void_p(self._address)
 
-    def _scene(self, h: Any, approach: float | None, force: float | None, pressure_limit: Any) -> Scene:
-        effects = {"pressure_limit": pressure_limit, **self._effects}
+    def _scene(self, h: Any, approach: float | None, force: float | None, pressure_limit: Any,
+               friction: Any) -> Scene:
+        effects = {"pressure_limit": pressure_limit, "friction": friction, **self._effects}
         return Scene(doubles("h", h, self._shape), *self._size, approach, force, *self._bodies, effects)
 
     def solve(
@@ -101,6 +102,7 @@ class Solver:
         approach: float | None = None,
         force: float | None = None,
         pressure_limit: npt.ArrayLike | None = None,
+        friction: Mapping[str, Any] | None = None,
         pressure: npt.ArrayLike | None = None,
         contact: npt.ArrayLike | None = None,
         progress: Callable[[Progress], Any] | bool | None = None,
@@ -112,7 +114,7 @@ class Solver:
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
-        approach, force, pressure_limit, pressure, contact, progress, **given
+        approach, force, pressure_limit, friction, pressure, contact, progress, **given
             As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
@@ -120,7 +122,7 @@ class Solver:
         Result
         """
         handle = self._handle
-        scene = self._scene(h, approach, force, pressure_limit)
+        scene = self._scene(h, approach, force, pressure_limit, friction)
         struct = options({**self._given, **given})
         outputs = Outputs(scene.shape, pressure, contact, struct)
         watched = Watched(progress, struct, scene.h.size)
@@ -140,6 +142,7 @@ class Solver:
         approach: npt.ArrayLike | None = None,
         force: npt.ArrayLike | None = None,
         pressure_limit: npt.ArrayLike | None = None,
+        friction: Mapping[str, Any] | None = None,
         pressure: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
         contact: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
         **given: Unpack[SolveOptions],
@@ -154,6 +157,8 @@ class Solver:
             One of them: one value for all problems, or one for each.
         pressure_limit : float or array_like, (my, mx), optional
             For all problems.
+        friction : mapping, optional
+            For all problems, as for `solve`.
         pressure, contact : sequence of array_like, (count, my, mx), optional
             Initial guesses.
         **given : SolveOptions
@@ -175,7 +180,7 @@ class Solver:
         scenes, outputs = [], []
         for i in range(count):
             one_approach, one_force = (None if values is None else float(values[i]) for values in loads)
-            scenes.append(self._scene(h[i], one_approach, one_force, pressure_limit))
+            scenes.append(self._scene(h[i], one_approach, one_force, pressure_limit, friction))
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
             outputs.append(Outputs(self._shape, guess, area, struct))
         reports = (Report * count)(*(each.report for each in outputs))

@@ -68,6 +68,28 @@ class Coating(ctypes.Structure):
     ]
 
 
+class Friction(ctypes.Structure):
+    """contact_normal_friction."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("coefficient", c_double),
+        ("coefficients", POINTER(c_double)),
+        ("motion", c_int32),
+        ("continues", c_int32),
+        ("prescribed", c_int32 * 2),
+        ("creepage", c_double * 2),
+        ("spin", c_double),
+        ("spin_centre", c_double * 2),
+        ("force", c_double * 2),
+        ("rolling_distance", c_double),
+        ("rolling_direction", c_double),
+        ("spin_offset", c_double),
+        ("previous_traction", POINTER(c_double) * 2),
+        ("rigid_slip", POINTER(c_double) * 2),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -91,6 +113,7 @@ class Scene(ctypes.Structure):
         ("patches", POINTER(Patches)),
         ("row_tables", POINTER(RowTables)),
         ("coating", POINTER(Coating) * 2),
+        ("friction", POINTER(Friction)),
     ]
 
 
@@ -148,6 +171,9 @@ class Fields(ctypes.Structure):
         ("deformed_distance", POINTER(c_double)),
         ("displacement", POINTER(c_double)),
         ("contact", POINTER(c_int32)),
+        ("traction", POINTER(c_double) * 2),
+        ("slip", POINTER(c_double) * 2),
+        ("adhesion", POINTER(c_int32)),
     ]
 
 
@@ -215,6 +241,15 @@ class Report(ctypes.Structure):
         ("halved_error_force", c_double),
         ("edge_count", c_int64),
         ("tolerance", c_double),
+        ("tangential_force", c_double * 2),
+        ("tangential_moment", c_double),
+        ("creepage", c_double * 2),
+        ("tangential_residual", c_double),
+        ("tangential_gap", c_double),
+        ("stick_count", c_int64),
+        ("slip_count", c_int64),
+        ("tangential_products", c_double),
+        ("tangential_seconds", c_double),
     ]
 
 
@@ -320,6 +355,7 @@ SIZED: dict[str, type[ctypes.Structure]] = {
     "patches": Patches,
     "row_tables": RowTables,
     "coating": Coating,
+    "friction": Friction,
     "options": Options,
     "fields": Fields,
     "report": Report,

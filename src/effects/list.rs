@@ -8,7 +8,7 @@ use crate::influence::{Coefficients, HalfSpace};
 use crate::scene::Scene;
 
 /// Number of effects.
-pub(super) const COUNT: usize = 7;
+pub(super) const COUNT: usize = 8;
 
 /// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients.
 pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
@@ -23,6 +23,7 @@ pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] 
         of(&scene.patches),
         of(&scene.layer),
         of(&scene.pressure_limit),
+        of(&scene.friction),
     ]
 }
 

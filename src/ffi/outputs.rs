@@ -4,6 +4,7 @@ use super::arguments::Regions;
 use super::report::{contact_normal_fields, contact_normal_report};
 use super::status::Refusal;
 use super::structs::{self, Versioned};
+use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
 
@@ -108,6 +109,11 @@ impl Outputs {
         regions.output("displacement", fields.displacement, n)?;
         regions.output("deformed_distance", fields.deformed_distance, n)?;
         regions.output("contact", fields.contact, n)?;
+        for k in 0..2 {
+            regions.output("traction", fields.traction[k], n)?;
+            regions.output("slip", fields.slip[k], n)?;
+        }
+        regions.output("adhesion", fields.adhesion, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
             regions.output("ledger", report.ledger, self.ledger_capacity())?;
@@ -136,6 +142,31 @@ impl Outputs {
                 let at_limit = state.at_limit.iter().enumerate().filter(|(_, &at_limit)| at_limit);
                 at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));
             }
+        }
+        self.write_friction(solver.friction(), n);
+    }
+
+    /// Writes what friction has found; zeros where there is none.
+    pub fn write_friction(&self, found: Option<&Solution>, n: usize) {
+        let fields = &self.fields;
+        let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
+        let none = Solution::default();
+        let Solution { traction, slip, adhesion } = found.unwrap_or(&none);
+        for (k, (q, s)) in fields.traction.iter().zip(fields.slip).enumerate() {
+            // SAFETY (both): not null: room for n values, as above.
+            unsafe {
+                if !q.is_null() {
+                    (0..n).for_each(|i| q.add(i).write(value(traction, i, k)));
+                }
+                if !s.is_null() {
+                    (0..n).for_each(|i| s.add(i).write(value(slip, i, k)));
+                }
+            }
+        }
+        if !fields.adhesion.is_null() {
+            let adhesion = |i: usize| if found.is_some() { adhesion[i] } else { EXTERIOR };
+            // SAFETY: likewise.
+            unsafe { (0..n).for_each(|i| fields.adhesion.add(i).write(adhesion(i))) };
         }
     }
 

@@ -18,6 +18,12 @@ pub struct contact_normal_fields {
     pub displacement: *mut f64,
     /// 0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
     pub contact: *mut i32,
+    /// With friction: tractions q on body 1, in x and y; 0 where there is no contact, and without friction.
+    pub traction: [*mut f64; 2],
+    /// With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
+    pub slip: [*mut f64; 2],
+    /// With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
+    pub adhesion: *mut i32,
 }
 
 versioned! { contact_normal_fields, 40 }
@@ -183,6 +189,25 @@ pub struct contact_normal_report {
     /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
     /// an accuracy asks for.
     pub tolerance: f64,
+    /// With friction, as are the following: the sum of q dx dy in x and y, on body 1.
+    pub tangential_force: [f64; 2],
+    /// The sum of (x qy - y qx) dx dy about the centre of spin.
+    pub tangential_moment: f64,
+    /// Creepages in x and y, given or found.
+    pub creepage: [f64; 2],
+    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift: to that or
+    /// the displacements, whichever is larger); with a fresh product in double precision.
+    pub tangential_residual: f64,
+    /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+    pub tangential_gap: f64,
+    /// Elements that stick.
+    pub stick_count: i64,
+    /// Elements that slip.
+    pub slip_count: i64,
+    /// Products of two components on all grids, in products on the finest.
+    pub tangential_products: f64,
+    /// Seconds of the tangential problem, which are part of `solve_seconds`.
+    pub tangential_seconds: f64,
 }
 
 versioned! {
@@ -212,6 +237,12 @@ impl contact_normal_report {
         copy!(report => to: setup_seconds, solve_seconds, bytes, tolerance);
         set_result!(to, report.measures, report.error);
         (to.halved_seconds, to.halved_error_force) = (report.halving.seconds, report.halving.force);
+        if let Some(found) = &report.friction {
+            (to.tangential_force, to.tangential_moment, to.creepage) = (found.force, found.moment, found.creepage);
+            (to.tangential_residual, to.tangential_gap) = (found.certificate.residual, found.certificate.gap);
+            copy!(found.certificate => to: stick_count, slip_count);
+            (to.tangential_products, to.tangential_seconds) = (found.products, found.seconds);
+        }
         to.limited_by = match report.limit {
             Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
             Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,

@@ -5,6 +5,7 @@ use super::coating::contact_normal_coating;
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
+use super::friction::contact_normal_friction;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::{self, versioned};
@@ -60,6 +61,8 @@ pub struct contact_normal_scene {
     pub row_tables: *const contact_normal_row_tables,
     /// Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
     pub coating: [*const contact_normal_coating; 2],
+    /// Effect, or NULL (default): friction between the bodies.
+    pub friction: *const contact_normal_friction,
 }
 
 versioned! { contact_normal_scene, 144 }
@@ -94,6 +97,7 @@ pub(super) struct Named {
     patches: Option<contact_normal_patches>,
     row_tables: Option<contact_normal_row_tables>,
     coating: [Option<contact_normal_coating>; 2],
+    friction: Option<contact_normal_friction>,
 }
 
 impl Named {
@@ -114,6 +118,7 @@ impl Named {
                     structs::read_optional(scene.coating[0], "scene->coating[0]")?,
                     structs::read_optional(scene.coating[1], "scene->coating[1]")?,
                 ],
+                friction: structs::read_optional(scene.friction, "scene->friction")?,
                 scene,
             })
         }
@@ -136,7 +141,8 @@ impl Named {
         add(regions, grid, scene.patches, &self.patches)?;
         add(regions, grid, scene.row_tables, &self.row_tables)?;
         add(regions, grid, scene.coating[0], &self.coating[0])?;
-        add(regions, grid, scene.coating[1], &self.coating[1])
+        add(regions, grid, scene.coating[1], &self.coating[1])?;
+        add(regions, grid, scene.friction, &self.friction)
     }
 
     /// A copy of the undeformed distance.
@@ -175,6 +181,7 @@ impl Named {
                 coating: self.coating.iter().any(Option::is_some).then(|| Coating {
                     layers: self.coating.map(|coating| coating.map(|coating| coating.translate())),
                 }),
+                friction: self.friction.map(|friction| friction.translate(grid)).transpose()?,
                 ..Scene::new(*grid, undeformed_distance, bodies, load)
             })
         }

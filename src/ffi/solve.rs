@@ -123,13 +123,17 @@ pub(super) fn run(
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, buffers)?, progress)?;
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;
-    let message =
-        if stop == Stop::Converged { String::new() } else { explain(stop, &report, options.method, solver.state()) };
+    let message = if stop == Stop::Converged {
+        String::new()
+    } else {
+        explain(stop, &report, options.method, Some(solver.state()))
+    };
     Ok(Outcome { status: stop.into(), message })
 }
 
-fn explain(stop: Stop, report: &Report, method: Method, state: &State) -> String {
+pub(super) fn explain(stop: Stop, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.cycles, report.measures.certificate.residual);
+    let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
     let why = match stop {
         Stop::Converged => "solved",
         Stop::IterationLimit => "max_cycles was reached",
@@ -137,8 +141,9 @@ fn explain(stop: Stop, report: &Report, method: Method, state: &State) -> String
         Stop::Stagnated => "no further progress",
     };
     let mut message = format!("{why} after {cycles} cycles; the residual is {residual:e}");
+    message += tangential.as_deref().unwrap_or_default();
     if stop == Stop::Stagnated {
-        let (largest, round_off) = round_off(state);
+        let (largest, round_off) = state.map_or((0.0, 0.0), round_off);
         // What the products and the distances lose together is some multiples of it.
         if residual <= 100.0 * round_off {
             message += &format!(

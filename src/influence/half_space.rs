@@ -183,7 +183,7 @@ fn line(k: f64, d: f64, y: f64) -> f64 {
 }
 
 /// Integral of `f` over an interval of length `d` about `centre`.
-pub(super) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
     let pairs: f64 = GAUSS[1..]
         .iter()
         .map(|&(node, weight)| weight * (f(centre + 0.5 * d * node) + f(centre - 0.5 * d * node)))

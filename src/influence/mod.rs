@@ -28,6 +28,7 @@ use std::sync::Arc;
 pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
+pub(crate) use half_space::gauss;
 pub use half_space::HalfSpace;
 pub use patches::Patches;
 pub use periodic::Periodic;

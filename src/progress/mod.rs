@@ -120,6 +120,10 @@ impl<'a> Monitor<'a> {
         self.count.cycles += 1;
         self.count.active_set_changes += changes;
         (self.count.update, self.count.residual) = (update, residual);
+        self.tell(grid, changes, update, residual)
+    }
+
+    fn tell(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
         if let Some(callback) = &mut self.callback {
             let progress = Progress {
                 mx: grid.mx,
@@ -134,6 +138,11 @@ impl<'a> Monitor<'a> {
             self.cancelled |= callback(&progress);
         }
         !self.cancelled
+    }
+
+    /// An iteration of the tangential problem is done, of which nothing is counted here; false when the caller cancels.
+    pub fn tangential_done(&mut self, grid: &Grid, residual: f64) -> bool {
+        self.tell(grid, 0, 0.0, residual)
     }
 
     /// Whether the caller cancelled.

@@ -5,7 +5,9 @@ mod load;
 mod plain;
 mod refine;
 
-pub use crate::effects::{Coating, CoatingLayer, Layer, Patches, Period, PressureLimit};
+pub use crate::effects::{
+    Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit, Previous,
+};
 pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
@@ -39,6 +41,8 @@ pub struct Scene<'a> {
     pub patches: Option<Patches<'a>>,
     /// Effect: own coefficients, one table per loaded row.
     pub row_tables: Option<RowTables>,
+    /// Effect: friction between the bodies.
+    pub friction: Option<Friction<'a>>,
 }
 
 impl<'a> Scene<'a> {
@@ -56,6 +60,7 @@ impl<'a> Scene<'a> {
             pressure_limit: None,
             patches: None,
             row_tables: None,
+            friction: None,
         }
     }
 

@@ -14,6 +14,7 @@ mod options;
 mod refinement;
 mod report;
 mod take_over;
+mod tangential;
 mod task;
 
 use std::sync::Arc;
@@ -27,10 +28,12 @@ pub use refinement::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Outcome, Price, Quantity, SurfaceCallback,
 };
 pub use report::{Halving, Limit, Report};
+pub use tangential::solve_tangential;
 
 use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State, Survey};
 use crate::effects::{self, Effect, Named};
 use crate::error::{invalid, Result};
+use crate::friction;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
 use crate::memory::{reserve, zeros};
@@ -38,7 +41,11 @@ use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
 use methods::Methods;
+use tangential::{Tangent, Turn};
 use task::Task;
+
+/// Turns of the normal and the tangential problem of unlike bodies at most: each brings them together by 4 to 30 times.
+const MOST_TURNS: u32 = 50;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +75,8 @@ pub struct Solver {
     /// One limit per element of the scene being solved; empty if there is none.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
+    /// Of scenes with friction.
+    friction: Option<Box<Tangent>>,
     /// For batches: solvers of one thread, made when first needed.
     workers: Vec<Option<Solver>>,
     setup_seconds: f64,
@@ -131,6 +140,7 @@ impl Solver {
             has_result: false,
             limits: Vec::new(),
             ledger: Vec::new(),
+            friction: None,
             workers: Vec::new(),
             setup_seconds: 0.0,
         })
@@ -149,18 +159,14 @@ impl Solver {
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range(scene, &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = match scene.pressure_limit {
-            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, &mut monitor),
-            None => self.run(scene, NonNegative, options, guess, &mut monitor),
-            Some(limit) => self.run_limited(scene, limit, options, guess, &mut monitor),
-        };
-        let outcome = outcome.map(|(stop, tolerance)| {
-            let mut report = Report::of(&monitor, tolerance);
+        let outcome = self.solve_normal(scene, options, guess, &mut monitor).and_then(|(stop, tolerance)| {
+            let (stop, found) = self.solve_friction(scene, options, stop, &mut monitor)?;
+            let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);
             }
             report.solve_seconds = monitor.seconds();
-            (stop, report)
+            Ok((stop, report))
         });
         self.has_result &= outcome.is_ok();
         self.ledger = monitor.ledger.rows;
@@ -248,6 +254,85 @@ impl Solver {
         Ok((stop, task.goal.tolerance))
     }
 
+    /// The normal problem, on the set of pressures that the scene allows.
+    fn solve_normal(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, f64)> {
+        match scene.pressure_limit {
+            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, monitor),
+            None => self.run(scene, NonNegative, options, guess, monitor),
+            Some(limit) => self.run_limited(scene, limit, options, guess, monitor),
+        }
+    }
+
+    /// The tangential problem, if the scene has friction. Of unlike bodies normal and tangential problem are solved in turns until the
+    /// tractions do not change the normal one any more (Panagiotopoulos 1975).
+    fn solve_friction(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        stop: Stop,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, Option<friction::Report>)> {
+        let mut kept = self.friction.take();
+        let Some(friction) = scene.friction.as_ref() else {
+            if let Some(before) = &mut kept {
+                before.forget();
+            }
+            self.friction = kept;
+            return Ok((stop, None));
+        };
+        let threads = self.problem.threads.clone();
+        let mut tangent = match kept {
+            Some(kept) => kept,
+            None => Box::new(Tangent::new(scene, options, &threads)?),
+        };
+        let turn = Turn { scene, friction, options, threads: &threads };
+        let outcome = self.take_turns(&mut tangent, &turn, stop, monitor);
+        if outcome.is_ok() {
+            tangent.keep_pressures(&self.state.p);
+        }
+        self.friction = Some(tangent);
+        outcome.map(|(stop, found)| (stop, Some(found)))
+    }
+
+    fn take_turns(
+        &mut self,
+        tangent: &mut Tangent,
+        turn: &Turn<'_>,
+        mut stop: Stop,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, friction::Report)> {
+        let (mut tangential_stop, mut found) = tangent.solve(turn, &self.state.p, false, monitor)?;
+        let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
+        for _ in 0..MOST_TURNS {
+            let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
+                return Ok((worse(stop, tangential_stop), found));
+            };
+            if change <= turn.options.tolerance || worse(stop, tangential_stop) != Stop::Converged {
+                return Ok((worse(stop, tangential_stop), found));
+            }
+            monitor.ledger.rows.pop();
+            monitor.enter_grid();
+            let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
+            (stop, _) = self.solve_normal(&scene, &options, None, monitor)?;
+            let (products, seconds) = (found.products, found.seconds);
+            (tangential_stop, found) = tangent.solve(turn, &self.state.p, true, monitor)?;
+            (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
+        }
+        log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");
+        Ok((worse(Stop::Stagnated, tangential_stop), found))
+    }
+
+    /// Tractions, slip and stick area of the last result; none if its scene had no friction.
+    pub fn friction(&self) -> Option<&friction::Solution> {
+        self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
+    }
+
     /// The errors of the report and the ledger. Limits have other rims, row tables other displacements than the estimates know.
     fn estimate(&self, scene: &Scene<'_>, options: &Options, monitor: &mut Monitor<'_>, report: &mut Report) {
         if !self.problem.symmetric || options.is_fixed() || scene.pressure_limit.is_some() {
@@ -310,6 +395,16 @@ impl Solver {
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
         let limits = self.limits.len() * size_of::<f64>();
-        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers
+        let friction = self.friction.as_ref().map_or(0, |friction| friction.bytes());
+        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction
+    }
+}
+
+/// What is to be said of two solves.
+fn worse(one: Stop, other: Stop) -> Stop {
+    if one == Stop::Converged {
+        other
+    } else {
+        one
     }
 }

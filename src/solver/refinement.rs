@@ -11,6 +11,7 @@ pub use outlook::Quantity;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::{InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
+use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
@@ -132,6 +133,11 @@ impl Outcome {
 
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
     options.check()?;
+    if scene.friction.is_some() {
+        effects::check_effects(scene)?;
+        let message = "friction is given; this version estimates no errors of tractions: solve on grids of your own";
+        return Err(Error::Unsupported(message.into()));
+    }
     let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
     if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Error::Unsupported(format!(

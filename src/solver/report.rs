@@ -1,6 +1,7 @@
 //! What a solve found, what it cost, and what it knew when.
 
 use super::Method;
+use crate::friction;
 use crate::grid::Grid;
 use crate::progress::{DiscretisationError, Measures, Monitor, Stop};
 
@@ -62,6 +63,8 @@ pub struct Report {
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,
+    /// Of the tangential problem, if the scene has friction.
+    pub friction: Option<friction::Report>,
 }
 
 impl Report {

@@ -85,6 +85,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "period" => call.use_period(1, 0),
         "patches" => _ = call.use_patches(HALF),
         "row_tables" => _ = call.use_row_tables(),
+        "friction" => _ = call.use_friction(),
         "influence" => _ = call.use_table(),
         _ => {}
     }
@@ -96,6 +97,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "period" => &mut call.period.known.struct_size,
         "patches" => &mut call.patches.known.struct_size,
         "row_tables" => &mut call.row_tables.known.struct_size,
+        "friction" => &mut call.friction.known.struct_size,
         "options" => &mut call.options.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "accuracy" => &mut call.accuracy.known.struct_size,
@@ -114,6 +116,7 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
         "period" => &mut call.period.excess,
         "patches" => &mut call.patches.excess,
         "row_tables" => &mut call.row_tables.excess,
+        "friction" => &mut call.friction.excess,
         "options" => &mut call.options.excess,
         "fields" => &mut call.fields.excess,
         "accuracy" => &mut call.accuracy.excess,
@@ -121,7 +124,7 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
     }
 }
 
-const STRUCTS: [&str; 11] = [
+const STRUCTS: [&str; 12] = [
     "scene",
     "influence",
     "layer",
@@ -129,6 +132,7 @@ const STRUCTS: [&str; 11] = [
     "period",
     "patches",
     "row_tables",
+    "friction",
     "options",
     "fields",
     "report",

@@ -55,6 +55,7 @@ pub struct Call {
     pub period: Box<Grown<contact_normal_period>>,
     pub patches: Box<Grown<contact_normal_patches>>,
     pub row_tables: Box<Grown<contact_normal_row_tables>>,
+    pub friction: Box<Grown<contact_normal_friction>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
@@ -100,6 +101,7 @@ impl Call {
             period: Grown::new(initialised(contact_normal_period_init)),
             patches: Grown::new(initialised(contact_normal_patches_init)),
             row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
+            friction: Grown::new(initialised(contact_normal_friction_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -157,6 +159,13 @@ impl Call {
     pub fn use_row_tables(&mut self) -> &mut contact_normal_row_tables {
         self.scene.known.row_tables = &raw const self.row_tables.known;
         &mut self.row_tables.known
+    }
+
+    /// Names friction in the scene, and the friction to change: 0.3, a shift.
+    pub fn use_friction(&mut self) -> &mut contact_normal_friction {
+        self.scene.known.friction = &raw const self.friction.known;
+        (self.friction.known.coefficient, self.friction.known.creepage) = (0.3, [1e-3, 0.0]);
+        &mut self.friction.known
     }
 
     /// Sets a coefficient of a loaded row and a row.

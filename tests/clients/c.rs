@@ -122,7 +122,7 @@ fn time_steps() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface", "friction"] {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
         let printed = run_linked(&program, &[], &folder);
@@ -248,10 +248,13 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_coating {
             struct_size, thickness, shear_modulus, poisson_ratio
         }
+        contact_normal_friction {
+            struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
+            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip
+        }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
-            approach, force, influence, layer, pressure_limit, period, patches, row_tables,
-            coating
+            approach, force, influence, layer, pressure_limit, period, patches, row_tables, coating, friction
         }
         contact_normal_progress {
             struct_size, mx, my, cycles, active_set_changes, seconds, work_units, update, residual
@@ -261,7 +264,7 @@ fn c_and_rust_agree_on_every_struct() {
             criterion, tolerance, error_ratio, max_cycles, threads, precision, reserved, progress, user
         }
         contact_normal_fields {
-            struct_size, pressure, deformed_distance, displacement, contact
+            struct_size, pressure, deformed_distance, displacement, contact, traction, slip, adhesion
         }
         contact_normal_ledger_row {
             mx, my, cycles, seconds, work_units, residual, approach, force, max_pressure, contact_area,
@@ -273,7 +276,8 @@ fn c_and_rust_agree_on_every_struct() {
             residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
-            halved_seconds, halved_error_force, edge_count, tolerance
+            halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,
+            tangential_residual, tangential_gap, stick_count, slip_count, tangential_products, tangential_seconds
         }
         contact_normal_accuracy {
             struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds,

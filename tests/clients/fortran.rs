@@ -85,7 +85,7 @@ fn wheel_rail_prints_what_is_expected() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface"] {
+    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface", "friction"] {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
         let expected =
@@ -213,15 +213,17 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_period: struct_size, x, y;
         contact_normal_patches: struct_size, count, reserved, patch, factors;
         contact_normal_row_tables: struct_size, cx, rows, coefficients, scale;
+        contact_normal_friction: struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
+            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
-            patches, row_tables, coating;
+            patches, row_tables, coating, friction;
         contact_normal_options: struct_size, method, smoother, pre_sweeps, post_sweeps, relaxation,
             coarsest, active_set, initial_guess, criterion, tolerance, error_ratio, max_cycles,
             threads, precision, reserved, progress, user;
         contact_normal_progress: struct_size, mx, my, cycles, active_set_changes, seconds,
             work_units, update, residual;
-        contact_normal_fields: struct_size, pressure, deformed_distance, displacement, contact;
+        contact_normal_fields: struct_size, pressure, deformed_distance, displacement, contact, traction, slip, adhesion;
         contact_normal_ledger_row: mx, my, cycles, seconds, work_units, residual, approach, force,
             max_pressure, contact_area, corrected_area, error_force, error_max_pressure, error_contact_area,
             error_corrected_area, error_pressure, contact_count, untrusted, reserved;
@@ -230,7 +232,8 @@ fn derived_types_are_laid_out_as_the_structs() {
             min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
-            untrusted, limited_by, halved_seconds, halved_error_force, edge_count, tolerance;
+            untrusted, limited_by, halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,
+            tangential_residual, tangential_gap, stick_count, slip_count, tangential_products, tangential_seconds;
         contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
             user, mx, my, dx, dy, reached, seconds, max_pressure_target, contact_area_target;
         contact_normal_price: target, error, tolerance, seconds, seconds_one_thread, bytes, mx, my, dx, dy,

@@ -9,6 +9,7 @@ program fortran_layout
   type(contact_normal_period), target :: period
   type(contact_normal_patches), target :: patches
   type(contact_normal_row_tables), target :: row_tables
+  type(contact_normal_friction), target :: friction
   type(contact_normal_scene), target :: scene
   type(contact_normal_options), target :: options
   type(contact_normal_progress), target :: progress
@@ -65,6 +66,24 @@ program fortran_layout
   call show("contact_normal_row_tables.coefficients", c_loc(row_tables%coefficients))
   call show("contact_normal_row_tables.scale", c_loc(row_tables%scale))
 
+  base = place(c_loc(friction))
+  print '(a, i0)', "contact_normal_friction ", c_sizeof(friction)
+  call show("contact_normal_friction.struct_size", c_loc(friction%struct_size))
+  call show("contact_normal_friction.coefficient", c_loc(friction%coefficient))
+  call show("contact_normal_friction.coefficients", c_loc(friction%coefficients))
+  call show("contact_normal_friction.motion", c_loc(friction%motion))
+  call show("contact_normal_friction.continues", c_loc(friction%continues))
+  call show("contact_normal_friction.prescribed", c_loc(friction%prescribed))
+  call show("contact_normal_friction.creepage", c_loc(friction%creepage))
+  call show("contact_normal_friction.spin", c_loc(friction%spin))
+  call show("contact_normal_friction.spin_centre", c_loc(friction%spin_centre))
+  call show("contact_normal_friction.force", c_loc(friction%force))
+  call show("contact_normal_friction.rolling_distance", c_loc(friction%rolling_distance))
+  call show("contact_normal_friction.rolling_direction", c_loc(friction%rolling_direction))
+  call show("contact_normal_friction.spin_offset", c_loc(friction%spin_offset))
+  call show("contact_normal_friction.previous_traction", c_loc(friction%previous_traction))
+  call show("contact_normal_friction.rigid_slip", c_loc(friction%rigid_slip))
+
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
   call show("contact_normal_scene.struct_size", c_loc(scene%struct_size))
@@ -86,6 +105,7 @@ program fortran_layout
   call show("contact_normal_scene.patches", c_loc(scene%patches))
   call show("contact_normal_scene.row_tables", c_loc(scene%row_tables))
   call show("contact_normal_scene.coating", c_loc(scene%coating))
+  call show("contact_normal_scene.friction", c_loc(scene%friction))
 
   base = place(c_loc(options))
   print '(a, i0)', "contact_normal_options ", c_sizeof(options)
@@ -127,6 +147,9 @@ program fortran_layout
   call show("contact_normal_fields.deformed_distance", c_loc(fields%deformed_distance))
   call show("contact_normal_fields.displacement", c_loc(fields%displacement))
   call show("contact_normal_fields.contact", c_loc(fields%contact))
+  call show("contact_normal_fields.traction", c_loc(fields%traction))
+  call show("contact_normal_fields.slip", c_loc(fields%slip))
+  call show("contact_normal_fields.adhesion", c_loc(fields%adhesion))
 
   base = place(c_loc(row))
   print '(a, i0)', "contact_normal_ledger_row ", c_sizeof(row)
@@ -186,6 +209,15 @@ program fortran_layout
   call show("contact_normal_report.halved_error_force", c_loc(report%halved_error_force))
   call show("contact_normal_report.edge_count", c_loc(report%edge_count))
   call show("contact_normal_report.tolerance", c_loc(report%tolerance))
+  call show("contact_normal_report.tangential_force", c_loc(report%tangential_force))
+  call show("contact_normal_report.tangential_moment", c_loc(report%tangential_moment))
+  call show("contact_normal_report.creepage", c_loc(report%creepage))
+  call show("contact_normal_report.tangential_residual", c_loc(report%tangential_residual))
+  call show("contact_normal_report.tangential_gap", c_loc(report%tangential_gap))
+  call show("contact_normal_report.stick_count", c_loc(report%stick_count))
+  call show("contact_normal_report.slip_count", c_loc(report%slip_count))
+  call show("contact_normal_report.tangential_products", c_loc(report%tangential_products))
+  call show("contact_normal_report.tangential_seconds", c_loc(report%tangential_seconds))
 
   base = place(c_loc(accuracy))
   print '(a, i0)', "contact_normal_accuracy ", c_sizeof(accuracy)

@@ -254,7 +254,28 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         period,
         patches,
         row_tables,
-        coating
+        coating,
+        friction
+    );
+    layout!(
+        ours,
+        "Friction",
+        contact_normal_friction,
+        struct_size,
+        coefficient,
+        coefficients,
+        motion,
+        continues,
+        prescribed,
+        creepage,
+        spin,
+        spin_centre,
+        force,
+        rolling_distance,
+        rolling_direction,
+        spin_offset,
+        previous_traction,
+        rigid_slip
     );
     layout!(ours, "Coating", contact_normal_coating, struct_size, thickness, shear_modulus, poisson_ratio);
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
@@ -299,7 +320,19 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         progress,
         user
     );
-    layout!(ours, "Fields", contact_normal_fields, struct_size, pressure, deformed_distance, displacement, contact);
+    layout!(
+        ours,
+        "Fields",
+        contact_normal_fields,
+        struct_size,
+        pressure,
+        deformed_distance,
+        displacement,
+        contact,
+        traction,
+        slip,
+        adhesion
+    );
     layout!(
         ours,
         "LedgerRow",
@@ -361,7 +394,16 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         halved_seconds,
         halved_error_force,
         edge_count,
-        tolerance
+        tolerance,
+        tangential_force,
+        tangential_moment,
+        creepage,
+        tangential_residual,
+        tangential_gap,
+        stick_count,
+        slip_count,
+        tangential_products,
+        tangential_seconds
     );
     layout!(
         ours,

@@ -6,7 +6,7 @@ use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
 /// Each struct of 0.1 has this size, for ever.
-const SIZES: [(&str, i64); 11] = [
+const SIZES: [(&str, i64); 12] = [
     ("scene", 144),
     ("influence", 32),
     ("layer", 24),
@@ -14,6 +14,7 @@ const SIZES: [(&str, i64); 11] = [
     ("period", 16),
     ("patches", 32),
     ("row_tables", 32),
+    ("friction", 152),
     ("options", 96),
     ("fields", 40),
     ("report", 264),
@@ -33,6 +34,7 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
         }
         "patches" => &mut call.use_patches([1.0; 4]).struct_size,
         "row_tables" => &mut call.use_row_tables().struct_size,
+        "friction" => &mut call.use_friction().struct_size,
         "options" => &mut call.options.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "report" => &mut call.report.known.struct_size,

@@ -1,0 +1,200 @@
+//! Effect: friction, `|q| <= g = mu p`: tangential tractions from the motion of the bodies, or from the tangential forces.
+//!
+//! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
+//! are alike; it is solved first.
+
+use std::f64::consts::PI;
+
+use super::effect::{check_values, Effect};
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+use crate::scene::Plain;
+
+/// mu, a number: the same everywhere or one per element, `[my][mx]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coefficient<'a> {
+    /// The same everywhere.
+    Uniform(f64),
+    /// One per element.
+    PerElement(&'a [f64]),
+}
+
+impl Coefficient<'_> {
+    /// Of element i.
+    pub fn at(&self, i: usize) -> f64 {
+        match self {
+            Coefficient::Uniform(mu) => *mu,
+            Coefficient::PerElement(mu) => mu[i],
+        }
+    }
+}
+
+/// How the bodies move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Motion {
+    /// Sideways and about the normal, without rolling; creepages are lengths, spin is an angle.
+    #[default]
+    Shift,
+    /// A step of rolling, from the tractions before.
+    TransientRolling,
+}
+
+/// What is prescribed in a direction; the other one is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Prescribed {
+    /// The creepage: for a shift a length, for rolling a length per length rolled.
+    Creepage(f64),
+    /// The force on body 1.
+    Force(f64),
+}
+
+/// Where the tractions before this step come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Previous<'a> {
+    /// There are none: from rest.
+    #[default]
+    None,
+    /// Tractions in x and y, `[my][mx]` each.
+    Given([&'a [f64]; 2]),
+    /// What this solver found last.
+    Kept,
+}
+
+/// Friction between the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction<'a> {
+    /// mu.
+    pub coefficient: Coefficient<'a>,
+    /// How the bodies move.
+    pub motion: Motion,
+    /// In x and in y. The slip is that of body 1 over body 2: a negative creepage gives a positive force.
+    pub prescribed: [Prescribed; 2],
+    /// phi, about the normal: for a shift an angle, for rolling an angle per length rolled.
+    pub spin: f64,
+    /// Where the spin turns about and the moment is taken, from the centre of the grid.
+    pub spin_centre: [f64; 2],
+    /// dq, a length: rolled in the step. 0: dx.
+    pub rolling_distance: f64,
+    /// chi, an angle from the x axis.
+    pub rolling_direction: f64,
+    /// The part of the step by which places are ahead in the slip by spin.
+    pub spin_offset: f64,
+    /// The tractions before.
+    pub previous: Previous<'a>,
+    /// A rigid slip of the caller's in addition, lengths per step, x and y.
+    pub rigid_slip: Option<[&'a [f64]; 2]>,
+}
+
+impl Friction<'_> {
+    /// Of a coefficient; nothing moves.
+    pub fn new(coefficient: f64) -> Friction<'static> {
+        Friction {
+            coefficient: Coefficient::Uniform(coefficient),
+            motion: Motion::Shift,
+            prescribed: [Prescribed::Creepage(0.0); 2],
+            spin: 0.0,
+            spin_centre: [0.0; 2],
+            rolling_distance: 0.0,
+            rolling_direction: 0.0,
+            spin_offset: 1.0 / 6.0,
+            previous: Previous::None,
+            rigid_slip: None,
+        }
+    }
+
+    /// The length rolled in a step; of a shift 1, so that creepages are lengths.
+    pub fn distance(&self, grid: &Grid) -> f64 {
+        match self.motion {
+            Motion::Shift => 1.0,
+            _ if self.rolling_distance == 0.0 => grid.dx,
+            _ => self.rolling_distance,
+        }
+    }
+
+    /// The rigid slip of the step at element i; without creepages that are to be found.
+    pub fn rigid_slip_at(&self, grid: &Grid, i: usize) -> [f64; 2] {
+        let distance = self.distance(grid);
+        let centre =
+            |k: usize, m: usize, d: f64, spin_centre: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d - spin_centre;
+        let mut x = centre(i % grid.mx, grid.mx, grid.dx, self.spin_centre[0]);
+        let mut y = centre(i / grid.mx, grid.my, grid.dy, self.spin_centre[1]);
+        if self.motion != Motion::Shift {
+            let ahead = self.spin_offset * distance;
+            x += ahead * self.rolling_direction.cos();
+            y += ahead * self.rolling_direction.sin();
+        }
+        let creepage = self.prescribed.map(|prescribed| match prescribed {
+            Prescribed::Creepage(creepage) => creepage,
+            Prescribed::Force(_) => 0.0,
+        });
+        let own = self.rigid_slip.map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
+        [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+    }
+
+    /// Refuses numbers that are none.
+    fn check_numbers(&self) -> Result<()> {
+        let finite = |name: &str, value: f64| require(value.is_finite(), name, value, "it must be finite");
+        for (k, prescribed) in self.prescribed.iter().enumerate() {
+            match prescribed {
+                Prescribed::Creepage(creepage) => {
+                    finite(["friction->creepage[0]", "friction->creepage[1]"][k], *creepage)?
+                }
+                Prescribed::Force(force) => finite(["friction->force[0]", "friction->force[1]"][k], *force)?,
+            }
+        }
+        finite("friction->spin", self.spin)?;
+        finite("friction->spin_centre[0]", self.spin_centre[0])?;
+        finite("friction->spin_centre[1]", self.spin_centre[1])?;
+        finite("friction->spin_offset", self.spin_offset)?;
+        let (distance, direction) = (self.rolling_distance, self.rolling_direction);
+        require(
+            distance >= 0.0 && distance.is_finite(),
+            "friction->rolling_distance",
+            distance,
+            "it must be positive and finite, or 0 for dx",
+        )?;
+        let turns = "an angle must lie in [-2 pi, 2 pi]";
+        require(direction.abs() <= 2.0 * PI, "friction->rolling_direction", direction, turns)
+    }
+}
+
+impl Effect for Friction<'_> {
+    fn name(&self) -> &'static str {
+        "friction"
+    }
+
+    fn check(&self, grid: &Grid) -> Result<()> {
+        self.check_numbers()?;
+        let coefficient = |name: &str, mu: f64| match mu {
+            mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
+            mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
+            _ => Ok(()),
+        };
+        match self.coefficient {
+            Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
+            Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
+        }
+        let finite = |name: &str, value: f64| match value.is_finite() {
+            true => Ok(()),
+            false => Err(Error::NotFinite(format!("{name} is {value}; it must be finite"))),
+        };
+        if let Previous::Given([x, y]) = self.previous {
+            check_values("friction->previous_traction[0]", x, grid, finite)?;
+            check_values("friction->previous_traction[1]", y, grid, finite)?;
+        }
+        if let Some([x, y]) = self.rigid_slip {
+            check_values("friction->rigid_slip[0]", x, grid, finite)?;
+            check_values("friction->rigid_slip[1]", y, grid, finite)?;
+        }
+        Ok(())
+    }
+
+    fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check(&scene.grid)
+    }
+
+    // Tangential coefficients of these are not known.
+    fn excludes(&self) -> &'static [&'static str] {
+        &["influence", "row_tables", "period", "patches", "coating"]
+    }
+}

@@ -1,0 +1,156 @@
+//! `contact_normal_friction`.
+
+use super::arguments::{optional, GivenEffect, Regions};
+use super::status::Refusal;
+use super::structs::{self, versioned};
+use crate::error::Error;
+use crate::friction::{EXTERIOR, SLIP, STICK};
+use crate::grid::Grid;
+use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
+
+/// `motion`: sideways and about the normal, without rolling.
+pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
+/// `motion`: a step of rolling, from the tractions before.
+pub const CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING: i32 = 1;
+/// `motion`: rolling that does not change any more. This version does not solve it (UNSUPPORTED): take steps of transient rolling.
+pub const CONTACT_NORMAL_MOTION_STEADY_ROLLING: i32 = 2;
+
+/// `prescribed`: the creepage of a direction is given.
+pub const CONTACT_NORMAL_PRESCRIBED_CREEPAGE: i32 = 0;
+/// `prescribed`: the tangential force of a direction is given, its creepage is found.
+pub const CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE: i32 = 1;
+
+/// `fields->adhesion`: the element is not in contact.
+pub const CONTACT_NORMAL_ADHESION_EXTERIOR: i32 = 0;
+/// `fields->adhesion`: it sticks.
+pub const CONTACT_NORMAL_ADHESION_STICK: i32 = 1;
+/// `fields->adhesion`: it slips.
+pub const CONTACT_NORMAL_ADHESION_SLIP: i32 = 2;
+
+// The core writes its own.
+const _: () = assert!(
+    CONTACT_NORMAL_ADHESION_EXTERIOR == EXTERIOR
+        && CONTACT_NORMAL_ADHESION_STICK == STICK
+        && CONTACT_NORMAL_ADHESION_SLIP == SLIP
+);
+
+/// Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
+/// Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
+/// gives a positive force in x. See docs/friction.md.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_friction {
+    /// Set by `contact_normal_friction_init`.
+    pub struct_size: i64,
+    /// mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
+    pub coefficient: f64,
+    /// mu of each element, `[my][mx]`, or NULL (default).
+    pub coefficients: *const f64,
+    /// CONTACT_NORMAL_MOTION_...; default SHIFT.
+    pub motion: i32,
+    /// 1: the tractions before are those that this handle found last; 0 (default): `previous_traction`.
+    pub continues: i32,
+    /// Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
+    pub prescribed: [i32; 2],
+    /// In x and y; default 0. Not read where the force is prescribed.
+    pub creepage: [f64; 2],
+    /// About the normal; default 0.
+    pub spin: f64,
+    /// Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+    pub spin_centre: [f64; 2],
+    /// The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
+    pub force: [f64; 2],
+    /// The length rolled in the step; default 0: dx.
+    pub rolling_distance: f64,
+    /// The direction of rolling: an angle from the x axis, in radians; default 0.
+    pub rolling_direction: f64,
+    /// In rolling with spin: the part of the step by which places are ahead; default 1/6.
+    pub spin_offset: f64,
+    /// The tractions before, in x and y, `[my][mx]` each, both or none; NULL (default): none, a start from rest.
+    pub previous_traction: [*const f64; 2],
+    /// A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
+    pub rigid_slip: [*const f64; 2],
+}
+
+versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0 }
+
+/// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_friction_init(friction: *mut contact_normal_friction) {
+    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+    unsafe { structs::init(friction) }
+}
+
+impl contact_normal_friction {
+    /// The caller's arrays must live as long as the result is used.
+    pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Friction<'a>, Refusal> {
+        let motion = match self.motion {
+            CONTACT_NORMAL_MOTION_SHIFT => Motion::Shift,
+            CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING => Motion::TransientRolling,
+            CONTACT_NORMAL_MOTION_STEADY_ROLLING => {
+                let message = "friction->motion is STEADY_ROLLING, which this version does not solve";
+                return Err(Error::Unsupported(message.into()).into());
+            }
+            other => {
+                let rule = "it must be SHIFT 0 or TRANSIENT_ROLLING 1";
+                return Err(Refusal::invalid(format!("friction->motion is {other}; {rule}")));
+            }
+        };
+        let pair = |name: &str, [x, y]: [*const f64; 2]| {
+            // SAFETY (both): NULL or one value per element, by the conventions of the ABI.
+            match unsafe { (optional(x, grid.len()), optional(y, grid.len())) } {
+                (Some(x), Some(y)) => Ok(Some([x, y])),
+                (None, None) => Ok(None),
+                _ => Err(Refusal::null(&format!("one of scene->friction->{name}"))),
+            }
+        };
+        let given = pair("previous_traction", self.previous_traction)?;
+        let previous = match (self.continues, given) {
+            (0, Some(given)) => Previous::Given(given),
+            (0, None) => Previous::None,
+            (1, None) => Previous::Kept,
+            (1, Some(_)) => {
+                let message = "friction->continues is 1, and previous_traction is given; only one of them can be";
+                return Err(Refusal::invalid(message.into()));
+            }
+            (other, _) => return Err(Refusal::invalid(format!("friction->continues is {other}; it must be 0 or 1"))),
+        };
+        // SAFETY: as above.
+        let coefficients = unsafe { optional(self.coefficients, grid.len()) };
+        Ok(Friction {
+            coefficient: coefficients.map_or(Coefficient::Uniform(self.coefficient), Coefficient::PerElement),
+            motion,
+            prescribed: [self.prescribed_in(0)?, self.prescribed_in(1)?],
+            spin: self.spin,
+            spin_centre: self.spin_centre,
+            rolling_distance: self.rolling_distance,
+            rolling_direction: self.rolling_direction,
+            spin_offset: self.spin_offset,
+            previous,
+            rigid_slip: pair("rigid_slip", self.rigid_slip)?,
+        })
+    }
+
+    fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
+        match self.prescribed[k] {
+            CONTACT_NORMAL_PRESCRIBED_CREEPAGE => Ok(Prescribed::Creepage(self.creepage[k])),
+            CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE => Ok(Prescribed::Force(self.force[k])),
+            other => {
+                let rule = "it must be PRESCRIBED_CREEPAGE 0 or PRESCRIBED_TANGENTIAL_FORCE 1";
+                Err(Refusal::invalid(format!("friction->prescribed[{k}] is {other}; {rule}")))
+            }
+        }
+    }
+}
+
+impl GivenEffect for contact_normal_friction {
+    fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
+        let n = grid.len();
+        regions.input("friction->coefficients", self.coefficients, n)?;
+        for k in 0..2 {
+            regions.input("friction->previous_traction", self.previous_traction[k], n)?;
+            regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! `contact_normal_solve_tangential`: the tangential problem alone, with pressures that are given.
+
+use super::arguments::{required, Regions};
+use super::guard::guard;
+use super::options::contact_normal_options;
+use super::outputs::Buffers;
+use super::report::{contact_normal_fields, contact_normal_report};
+use super::scene::contact_normal_scene;
+use super::solve::{explain, watcher, Outcome, Request};
+use super::status::contact_normal_status;
+use crate::solver::{solve_tangential, ProgressCallback, Stop};
+
+/// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
+/// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
+/// used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
+/// `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.1.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solve_tangential(
+    scene: *const contact_normal_scene,
+    pressure: *const f64,
+    options: *const contact_normal_options,
+    fields: *mut contact_normal_fields,
+    report: *mut contact_normal_report,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
+        let Request { scene, options, outputs } = unsafe {
+            let also = |_: &mut Regions| Ok(());
+            Request::read(scene, options, fields, report, &mut Buffers::default(), also)?
+        };
+        // SAFETY: NULL or one value per element, by the conventions of the ABI.
+        let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
+        let mut callback = watcher(&options);
+        let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
+        let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
+        outputs.write_friction(Some(&solution), scene.grid.len());
+        outputs.write_report(&report, &[])?;
+        let message =
+            if stop == Stop::Converged { String::new() } else { explain(stop, &report, options.options.method, None) };
+        Outcome { status: stop.into(), message }.conclude()
+    })
+}

@@ -1,0 +1,83 @@
+//! How well the conditions of friction hold: everything here is computed from q and a fresh u = A q.
+//!
+//! ```text
+//! n = q/|q|,  s_n = s.n;  on the circle: |q| >= g (1 - 1e-7)
+//! rest = s                       inside the circle
+//! rest = s - min(s_n, 0) n       on it: what of -s does not point outwards along the normal
+//! residual = rms_C(rest)/S,      S = max(rms_C(w), rms_C(u)) for a shift, rms_C(rigid slip) for rolling
+//! gap      = sum_C (s.q + g |s|) / sum_C g |rigid slip|     >= 0, and 0 for the solution only
+//! ```
+//!
+//! The error of q obeys `(q - q*)' A (q - q*) <= sum_C (s.q + g |s|)`.
+
+use super::problem::{add, dot, plus, square, Problem, Scale, State};
+
+/// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
+pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
+
+/// Rolling slowly: what the displacements' round-off leaves of the rigid slip.
+const ROUND_OFF: f64 = 1.5e-8;
+
+/// The measures of a solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Certificate {
+    /// See the module.
+    pub residual: f64,
+    /// See the module.
+    pub gap: f64,
+    /// Elements that stick: those inside the circle.
+    pub stick_count: usize,
+    /// Elements that slip.
+    pub slip_count: usize,
+}
+
+/// What residuals are compared with.
+pub fn scale(problem: &Problem, state: &State) -> f64 {
+    let (rigid, displacement) = (problem.rms_rigid(), problem.rms(|i| state.u[i]));
+    match problem.scale {
+        Scale::SlipOrDisplacement => rigid.max(displacement),
+        Scale::Slip => rigid.max(ROUND_OFF * displacement),
+    }
+}
+
+/// A length relative to another one; nothing is nothing relative to nothing.
+pub fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 {
+        0.0
+    } else {
+        value / scale
+    }
+}
+
+impl Certificate {
+    /// Of a state whose u is A q.
+    pub fn of(problem: &Problem, state: &State) -> Certificate {
+        let (mut squares, mut gap, mut work, mut slip_count) = (0.0, 0.0, 0.0, 0);
+        for i in problem.contact() {
+            let (q, g, s) = (state.q[i], problem.bound[i], problem.slip_at(i, &state.u));
+            let (length, slides) = (square(q).sqrt(), square(s).sqrt());
+            let on_circle = length >= g * ON_THE_CIRCLE;
+            slip_count += usize::from(on_circle);
+            squares += rest(s, q, length, on_circle);
+            gap += dot(s, q) + g * slides;
+            work += g * square(add(problem.rigid[i], problem.offset)).sqrt();
+        }
+        let rms = (squares / problem.count().max(1) as f64).sqrt();
+        Certificate {
+            residual: relative(rms, scale(problem, state)),
+            gap: relative(gap.max(0.0), work),
+            stick_count: problem.count() - slip_count,
+            slip_count,
+        }
+    }
+}
+
+/// The square of what is left of the slip s, q being |q| long.
+#[inline]
+pub fn rest(s: [f64; 2], q: [f64; 2], length: f64, on_circle: bool) -> f64 {
+    if !on_circle {
+        return square(s);
+    }
+    let n = [q[0] / length, q[1] / length];
+    square(plus(s, -dot(s, n).min(0.0), n))
+}

@@ -1,0 +1,154 @@
+//! Unlike bodies: pressures displace the surfaces sideways, and tractions displace them along the normal.
+//!
+//! With `K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4`, at the offset `(X, Y)` from the centre of a loaded element
+//!
+//! ```text
+//! Axz = -K/(pi G) integral of x/r^2,    Ayz = -K/(pi G) integral of y/r^2       sideways, by a unit pressure
+//! u_z = -(Axz qx + Ayz qy)                                                    along the normal, by tractions
+//! ```
+//!
+//! so that the operator of all three components is symmetric. Both integrals are one, `integral of 1/(x + i y)`: beyond six
+//! half-diagonals a series in the moments of the element, `dx dy sum_k m_2k/Z^(2k+1)`, `Z = X + i Y`; nearer exact in one direction and by
+//! Gauss-Legendre in the other; next to the element differences of `Y ln r + X atan(Y/X)` over its corners.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::Vector;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::{gauss, Coefficients, Kernel};
+use crate::memory::zeros;
+use crate::operator::fft::Complex;
+use crate::operator::{Operator, Workspace};
+use crate::threads::Threads;
+
+/// The series suffices from so many half-diagonals on, with this many terms after the first.
+const FAR: f64 = 6.0;
+const TERMS: usize = 8;
+
+/// Axz (component 0) or Ayz (1), displacements being taken at `by` from each centre, in elements.
+#[derive(Clone, Debug)]
+struct Cross {
+    dx: f64,
+    dy: f64,
+    /// `-K/(pi G)`.
+    factor: f64,
+    component: usize,
+    by: (f64, f64),
+}
+
+impl Kernel for Cross {
+    fn at(&self, kx: i64, ky: i64) -> f64 {
+        let integrals = integrals(kx as f64 + self.by.0, ky as f64 + self.by.1, self.dx, self.dy);
+        self.factor * integrals[self.component]
+    }
+
+    fn is_even(&self, _grid: &Grid) -> bool {
+        false
+    }
+
+    fn is_symmetric(&self, _grid: &Grid) -> bool {
+        false
+    }
+
+    fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
+        Ok(Arc::new(Cross { dx: coarse.dx, dy: coarse.dy, ..self.clone() }))
+    }
+}
+
+/// The integrals of `x/r^2` and `y/r^2` over an element, at an offset in elements.
+pub fn integrals(x: f64, y: f64, dx: f64, dy: f64) -> [f64; 2] {
+    let (kx, ky) = (x.abs(), y.abs());
+    let (px, py) = (kx * dx, ky * dy);
+    let far = FAR * 0.5 * dx.hypot(dy);
+    let [jx, jy] = if px * px + py * py >= far * far { series(px, py, dx, dy) } else { near(kx, ky, dx, dy) };
+    // Odd functions: exactly 0 in the middle.
+    let odd = |x: f64, value: f64| if x == 0.0 { 0.0 } else { value.copysign(x) };
+    [odd(x, jx), odd(y, jy)]
+}
+
+fn series(px: f64, py: f64, dx: f64, dy: f64) -> [f64; 2] {
+    let inverse = Complex::new(px, py).inv();
+    let (square, mut sum) = (inverse * inverse, Complex::new(0.0, 0.0));
+    for k in (0..=TERMS).rev() {
+        sum = sum * square + moment(k, dx, dy);
+    }
+    sum = sum * inverse * (dx * dy);
+    [sum.re, -sum.im]
+}
+
+/// The mean over the element of `(x + i y)^2k`.
+fn moment(k: usize, dx: f64, dy: f64) -> f64 {
+    let (hx, hy) = (0.5 * dx, 0.5 * dy);
+    let (mut sum, mut binomial) = (0.0, 1.0);
+    for j in 0..=k {
+        let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
+        let (in_x, in_y) = (2 * (k - j), 2 * j);
+        sum += sign * binomial * hx.powi(in_x as i32) / (in_x + 1) as f64 * hy.powi(in_y as i32) / (in_y + 1) as f64;
+        binomial *= (in_x * (in_x.max(1) - 1)) as f64 / ((in_y + 1) * (in_y + 2)) as f64;
+    }
+    sum
+}
+
+fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
+    if ky >= 2.0 {
+        return [gauss(ky * dy, dy, |y| along(kx, dx, y)[0]), gauss(ky * dy, dy, |y| along(kx, dx, y)[1])];
+    }
+    if kx >= 2.0 {
+        return [gauss(kx * dx, dx, |x| along(ky, dy, x)[1]), gauss(kx * dx, dx, |x| along(ky, dy, x)[0])];
+    }
+    let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
+    let f = |x: f64, y: f64| {
+        let logarithm = if y == 0.0 { 0.0 } else { y * x.hypot(y).ln() };
+        logarithm + if x == 0.0 { 0.0 } else { x * (y / x).atan() }
+    };
+    [f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym), f(yp, xp) - f(ym, xp) - f(yp, xm) + f(ym, xm)]
+}
+
+/// Over x in an interval of length d about k d, at the distance y: the integrals of `x/r^2` and `y/r^2`.
+fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
+    let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
+    [0.5 * (2.0 * k * d * d / (minus * minus + y * y)).ln_1p(), (d * y).atan2(plus * minus + y * y)]
+}
+
+/// Products of pressures and tractions with what couples them.
+pub struct Coupling {
+    operators: [Operator<f64>; 2],
+    workspace: Workspace<f64>,
+    field: [Vec<f64>; 2],
+}
+
+impl Coupling {
+    /// On a grid, with `unlike = K/G`; displacements are taken at `by` from each centre, in elements.
+    pub fn new(grid: &Grid, unlike: f64, by: (f64, f64), threads: &Threads) -> Result<Coupling> {
+        let threads = &threads.suited_to(grid.len());
+        let operator = |component: usize| {
+            let kernel = Cross { dx: grid.dx, dy: grid.dy, factor: -unlike / PI, component, by };
+            Operator::new(&Coefficients::from(kernel), grid, threads)
+        };
+        let operators = [operator(0)?, operator(1)?];
+        let workspace = operators[0].workspace()?;
+        let field = || zeros(grid.len(), "the coupling of unlike bodies");
+        Ok(Coupling { operators, workspace, field: [field()?, field()?] })
+    }
+
+    /// Adds `sign` times the sideways displacements by pressures.
+    pub fn add_sideways(&mut self, p: &[f64], sign: f64, u: &mut [Vector]) {
+        for (component, operator) in self.operators.iter().enumerate() {
+            operator.apply(p, &mut self.field[0], &mut self.workspace);
+            u.iter_mut().zip(&self.field[0]).for_each(|(u, value)| u[component] += sign * value);
+        }
+    }
+
+    /// The displacements along the normal by tractions.
+    pub fn along_normal(&mut self, q: &[Vector], u: &mut [f64]) {
+        u.fill(0.0);
+        let [given, product] = &mut self.field;
+        for (component, operator) in self.operators.iter().enumerate() {
+            given.iter_mut().zip(q).for_each(|(given, q)| *given = q[component]);
+            operator.apply(given, product, &mut self.workspace);
+            u.iter_mut().zip(&*product).for_each(|(u, value)| *u -= value);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Nested iteration: the problem on coarser grids, coarsest first, each the start of the next.
+//!
+//! ```text
+//! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C
+//! start of the next grid: q/g, interpolated between the centres of those in C, times g;
+//!                         a unit vector where all that it is interpolated from slip
+//! ```
+//!
+//! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
+
+use super::certificate::ON_THE_CIRCLE;
+use super::problem::{add, onto_disc, plus, square, Operators, Problem, State};
+use super::shift::Memory;
+use super::Vector;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::threads::Threads;
+
+/// A side with fewer elements is not coarsened.
+const COARSEST: usize = 24;
+
+/// One grid: its problem, its unknowns, the memory of its iteration.
+pub struct Level {
+    pub problem: Problem,
+    pub state: State,
+    pub memory: Memory,
+}
+
+impl Level {
+    /// Nothing slides.
+    pub fn new(grid: Grid, operators: Operators) -> Result<Level> {
+        let n = grid.len();
+        Ok(Level { problem: Problem::new(grid, operators)?, state: State::new(n)?, memory: Memory::new(n)? })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>()
+    }
+}
+
+/// The next coarser grid, if there is one.
+fn coarser(grid: &Grid) -> Option<Grid> {
+    let Grid { mx, my, dx, dy } = *grid;
+    let (in_x, in_y) = match (mx, my) {
+        (_, 1) => (mx >= COARSEST, false),
+        (1, _) => (false, my >= COARSEST),
+        _ => (mx.min(my) >= COARSEST, mx.min(my) >= COARSEST),
+    };
+    if !in_x && !in_y {
+        return None;
+    }
+    let half = |m: usize, d: f64, is_coarsened: bool| if is_coarsened { (m.div_ceil(2), 2.0 * d) } else { (m, d) };
+    let ((mx, dx), (my, dy)) = (half(mx, dx, in_x), half(my, dy, in_y));
+    Some(Grid { mx, my, dx, dy })
+}
+
+/// The grids of a box, the finest first.
+pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads) -> Result<Vec<Level>> {
+    let tangential = operators.tangential.clone();
+    let mut levels = vec![Level::new(grid, operators)?];
+    let mut next = coarser(&grid);
+    while let Some(grid) = next {
+        let tangential = tangential.for_element(grid.dx, grid.dy);
+        levels.push(Level::new(grid, Operators::new(&tangential, &grid, single, threads)?)?);
+        next = coarser(&grid);
+    }
+    Ok(levels)
+}
+
+/// g, w and what goes with them on the next coarser grid; q = 0.
+pub fn restrict(fine: &Problem, coarse: &mut Level) {
+    let Level { problem, state, .. } = coarse;
+    let (from, to) = (fine.grid, problem.grid);
+    let all = (1 + usize::from(to.dx > from.dx)) * (1 + usize::from(to.dy > from.dy));
+    for i in 0..to.len() {
+        let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
+        for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
+            bound += fine.bound[child];
+            slip = add(slip, fine.slip[child]);
+            rigid = add(rigid, fine.rigid[child]);
+            count += 1;
+        }
+        let share = 1.0 / f64::from(count.max(1));
+        problem.bound[i] = bound / all as f64;
+        problem.slip[i] = [share * slip[0], share * slip[1]];
+        problem.rigid[i] = [share * rigid[0], share * rigid[1]];
+    }
+    (problem.offset, problem.scale) = (fine.offset, fine.scale);
+    problem.bound_changed();
+    state.unload();
+}
+
+/// q on the next finer grid, from the coarser one.
+pub fn interpolate(coarse: &Level, fine: &mut Level) {
+    let (from, to) = (coarse.problem.grid, fine.problem.grid);
+    let (x, y) = (neighbours(to.mx, from.mx), neighbours(to.my, from.my));
+    for i in 0..to.len() {
+        let g = fine.problem.bound[i];
+        fine.state.q[i] = [0.0; 2];
+        if !(g > 0.0) {
+            continue;
+        }
+        let (mut sum, mut weights, mut all_slip) = ([0.0; 2], 0.0, true);
+        for (column, in_x) in x[i % to.mx] {
+            for (row, in_y) in y[i / to.mx] {
+                let k = row * from.mx + column;
+                let (bound, weight) = (coarse.problem.bound[k], in_x * in_y);
+                if !(bound > 0.0) || weight == 0.0 {
+                    continue;
+                }
+                let part = coarse.state.q[k].map(|q| q / bound);
+                all_slip &= square(part) >= ON_THE_CIRCLE * ON_THE_CIRCLE;
+                sum = plus(sum, weight, part);
+                weights += weight;
+            }
+        }
+        let part = if weights > 0.0 { sum.map(|sum| sum / weights) } else { [0.0; 2] };
+        let length = square(part).sqrt();
+        let part = if all_slip && length > 0.0 { part.map(|part| part / length) } else { part };
+        fine.state.q[i] = onto_disc([g * part[0], g * part[1]], g);
+    }
+    fine.problem.offset = coarse.problem.offset;
+    fine.state.is_exact = false;
+}
+
+/// Of each fine place the two coarse ones between which its centre lies, with their weights.
+fn neighbours(fine: usize, coarse: usize) -> Vec<[(usize, f64); 2]> {
+    if fine == coarse {
+        return (0..fine).map(|i| [(i, 1.0), (i, 0.0)]).collect();
+    }
+    let of = |i: usize| {
+        let own = i / 2;
+        let other = if i % 2 == 0 { own.checked_sub(1) } else { Some(own + 1).filter(|k| *k < coarse) };
+        match other {
+            Some(other) => [(own, 0.75), (other, 0.25)],
+            None => [(own, 1.0), (own, 0.0)],
+        }
+    };
+    (0..fine).map(of).collect()
+}

@@ -1,0 +1,34 @@
+//! The tangential problem: tractions q on C with `|q| <= g = mu p`, and slip opposite to them. docs/friction.md says what it computes.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`coefficients`] | influence of tangential tractions |
+//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
+//! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
+//! | `shift` | projected conjugate gradients on discs, for motions that are given |
+//! | `newton`, `fgmres` | semismooth Newton, for forces that are given and where the gradients stall |
+//! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
+//! | `levels`, `solver` | nested iteration, and the whole solve |
+
+mod certificate;
+pub mod coefficients;
+pub mod cross;
+pub mod dense;
+mod fgmres;
+mod levels;
+mod newton;
+mod problem;
+mod shift;
+mod solver;
+mod tangent;
+mod toeplitz;
+
+pub use certificate::Certificate;
+pub use coefficients::{Compliance, Tangential};
+pub use cross::Coupling;
+pub use shift::End;
+pub use solver::{Report, Request, Solution, Solver, EXTERIOR, SLIP, STICK};
+pub use toeplitz::{Toeplitz, Workspace};
+
+/// A vector of the plane: `[x, y]`.
+pub type Vector = [f64; 2];

@@ -1,0 +1,299 @@
+//! The tangential problem of one grid, and its unknowns.
+//!
+//! Find tractions q on C with
+//!
+//! ```text
+//! s = w + A q                         the slip; w is the rigid slip, less the displacement u' before the step
+//! stick:  s = 0,             |q| <= g
+//! slip:   s = -lambda q,     |q| = g,     lambda >= 0
+//! outside C:                  q = 0
+//! ```
+//!
+//! It is the minimum of `1/2 q.Aq + w.q` over the discs `|q| <= g`, strictly convex: there is one solution.
+
+use std::ops::Range;
+
+use super::coefficients::Tangential;
+use super::toeplitz::{unit_of, Toeplitz, Workspace};
+use super::Vector;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::threads::Threads;
+
+/// What memory is for.
+const FIELDS: &str = "tangential fields";
+
+/// Products with A in double precision, with A in single precision, and with a circulant near its inverse.
+pub struct Operators {
+    /// The coefficients.
+    pub tangential: Tangential,
+    exact: (Toeplitz<f64>, Workspace<f64>),
+    fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
+    inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
+    /// What a traction on one element displaces itself by: the larger of both directions.
+    pub self_influence: f64,
+    /// Products since the last call of [`Problem::take_products`].
+    products: u64,
+}
+
+impl Operators {
+    /// On a grid. `single`: whether directions may be multiplied in single precision.
+    pub fn new(tangential: &Tangential, grid: &Grid, single: bool, threads: &Threads) -> Result<Operators> {
+        let threads = &threads.suited_to(grid.len());
+        let exact = Toeplitz::new(tangential, grid, threads)?;
+        let fast = single.then(|| exact.in_precision()).transpose()?;
+        let inverse = Toeplitz::inverse(tangential, grid, threads)?;
+        let [xx, yy, _] = tangential.at(0.0, 0.0);
+        Ok(Operators {
+            tangential: tangential.clone(),
+            exact: with_workspace(exact)?,
+            fast: fast.map(with_workspace).transpose()?,
+            inverse: inverse.map(with_workspace).transpose()?,
+            self_influence: xx.max(yy),
+            products: 0,
+        })
+    }
+
+    /// `u = A q` in double precision.
+    pub fn multiply(&mut self, q: &[Vector], u: &mut [Vector]) {
+        let (operator, workspace) = &mut self.exact;
+        operator.apply(q, 1.0, u, workspace);
+        self.products += 1;
+    }
+
+    /// `u = A q` to single precision, for q of the order of `unit`.
+    pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
+        match &mut self.fast {
+            Some((operator, workspace)) => operator.apply(q, unit_of(unit), u, workspace),
+            None => self.exact.0.apply(q, 1.0, u, &mut self.exact.1),
+        }
+        self.products += 1;
+    }
+
+    /// About `q = A^-1 u`, for tractions of the order of `unit`.
+    pub fn precondition(&mut self, u: &[Vector], unit: f64, q: &mut [Vector]) {
+        let a0 = self.self_influence;
+        match &mut self.inverse {
+            Some((operator, workspace)) => operator.apply(u, unit_of(unit * a0), q, workspace),
+            None => q.iter_mut().zip(u).for_each(|(q, u)| *q = [u[0] / a0, u[1] / a0]),
+        }
+    }
+
+    /// Bytes of the spectra.
+    pub fn bytes(&self) -> usize {
+        let single =
+            |of: &Option<(Toeplitz<f32>, Workspace<f32>)>| of.as_ref().map_or(0, |(operator, _)| operator.bytes());
+        self.exact.0.bytes() + single(&self.fast) + single(&self.inverse)
+    }
+}
+
+fn with_workspace<T: crate::operator::fft::Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Workspace<T>)> {
+    let workspace = operator.workspace()?;
+    Ok((operator, workspace))
+}
+
+/// What residuals are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// The larger of the rigid slip and the displacements: a shift.
+    SlipOrDisplacement,
+    /// The rigid slip of the step: rolling.
+    Slip,
+}
+
+/// The tangential problem of one grid, a box around C.
+pub struct Problem {
+    /// The box.
+    pub grid: Grid,
+    /// g, 0 outside C.
+    pub bound: Vec<f64>,
+    /// The rigid slip, but for `offset`.
+    pub rigid: Vec<Vector>,
+    /// w, but for `offset`: the rigid slip less u'.
+    pub slip: Vec<Vector>,
+    /// What is to be added to both on C: found where forces are given.
+    pub offset: Vector,
+    /// What residuals are compared with.
+    pub scale: Scale,
+    /// A.
+    pub operators: Operators,
+    /// Of each row with elements of C, the run from the first to behind the last of them.
+    runs: Vec<Range<usize>>,
+    /// Elements of C.
+    count: usize,
+    /// rms over C of g.
+    rms_bound: f64,
+}
+
+/// Tractions and their displacements.
+#[derive(Default)]
+pub struct State {
+    /// q: 0 outside C.
+    pub q: Vec<Vector>,
+    /// u = A q, as far as `is_exact` says.
+    pub u: Vec<Vector>,
+    /// Whether u is a product in double precision of this very q.
+    pub is_exact: bool,
+}
+
+impl State {
+    /// q = 0.
+    pub fn new(n: usize) -> Result<State> {
+        Ok(State { q: zeros(n, FIELDS)?, u: zeros(n, FIELDS)?, is_exact: true })
+    }
+
+    /// q = 0.
+    pub fn unload(&mut self) {
+        self.q.fill([0.0; 2]);
+        self.u.fill([0.0; 2]);
+        self.is_exact = true;
+    }
+}
+
+impl Problem {
+    /// Nothing slides, nothing holds.
+    pub fn new(grid: Grid, operators: Operators) -> Result<Problem> {
+        let n = grid.len();
+        Ok(Problem {
+            grid,
+            bound: zeros(n, FIELDS)?,
+            rigid: zeros(n, FIELDS)?,
+            slip: zeros(n, FIELDS)?,
+            offset: [0.0; 2],
+            scale: Scale::SlipOrDisplacement,
+            operators,
+            runs: Vec::new(),
+            count: 0,
+            rms_bound: 0.0,
+        })
+    }
+
+    /// To be called when `bound` has changed.
+    pub fn bound_changed(&mut self) {
+        let mx = self.grid.mx;
+        self.runs.clear();
+        (self.count, self.rms_bound) = (0, 0.0);
+        for (iy, row) in self.bound.chunks_exact(mx).enumerate() {
+            let Some(first) = row.iter().position(|g| *g > 0.0) else { continue };
+            let last = row.iter().rposition(|g| *g > 0.0).unwrap_or(first);
+            self.runs.push(iy * mx + first..iy * mx + last + 1);
+        }
+        let largest = self.bound.iter().copied().fold(0.0, f64::max);
+        let mut squares = 0.0;
+        for g in self.bound.iter().filter(|g| **g > 0.0) {
+            self.count += 1;
+            squares += (g / largest) * (g / largest);
+        }
+        self.rms_bound = largest * (squares / self.count.max(1) as f64).sqrt();
+    }
+
+    /// The elements of C.
+    pub fn contact(&self) -> impl Iterator<Item = usize> + '_ {
+        self.runs.iter().cloned().flatten().filter(|&i| self.bound[i] > 0.0)
+    }
+
+    /// Elements of C.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// rms over C of g.
+    pub fn rms_bound(&self) -> f64 {
+        self.rms_bound
+    }
+
+    /// `s = w + u` of element i.
+    #[inline]
+    pub fn slip_at(&self, i: usize, u: &[Vector]) -> Vector {
+        let (w, u) = (self.slip[i], u[i]);
+        [w[0] + self.offset[0] + u[0], w[1] + self.offset[1] + u[1]]
+    }
+
+    /// rms over C of a field.
+    pub fn rms(&self, value: impl Fn(usize) -> Vector) -> f64 {
+        let sum: f64 = self.contact().map(|i| square(value(i))).sum();
+        (sum / self.count.max(1) as f64).sqrt()
+    }
+
+    /// rms over C of w.
+    pub fn rms_slip(&self) -> f64 {
+        self.rms(|i| add(self.slip[i], self.offset))
+    }
+
+    /// rms over C of the rigid slip.
+    pub fn rms_rigid(&self) -> f64 {
+        self.rms(|i| add(self.rigid[i], self.offset))
+    }
+
+    /// q feasible to the last bit, and u = A q by a fresh product.
+    pub fn refresh(&mut self, state: &mut State) {
+        for (q, &g) in state.q.iter_mut().zip(&self.bound) {
+            *q = clip(*q, g);
+        }
+        self.operators.multiply(&state.q, &mut state.u);
+        state.is_exact = true;
+    }
+
+    /// Products since the last call.
+    pub fn take_products(&mut self) -> u64 {
+        std::mem::take(&mut self.operators.products)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.operators.bytes() + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
+    }
+}
+
+/// Squares of a length may round up: so much is left between a traction and its bound.
+const MARGIN: f64 = 4.0 * f64::EPSILON;
+
+/// The nearest traction to q with `|q| <= g`, whichever way its length is rounded.
+fn clip(q: Vector, g: f64) -> Vector {
+    if !(g > 0.0) {
+        return [0.0; 2];
+    }
+    let scaled = [q[0] / g, q[1] / g];
+    let length = square(scaled).sqrt();
+    if length > 1.0 - MARGIN {
+        let factor = (1.0 - MARGIN) / length;
+        return [q[0] * factor, q[1] * factor];
+    }
+    q
+}
+
+/// `|v|^2`.
+#[inline]
+pub fn square(v: Vector) -> f64 {
+    v[0] * v[0] + v[1] * v[1]
+}
+
+/// `v . w`.
+#[inline]
+pub fn dot(v: Vector, w: Vector) -> f64 {
+    v[0] * w[0] + v[1] * w[1]
+}
+
+/// `v + w`.
+#[inline]
+pub fn add(v: Vector, w: Vector) -> Vector {
+    [v[0] + w[0], v[1] + w[1]]
+}
+
+/// `v + a w`.
+#[inline]
+pub fn plus(v: Vector, a: f64, w: Vector) -> Vector {
+    [v[0] + a * w[0], v[1] + a * w[1]]
+}
+
+/// The traction nearest to q within a disc of radius g.
+#[inline]
+pub fn onto_disc(q: Vector, g: f64) -> Vector {
+    let squared = square(q);
+    if squared > g * g {
+        let factor = g / squared.sqrt();
+        return [q[0] * factor, q[1] * factor];
+    }
+    q
+}

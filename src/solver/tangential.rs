@@ -1,0 +1,208 @@
+//! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
+
+use super::{Measures, Options, ProgressCallback, Stop};
+use crate::contact::State;
+use crate::effects::Previous;
+use crate::error::{invalid, Error, Result};
+use crate::friction::{Compliance, Coupling, End, Report, Request, Solution, Solver, Tangential, Vector};
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::operator::Precision;
+use crate::progress::Monitor;
+use crate::scene::{Friction, Motion, Scene};
+use crate::threads::Threads;
+
+/// What memory is for.
+const FIELDS: &str = "the coupling of unlike bodies";
+
+/// What a solver keeps for scenes with friction.
+pub struct Tangent {
+    solver: Solver,
+    /// Of unlike bodies.
+    coupled: Option<Coupled>,
+}
+
+/// What unlike bodies need beside: see [`Coupling`].
+struct Coupled {
+    unlike: f64,
+    here: Coupling,
+    /// Of rolling: at the places before the step, which are so many elements away.
+    there: Option<((f64, f64), Coupling)>,
+    sideways: Vec<Vector>,
+    along_normal: Vec<f64>,
+    before: Vec<f64>,
+    /// Pressures of the last step.
+    last_pressure: Vec<f64>,
+}
+
+/// What stands still while normal and tangential problem are solved in turns.
+pub struct Turn<'a> {
+    /// The scene, with its own undeformed distance.
+    pub scene: &'a Scene<'a>,
+    /// Its friction.
+    pub friction: &'a Friction<'a>,
+    /// The options.
+    pub options: &'a Options,
+    /// The threads.
+    pub threads: &'a Threads,
+}
+
+impl Tangent {
+    /// For a scene's grid and bodies.
+    pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
+        let compliance = Compliance::of(&scene.bodies);
+        let tangential = Tangential::new(scene.grid.dx, scene.grid.dy, compliance);
+        let solver = Solver::new(scene.grid, tangential, options.precision != Precision::Double, threads);
+        let coupled = (compliance.unlike != 0.0).then(|| Coupled::new(&scene.grid, compliance.unlike, threads));
+        Ok(Tangent { solver, coupled: coupled.transpose()? })
+    }
+
+    /// The last result.
+    pub fn solution(&self) -> Option<&Solution> {
+        self.solver.solution()
+    }
+
+    /// There is no last result any more.
+    pub fn forget(&mut self) {
+        self.solver.forget();
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.solver.bytes()
+    }
+
+    /// Solves the tangential problem with pressures; `again`: the same step with other pressures.
+    pub fn solve(
+        &mut self,
+        turn: &Turn<'_>,
+        pressure: &[f64],
+        again: bool,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Stop, Report)> {
+        let Tangent { solver, coupled } = self;
+        if let Some(coupled) = coupled {
+            coupled.displace(turn, pressure)?;
+        }
+        let request = Request {
+            pressure,
+            friction: turn.friction,
+            tolerance: turn.options.tolerance,
+            limit: turn.options.max_cycles as u64,
+            sideways: coupled.as_ref().map(|coupled| &coupled.sideways[..]),
+            again,
+        };
+        let (end, report) = solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))?;
+        let stop = match end {
+            End::Converged => Stop::Converged,
+            End::Stalled => Stop::Stagnated,
+            End::Limit => Stop::IterationLimit,
+            End::Cancelled => Stop::Cancelled,
+        };
+        Ok((stop, report))
+    }
+
+    /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,
+    /// relative to `h - approach`. None where bodies are alike.
+    pub fn distance(&mut self, scene: &Scene<'_>, state: &State) -> Option<(&[f64], f64)> {
+        let Tangent { solver, coupled: Some(Coupled { here, along_normal, before, .. }) } = self else { return None };
+        here.along_normal(&solver.solution()?.traction, along_normal);
+        let (mut changes, mut distances) = (0.0, 0.0);
+        for i in 0..along_normal.len() {
+            let h = scene.undeformed_distance[i];
+            if state.contact[i] {
+                changes += (h + along_normal[i] - state.h[i]).powi(2);
+                distances += (state.h[i] - state.approach).powi(2);
+            }
+            before[i] = h + along_normal[i];
+        }
+        let change = if changes == 0.0 { 0.0 } else { (changes / distances).sqrt() };
+        Some((&before[..], change))
+    }
+
+    /// The step is done: the next one may continue from its pressures.
+    pub fn keep_pressures(&mut self, p: &[f64]) {
+        if let Some(coupled) = &mut self.coupled {
+            coupled.last_pressure.copy_from_slice(p);
+        }
+    }
+}
+
+/// Solves the tangential problem of a scene alone, with pressures that are given: `[my][mx]`; those that are not positive count as no
+/// contact. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not change the pressures.
+pub fn solve_tangential(
+    scene: &Scene<'_>,
+    pressure: &[f64],
+    options: &Options,
+    progress: Option<ProgressCallback<'_>>,
+) -> Result<(Stop, Solution, super::Report)> {
+    scene.check()?;
+    options.check()?;
+    let Some(friction) = &scene.friction else {
+        return invalid("friction is not given: there is nothing to solve".into());
+    };
+    if pressure.len() != scene.grid.len() {
+        let (values, elements) = (pressure.len(), scene.grid.len());
+        return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
+    }
+    if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
+        let (element, p) = (scene.grid.element(i), pressure[i]);
+        return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
+    }
+    let threads = Threads::new(options.threads)?;
+    let mut monitor = Monitor::new(progress, Vec::new(), false);
+    let mut tangent = Tangent::new(scene, options, &threads)?;
+    let turn = Turn { scene, friction, options, threads: &threads };
+    let (stop, found) = tangent.solve(&turn, pressure, false, &mut monitor)?;
+    let positive = || pressure.iter().filter(|p| **p > 0.0);
+    let measures = Measures {
+        force: positive().sum::<f64>() * scene.grid.element_area(),
+        max_pressure: positive().copied().fold(0.0, f64::max),
+        contact_count: positive().count(),
+        ..Measures::default()
+    };
+    let (friction, tolerance, solve_seconds) = (Some(found), options.tolerance, monitor.seconds());
+    let report = super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() };
+    Ok((stop, tangent.solution().cloned().unwrap_or_default(), report))
+}
+
+impl Coupled {
+    fn new(grid: &Grid, unlike: f64, threads: &Threads) -> Result<Coupled> {
+        let n = grid.len();
+        Ok(Coupled {
+            unlike,
+            here: Coupling::new(grid, unlike, (0.0, 0.0), threads)?,
+            there: None,
+            sideways: zeros(n, FIELDS)?,
+            along_normal: zeros(n, FIELDS)?,
+            before: zeros(n, FIELDS)?,
+            last_pressure: zeros(n, FIELDS)?,
+        })
+    }
+
+    /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures
+    /// before were the same.
+    fn displace(&mut self, turn: &Turn<'_>, p: &[f64]) -> Result<()> {
+        let Turn { scene, friction, threads, .. } = turn;
+        self.sideways.fill([0.0; 2]);
+        self.here.add_sideways(p, 1.0, &mut self.sideways);
+        let before = match friction.previous {
+            Previous::None => return Ok(()),
+            Previous::Given(_) => p,
+            Previous::Kept => &self.last_pressure,
+        };
+        if friction.motion == Motion::Shift {
+            self.here.add_sideways(before, -1.0, &mut self.sideways);
+            return Ok(());
+        }
+        let (distance, (sine, cosine)) = (friction.distance(&scene.grid), friction.rolling_direction.sin_cos());
+        let by = (distance * cosine / scene.grid.dx, distance * sine / scene.grid.dy);
+        if !self.there.as_ref().is_some_and(|(known, _)| *known == by) {
+            self.there = Some((by, Coupling::new(&scene.grid, self.unlike, by, threads)?));
+        }
+        if let Some((_, there)) = &mut self.there {
+            there.add_sideways(before, -1.0, &mut self.sideways);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! A ball pushed sideways: the exact solution of Cattaneo and Mindlin, and what CONTACT printed.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
+use contact_normal::solver::{solve, Options, Stop};
+
+use super::scenes::Cattaneo;
+use super::support::{run, solver};
+
+#[test]
+fn a_ball_pushed_sideways_has_cattaneos_tractions() {
+    let mut before = f64::INFINITY;
+    for (m, most) in [(32, 7.0e-3), (64, 2.6e-3), (128, 1.1e-3), (256, 3.9e-4)] {
+        let case = Cattaneo::new(m, 0.5);
+        let friction = Friction {
+            prescribed: [Prescribed::Creepage(case.shift), Prescribed::Creepage(0.0)],
+            ..Friction::new(1.0)
+        };
+        let (report, solution) = run(&mut solver(&case.grid, 0.0), &case.bound, &friction, 1e-6);
+        let found = case.compare(&solution);
+        // The errors of a first-order discretisation at these sizes, as an independent program has them (docs/friction.md).
+        assert!(found.error <= most, "{m}: {}", found.error);
+        assert!(found.error < before);
+        before = found.error;
+        // Half an element, and the elements of C do not fill the disc.
+        assert!((found.stick_radius - 0.5).abs() <= 0.5 * case.grid.dx, "{m}: {}", found.stick_radius);
+        let force = report.force[0] / case.carried();
+        assert!((force - 0.875).abs() <= 0.02 * case.grid.dx, "{m}: {force}");
+    }
+}
+
+#[test]
+fn contacts_cattaneo_is_met() {
+    // R = 50 mm, G = 200 N/mm2, nu = 0.42, a = 1 mm, 19 x 19 elements of 2/15 mm, mu = 0.4, Fx = -.875 mu N.
+    let d = 2.0 / 15.0;
+    let grid = Grid::new(19, 19, d, d).unwrap();
+    let h: Vec<f64> = (0..grid.len())
+        .map(|i| {
+            let (x, y) = (((i % 19) as f64 - 9.0) * d, ((i / 19) as f64 - 9.0) * d);
+            (x * x + y * y) / 100.0
+        })
+        .collect();
+    let force = 4.0 / 3.0 * (200.0 / 0.58) / 50.0;
+    let mu = 0.4;
+    let friction =
+        Friction { prescribed: [Prescribed::Force(-0.875 * mu * force), Prescribed::Force(0.0)], ..Friction::new(mu) };
+    let scene =
+        Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(200.0, 0.42), Load::Force(force)) };
+    let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+    assert_eq!(stop, Stop::Converged);
+    let found = report.friction.unwrap();
+    // The digits printed.
+    assert!((report.measures.approach - 1.998e-2).abs() <= 5e-6, "{}", report.measures.approach);
+    assert!((report.measures.max_pressure - 4.393).abs() <= 5e-4, "{}", report.measures.max_pressure);
+    assert_eq!((report.measures.contact_count, found.certificate.stick_count), (177, 45));
+    assert!((found.creepage[0] - 8.15489e-3).abs() <= 2e-8, "{:?}", found.creepage);
+    assert!(found.creepage[1].abs() <= 1e-6 * found.creepage[0], "{:?}", found.creepage);
+}

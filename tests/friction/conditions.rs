@@ -1,0 +1,167 @@
+//! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
+
+use contact_normal::friction::{End, Request};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Friction, Prescribed, Previous};
+
+use super::scenes::Ellipse;
+use super::support::{residual, run, solver};
+
+#[test]
+fn random_motions_and_forces_meet_the_conditions() {
+    for seed in 0..40 {
+        for forces in [false, true] {
+            let case = Ellipse::random(seed, 24, forces);
+            let mut solver = solver(&case.grid, case.nu);
+            let (report, solution) = run(&mut solver, &case.bound, &case.friction, 1e-6);
+            let none = vec![[0.0; 2]; case.grid.len()];
+            let found = (&report, &solution);
+            let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
+            // The tolerance, and round-off of two products.
+            assert!(left <= 1.001e-6, "{seed} {forces}: {left}, reported {}", report.certificate.residual);
+            assert!((left - report.certificate.residual).abs() <= 1e-10);
+            let carried = case.bound.iter().sum::<f64>() * case.grid.element_area();
+            for k in 0..2 {
+                let sum: f64 = solution.traction.iter().map(|q| q[k]).sum::<f64>() * case.grid.element_area();
+                assert!((sum - report.force[k]).abs() <= 1e-12 * carried);
+                if let Prescribed::Force(force) = case.friction.prescribed[k] {
+                    assert!((sum - force).abs() <= 1e-6 * carried, "{seed}: {sum} {force}");
+                }
+            }
+        }
+    }
+}
+
+/// Elements of a ball's contact on m x m elements, of which some are left out.
+fn disc(m: usize, inside: impl Fn(usize, usize) -> bool) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(m, m, 2.2 / m as f64, 2.2 / m as f64).unwrap();
+    let centre = 0.5 * (m as f64 - 1.0);
+    let g = (0..grid.len())
+        .map(|i| {
+            let (x, y) = (((i % m) as f64 - centre) * grid.dx, ((i / m) as f64 - centre) * grid.dy);
+            if inside(i % m, i / m) {
+                (1.0 - x * x - y * y).max(0.0).sqrt()
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    (grid, g)
+}
+
+#[test]
+fn hard_cases_have_their_answers() {
+    let shapes: [(&str, (Grid, Vec<f64>)); 6] = [
+        ("a ball", disc(20, |_, _| true)),
+        ("one element", disc(20, |x, y| (x, y) == (9, 9))),
+        ("two far apart", disc(40, |x, y| (x, y) == (8, 8) || (x, y) == (31, 30))),
+        ("a row", disc(20, |_, y| y == 10)),
+        ("a column", disc(20, |x, _| x == 10)),
+        ("gaps", disc(20, |x, y| (x + 2 * y) % 3 != 0)),
+    ];
+    let given = |x: f64, y: f64| [Prescribed::Creepage(x), Prescribed::Creepage(y)];
+    for (name, (grid, g)) in &shapes {
+        let none = vec![[0.0; 2]; grid.len()];
+        let in_contact = g.iter().filter(|g| **g > 0.0).count();
+        for (what, friction) in [
+            ("partial slip", Friction { prescribed: given(-0.3, 0.2), spin: 0.2, ..Friction::new(1.0) }),
+            ("tiny", Friction { prescribed: given(1e-12, 0.0), ..Friction::new(1.0) }),
+            ("huge", Friction { prescribed: given(-1e3, 1e3), ..Friction::new(1.0) }),
+            ("hardly any friction", Friction { prescribed: given(-0.3, 0.2), ..Friction::new(1e-9) }),
+            ("mu 1e9", Friction { prescribed: given(-0.3, 0.2), ..Friction::new(1e9) }),
+            ("spin alone", Friction { spin: 0.7, ..Friction::new(1.0) }),
+        ] {
+            let (report, solution) = run(&mut solver(grid, 0.3), g, &friction, 1e-6);
+            let left = residual((grid, 0.3), g, &friction, &none, (&report, &solution));
+            assert!(left <= 1.001e-6, "{name}, {what}: {left}");
+            assert_eq!(report.certificate.stick_count + report.certificate.slip_count, in_contact, "{name}, {what}");
+            match what {
+                "mu 1e9" => assert_eq!(report.certificate.slip_count, 0, "{name}"),
+                "huge" | "hardly any friction" => assert_eq!(report.certificate.stick_count, 0, "{name}, {what}"),
+                _ => {}
+            }
+        }
+        let nothing = run(&mut solver(grid, 0.3), g, &Friction::new(1.0), 1e-6).1;
+        assert_eq!(nothing.traction, none, "{name}");
+        let without = Friction { prescribed: given(-0.3, 0.2), ..Friction::new(0.0) };
+        let (report, solution) = run(&mut solver(grid, 0.3), g, &without, 1e-6);
+        assert_eq!(solution.traction, none, "{name}");
+        assert_eq!(report.certificate.slip_count, in_contact, "{name}");
+        let i = g.iter().position(|g| *g > 0.0).unwrap();
+        assert_eq!(solution.slip[i], [-0.3, 0.2], "{name}");
+    }
+}
+
+#[test]
+fn forces_that_friction_cannot_carry_are_refused() {
+    let (grid, g) = disc(20, |_, _| true);
+    let carried = g.iter().sum::<f64>() * grid.element_area();
+    let with = |part: f64| Friction {
+        prescribed: [Prescribed::Force(part * carried), Prescribed::Force(0.0)],
+        ..Friction::new(1.0)
+    };
+    let solve = |friction: &Friction<'_>| {
+        solver(&grid, 0.3).solve(
+            &Request { pressure: &g, friction, tolerance: 1e-6, limit: 1000, sideways: None, again: false },
+            &mut |_, _| true,
+        )
+    };
+    for part in [1.0, -1.0, 1.5, 1e9] {
+        let refused = solve(&with(part)).unwrap_err();
+        assert!(refused.to_string().contains("must be less than"), "{refused}");
+    }
+    for part in [0.0, 1e-9, 0.5, 0.999] {
+        let (end, report) = solve(&with(part)).unwrap();
+        assert_eq!(end, End::Converged, "{part}");
+        assert!((report.force[0] - part * carried).abs() <= 1e-6 * carried);
+    }
+    // With much spin less is left.
+    let spinning = Friction { spin: 50.0, ..with(0.9) };
+    assert!(solve(&spinning).is_ok_and(|(end, _)| end == End::Converged) || solve(&spinning).is_err());
+}
+
+#[test]
+fn previous_tractions_of_any_kind_are_taken() {
+    // Beyond their bounds, or where there is no contact any more: the displacements that they caused are relaxed.
+    let (grid, g) = disc(20, |x, _| x > 6);
+    let garbage: Vec<f64> = (0..grid.len()).map(|i| 10.0 * ((i * 7919 % 101) as f64 / 50.0 - 1.0)).collect();
+    let friction = Friction {
+        prescribed: [Prescribed::Creepage(-0.3), Prescribed::Creepage(0.1)],
+        previous: Previous::Given([&garbage, &garbage]),
+        ..Friction::new(1.0)
+    };
+    let (report, solution) = run(&mut solver(&grid, 0.3), &g, &friction, 1e-6);
+    let before: Vec<_> = garbage.iter().map(|q| [*q, *q]).collect();
+    let left = residual((&grid, 0.3), &g, &friction, &before, (&report, &solution));
+    assert!(left <= 1.001e-6, "{left}");
+}
+
+#[test]
+fn a_callback_cancels_wherever_it_is_told() {
+    let (grid, g) = disc(64, |_, _| true);
+    let friction =
+        Friction { prescribed: [Prescribed::Creepage(-0.3), Prescribed::Creepage(0.1)], ..Friction::new(1.0) };
+    let request =
+        Request { pressure: &g, friction: &friction, tolerance: 1e-6, limit: 1000, sideways: None, again: false };
+    let mut total = 0;
+    solver(&grid, 0.3)
+        .solve(&request, &mut |_, _| {
+            total += 1;
+            true
+        })
+        .unwrap();
+    for last in 1..=total {
+        let mut told = 0;
+        let mut solver = solver(&grid, 0.3);
+        let (end, _) = solver
+            .solve(&request, &mut |_, _| {
+                told += 1;
+                told < last
+            })
+            .unwrap();
+        assert_eq!((end, told), (End::Cancelled, last));
+        // What is there is feasible.
+        let solution = solver.solution().unwrap();
+        assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g));
+    }
+}

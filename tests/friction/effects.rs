@@ -1,0 +1,139 @@
+//! Friction beside the other effects: none is ignored, and what is not solved is refused by name. Threads and handles.
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::influence::{RowTables, Table};
+use contact_normal::scene::{
+    Bodies, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene,
+};
+use contact_normal::solver::{solve, Options, Solver, Stop};
+
+const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
+
+fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
+    let centre = 0.5 * (m as f64 - 1.0);
+    let h = (0..m * m)
+        .map(|i| (((i % m) as f64 - centre).powi(2) + ((i / m) as f64 - centre).powi(2)) * d * d / 100.0)
+        .collect();
+    (Grid::new(m, m, d, d).unwrap(), h)
+}
+
+fn pushed() -> Friction<'static> {
+    Friction { prescribed: [Prescribed::Creepage(-2e-3), Prescribed::Creepage(5e-4)], ..Friction::new(0.3) }
+}
+
+#[test]
+fn each_effect_changes_the_tractions_or_is_refused() {
+    let (grid, h) = ball(32, 0.06);
+    let mut holes = h.clone();
+    (0..32).for_each(|k| holes[16 * 32 + k] = f64::INFINITY);
+    let plain = Scene { friction: Some(pushed()), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
+    let (alone, ..) = solve(&plain, &Options::default()).unwrap();
+    let alone = alone.friction().unwrap().traction.clone();
+    let patch = vec![0; grid.len()];
+    let table = vec![1e-6; 4 * grid.len()];
+    let row_tables = vec![1e-6; 2 * 32 * 32 * 32];
+    for name in ["layer", "pressure_limit", "excluded elements", "period", "patches", "influence", "row_tables"] {
+        let mut scene = plain.clone();
+        match name {
+            "layer" => scene.layer = Some(Layer::Uniform(1e-6)),
+            "pressure_limit" => scene.pressure_limit = Some(PressureLimit::Uniform(600.0)),
+            "excluded elements" => scene.undeformed_distance = &holes,
+            "period" => scene.period = Some(Period { x: true, y: false }),
+            "patches" => scene.patches = Some(Patches { count: 1, patch: &patch, factors: &[1.0] }),
+            "influence" => scene.influence = Some(Table::new(32, 32, &table, &grid).unwrap()),
+            _ => scene.row_tables = Some(RowTables::new(32, 32, &row_tables, &grid).unwrap()),
+        }
+        if ["period", "patches", "influence", "row_tables"].contains(&name) {
+            let Err(Error::Unsupported(message)) = solve(&scene, &Options::default()) else { panic!("{name}") };
+            assert!(message.contains(name) && message.contains("friction"), "{message}");
+            continue;
+        }
+        let (solver, stop, _) = solve(&scene, &Options::default()).unwrap();
+        assert_eq!(stop, Stop::Converged, "{name}");
+        let found = &solver.friction().unwrap().traction;
+        let change = found.iter().zip(&alone).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+        // Of pressures of some 1000.
+        assert!(change > 1.0, "{name}: {change}");
+        for (q, p) in found.iter().zip(&solver.state().p) {
+            assert!(q[0].hypot(q[1]) <= 0.3 * p, "{name}");
+        }
+    }
+}
+
+#[test]
+fn pressures_are_those_without_friction_where_bodies_are_alike() {
+    let (grid, h) = ball(32, 0.06);
+    let without = Scene::new(grid, &h, STEEL, Load::Force(1000.0));
+    let with = Scene { friction: Some(pushed()), ..without.clone() };
+    let (a, ..) = solve(&without, &Options::default()).unwrap();
+    let (b, ..) = solve(&with, &Options::default()).unwrap();
+    assert_eq!(a.state().p, b.state().p);
+    assert!(a.friction().is_none());
+}
+
+#[test]
+fn one_coefficient_is_as_many_alike() {
+    let (grid, h) = ball(32, 0.06);
+    let each = vec![0.3; grid.len()];
+    let found = |coefficient: Coefficient<'_>| {
+        let friction = Friction { coefficient, ..pushed() };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
+        solve(&scene, &Options::default()).unwrap().0.friction().unwrap().traction.clone()
+    };
+    assert_eq!(found(Coefficient::Uniform(0.3)), found(Coefficient::PerElement(&each)));
+    // No friction on one half: no tractions there, and slip.
+    let half: Vec<f64> = (0..grid.len()).map(|i| if i % 32 < 16 { 0.0 } else { 0.3 }).collect();
+    let tractions = found(Coefficient::PerElement(&half));
+    assert!((0..grid.len()).all(|i| i % 32 >= 16 || tractions[i] == [0.0; 2]));
+}
+
+#[test]
+fn any_number_of_threads_finds_the_same_bits() {
+    let (grid, h) = ball(160, 0.012);
+    for prescribed in [pushed().prescribed, [Prescribed::Force(150.0), Prescribed::Force(30.0)]] {
+        let friction = Friction { prescribed, spin: 1e-3, ..pushed() };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
+        let found = |threads: usize| {
+            let (solver, stop, _) = solve(&scene, &Options { threads, ..Options::default() }).unwrap();
+            assert_eq!(stop, Stop::Converged);
+            solver.friction().unwrap().traction.clone()
+        };
+        let one = found(1);
+        assert_eq!(one, found(2));
+        assert_eq!(one, found(3));
+    }
+}
+
+#[test]
+fn a_handle_finds_what_a_new_one_finds() {
+    let (grid, h) = ball(48, 0.04);
+    let scene = |force: f64, friction| Scene { friction, ..Scene::new(grid, &h, STEEL, Load::Force(force)) };
+    let mut solver = Solver::new(&scene(1.0, None), &Options::default()).unwrap();
+    for (force, friction) in
+        [(1000.0, Some(pushed())), (300.0, Some(pushed())), (300.0, None), (1000.0, Some(pushed()))]
+    {
+        solver.solve(&scene(force, friction), &Options::default(), None, None).unwrap();
+        let (new, ..) = solve(&scene(force, friction), &Options::default()).unwrap();
+        let traction = |solver: &Solver| solver.friction().map(|found| found.traction.clone());
+        assert_eq!(traction(&solver), traction(&new), "{force}");
+    }
+}
+
+#[test]
+fn the_precisions_agree() {
+    use contact_normal::solver::Precision;
+    let (grid, h) = ball(64, 0.03);
+    let scene = Scene { friction: Some(pushed()), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
+    let found = |precision| {
+        let options = Options { precision, tolerance: 1e-9, ..Options::default() };
+        let (solver, stop, report) = solve(&scene, &options).unwrap();
+        assert_eq!(stop, Stop::Converged);
+        assert!(report.friction.unwrap().certificate.residual <= 1e-9);
+        solver.friction().unwrap().traction.clone()
+    };
+    let (double, mixed) = (found(Precision::Double), found(Precision::Mixed));
+    let apart = double.iter().zip(&mixed).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+    // Short waves of a residual of 1e-9 hide some 1e-6 of the tractions, of which the largest are 300.
+    assert!(apart <= 1e-3, "{apart}");
+}

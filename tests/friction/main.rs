@@ -1,0 +1,14 @@
+//! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
+
+mod cattaneo;
+mod coefficients;
+mod conditions;
+mod effects;
+mod rolling;
+#[path = "../../examples/friction/scenes.rs"]
+#[allow(dead_code)]
+mod scenes;
+mod support;
+mod unlike;
+mod wheel_on_rail;
+mod wheel_rail;

@@ -1,0 +1,90 @@
+//! Tangential problems on pressures that are given, and their conditions recomputed by direct sums.
+
+use contact_normal::friction::{
+    dense, Compliance, End, Report, Request, Solution, Solver, Tangential, Vector, SLIP, STICK,
+};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed};
+use contact_normal::threads::Threads;
+
+/// `1/G = 1`.
+pub fn tangential(grid: &Grid, nu: f64) -> Tangential {
+    Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0, poisson: nu, unlike: 0.0 })
+}
+
+/// A solver for `1/G = 1`.
+pub fn solver(grid: &Grid, nu: f64) -> Solver {
+    Solver::new(*grid, tangential(grid, nu), true, &Threads::One)
+}
+
+/// Solves, and must converge.
+pub fn run(solver: &mut Solver, g: &[f64], friction: &Friction<'_>, tolerance: f64) -> (Report, Solution) {
+    let request = Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false };
+    let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
+    assert_eq!(end, End::Converged, "{friction:?} {report:?}");
+    (report, solver.solution().unwrap().clone())
+}
+
+fn length(v: Vector) -> f64 {
+    v[0].hypot(v[1])
+}
+
+fn rms(values: impl Iterator<Item = f64>, count: usize) -> f64 {
+    (values.map(|v| v * v).sum::<f64>() / count as f64).sqrt()
+}
+
+/// The conditions of friction, by direct sums: `|q| <= mu p` to the last bit; what is left of the slip; returns that, relative.
+pub fn residual(
+    (grid, nu): (&Grid, f64),
+    g: &[f64],
+    friction: &Friction<'_>,
+    before: &[Vector],
+    (report, solution): (&Report, &Solution),
+) -> f64 {
+    let tangential = tangential(grid, nu);
+    let (n, q) = (grid.len(), &solution.traction);
+    let (mut u, mut u_before) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
+    dense::apply(&tangential, grid, (0.0, 0.0), q, &mut u);
+    let distance = friction.distance(grid);
+    let (sine, cosine) = friction.rolling_direction.sin_cos();
+    let by = match friction.motion {
+        Motion::Shift => (0.0, 0.0),
+        _ => (distance * cosine / grid.dx, distance * sine / grid.dy),
+    };
+    dense::apply(&tangential, grid, by, before, &mut u_before);
+    let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for i in 0..n {
+        let Coefficient::Uniform(mu) = friction.coefficient else { panic!("one coefficient") };
+        let bound = mu * g[i];
+        assert!(length(q[i]) <= bound, "element {i}: {:?} {bound}", q[i]);
+        if !(bound > 0.0) {
+            assert_eq!(q[i], [0.0; 2]);
+            continue;
+        }
+        count += 1;
+        let mut w = friction.rigid_slip_at(grid, i);
+        // What was found, where forces are given.
+        for ((w, prescribed), creepage) in w.iter_mut().zip(friction.prescribed).zip(report.creepage) {
+            if let Prescribed::Force(_) = prescribed {
+                *w += distance * creepage;
+            }
+        }
+        let s = [w[0] + u[i][0] - u_before[i][0], w[1] + u[i][1] - u_before[i][1]];
+        let slips = length(q[i]) >= bound * (1.0 - 1e-7);
+        assert_eq!(solution.adhesion[i], if slips { SLIP } else { STICK });
+        let mut rest = s;
+        if slips {
+            let outward = [q[i][0] / length(q[i]), q[i][1] / length(q[i])];
+            let along = (s[0] * outward[0] + s[1] * outward[1]).min(0.0);
+            rest = [s[0] - along * outward[0], s[1] - along * outward[1]];
+        }
+        left.push(length(rest));
+        rigid.push(length(w));
+        displaced.push(length(u[i]));
+    }
+    let scale = match friction.motion {
+        Motion::Shift => rms(rigid.into_iter(), count).max(rms(displaced.into_iter(), count)),
+        _ => rms(rigid.into_iter(), count),
+    };
+    rms(left.into_iter(), count) / scale
+}

@@ -1,0 +1,152 @@
+//! Unlike bodies: coupling coefficients against quadrature, both problems' conditions by direct sums, Spence's indentation.
+
+use std::f64::consts::PI;
+
+use contact_normal::friction::{cross, dense, Compliance, Tangential};
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Kernel};
+use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Previous, Scene};
+use contact_normal::solver::{solve, Options, Solver, Stop};
+
+/// The integrals of `x/r^2` and `y/r^2` over an element by the midpoint rule in squares that halve towards the singular point.
+fn by_quadrature(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
+    // In y in closed form at each x, in x by tanh-sinh, which does not mind a singularity at an end.
+    let (ym, yp) = ((ky - 0.5) * dy, (ky + 0.5) * dy);
+    let integrand = |x: f64| {
+        let angle = if x == 0.0 { 0.0 } else { (yp / x).atan() - (ym / x).atan() };
+        [angle, 0.5 * ((x * x + yp * yp) / (x * x + ym * ym)).ln()]
+    };
+    let (from, to) = ((kx - 0.5) * dx, (kx + 0.5) * dx);
+    let ends = if from < 0.0 && to > 0.0 { vec![(from, 0.0), (0.0, to)] } else { vec![(from, to)] };
+    let mut sum = [0.0; 2];
+    for (a, b) in ends {
+        let h = 1.0 / 32.0;
+        for k in -120..=120 {
+            let t = f64::from(k) * h;
+            let u = 0.5 * PI * t.sinh();
+            let (half, weight) = (0.5 * (b - a), 0.5 * PI * t.cosh() / u.cosh().powi(2));
+            // The distance from the nearer end, exact where it is tiny.
+            let from_end = half * 2.0 / (1.0 + (2.0 * u.abs()).exp());
+            let x = if u < 0.0 { a + from_end } else { b - from_end };
+            let value = integrand(x);
+            sum = [sum[0] + h * half * weight * value[0], sum[1] + h * half * weight * value[1]];
+        }
+    }
+    sum
+}
+
+#[test]
+fn coupling_coefficients_are_those_of_quadrature() {
+    for aspect in [0.02, 1.0, 1.7, 40.0] {
+        for kx in [0.0, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 0.4, 1.7] {
+            for ky in [0.0, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 0.3] {
+                let found = cross::integrals(kx, ky, aspect, 1.0);
+                let exact = by_quadrature(kx, ky, aspect, 1.0);
+                let r = ((kx * aspect).powi(2) + ky * ky + aspect.min(1.0)).sqrt();
+                for k in 0..2 {
+                    // Relative to dx dy/r; differences of the quadrature's own closed form lose digits far away.
+                    let error = (found[k] - exact[k]).abs() * r / aspect;
+                    assert!(error <= 2e-11, "{aspect} ({kx}, {ky}) {k}: {found:?} {exact:?} {error}");
+                }
+                assert_eq!(cross::integrals(-kx, -ky, aspect, 1.0), [-found[0], -found[1]]);
+            }
+        }
+    }
+}
+
+/// A ball of radius 100 on m x m elements of 0.25.
+fn ball(m: usize) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(m, m, 0.25, 0.25).unwrap();
+    let centre = 0.5 * (m as f64 - 1.0);
+    let h = (0..grid.len())
+        .map(|i| {
+            let (x, y) = (((i % m) as f64 - centre) * 0.25, ((i / m) as f64 - centre) * 0.25);
+            (x * x + y * y) / 200.0
+        })
+        .collect();
+    (grid, h)
+}
+
+const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
+
+#[test]
+fn both_problems_of_unlike_bodies_meet_their_conditions() {
+    let (grid, h) = ball(24);
+    let n = grid.len();
+    let friction =
+        Friction { prescribed: [Prescribed::Creepage(-0.005), Prescribed::Creepage(0.0)], ..Friction::new(0.3) };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, RIGID_ON_SOFT, Load::Approach(0.05)) };
+    let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
+    assert_eq!(stop, Stop::Converged);
+    let (state, solution) = (solver.state(), solver.friction().unwrap());
+    let compliance = Compliance::of(&RIGID_ON_SOFT);
+    // 1/G = 1/2, and K/G = (1 - 0)/4.
+    assert_eq!((compliance.shear, compliance.unlike), (0.5, 0.25));
+    let kernel = HalfSpace::new(0.25, 0.25, RIGID_ON_SOFT.compliance());
+    let mut u = vec![[0.0; 2]; n];
+    dense::apply(&Tangential::new(0.25, 0.25, compliance), &grid, (0.0, 0.0), &solution.traction, &mut u);
+    let place = |i: usize| ((i % 24) as i64, (i / 24) as i64);
+    let (mut residual, mut distance, mut slips, mut rigid, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for i in 0..n {
+        let mut e = h[i] - 0.05;
+        for j in 0..n {
+            let (x, y) = (place(i).0 - place(j).0, place(i).1 - place(j).1);
+            let [jx, jy] = cross::integrals(x as f64, y as f64, 0.25, 0.25).map(|value| -0.25 / PI * value);
+            e += kernel.at(x, y) * state.p[j] - jx * solution.traction[j][0] - jy * solution.traction[j][1];
+            u[i] = [u[i][0] + jx * state.p[j], u[i][1] + jy * state.p[j]];
+        }
+        if !(state.p[i] > 0.0) {
+            assert!(e > -1e-6 * 0.05, "{i}: {e}");
+            continue;
+        }
+        residual += e * e;
+        distance += (h[i] - 0.05) * (h[i] - 0.05);
+        let s = [u[i][0] - 0.005, u[i][1]];
+        let (q, g) = (solution.traction[i], 0.3 * state.p[i]);
+        let size = q[0].hypot(q[1]);
+        assert!(size <= g);
+        let along = if size >= g * (1.0 - 1e-7) { ((s[0] * q[0] + s[1] * q[1]) / size).min(0.0) } else { 0.0 };
+        let rest = [s[0] - along * q[0] / size.max(1e-300), s[1] - along * q[1] / size.max(1e-300)];
+        slips += rest[0] * rest[0] + rest[1] * rest[1];
+        rigid += u[i][0] * u[i][0] + u[i][1] * u[i][1];
+        count += 1.0;
+        assert!((solution.slip[i][0] - s[0]).abs() + (solution.slip[i][1] - s[1]).abs() <= 1e-12);
+    }
+    // Each tolerance, and what the last turn changed.
+    assert!((residual / distance).sqrt() <= 2.01e-6, "{}", (residual / distance).sqrt());
+    assert!(
+        (slips / rigid).sqrt() <= 2.01e-6,
+        "{} {}",
+        (slips / rigid).sqrt(),
+        report.friction.unwrap().certificate.residual
+    );
+    assert!(count > 100.0);
+}
+
+#[test]
+fn an_indentation_with_friction_is_similar_at_all_loads() {
+    // Spence 1968, 1975: while the load grows, the stick area keeps its part of the contact area. A rigid ball on a soft half-space.
+    let (grid, h) = ball(48);
+    let scene = |force: f64, friction| Scene {
+        friction: Some(friction),
+        ..Scene::new(grid, &h, RIGID_ON_SOFT, Load::Force(force))
+    };
+    let mut solver = Solver::new(&scene(1.0, Friction::new(0.3)), &Options::default()).unwrap();
+    let mut parts = Vec::new();
+    for stage in 1..=24 {
+        let radius = 0.2 * f64::from(stage);
+        let force = 4.0 / 3.0 * 2.0 * radius.powi(3) / 100.0;
+        let previous = if stage == 1 { Previous::None } else { Previous::Kept };
+        let friction = Friction { previous, ..Friction::new(0.3) };
+        let (stop, report) = solver.solve(&scene(force, friction), &Options::default(), None, None).unwrap();
+        assert_eq!(stop, Stop::Converged, "{stage}");
+        let found = report.friction.unwrap();
+        assert!(found.certificate.residual <= 1e-6);
+        assert!((found.force[0].hypot(found.force[1])) <= 1e-6 * force, "{:?}", found.force);
+        parts.push((found.certificate.stick_count as f64 / report.measures.contact_count as f64).sqrt());
+    }
+    for part in &parts[15..] {
+        // CONTACT's spence35, a ball on 35 stages: 225 of 921 elements stick. Half an element of 0.25 on a radius of 3.2 to 4.8.
+        assert!((part - (225.0_f64 / 921.0).sqrt()).abs() <= 0.04, "{parts:?}");
+    }
+}

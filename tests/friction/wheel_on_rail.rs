@@ -1,0 +1,45 @@
+//! A wheel on a rail: the shift of CONTACT's performance tests (data/friction/README.md).
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Friction, Prescribed};
+
+/// Undeformed distances on grid `k` (1, 2, 4 or 8).
+pub fn surface(k: usize) -> (Grid, Vec<f64>) {
+    let text = include_str!("../../data/friction/wheel_rail_profile.txt");
+    let rows = text.lines().filter(|line| !line.starts_with('#'));
+    let profile: Vec<(f64, f64)> = rows
+        .map(|line| {
+            let mut values = line.split_whitespace().map(|value| value.parse().unwrap());
+            (values.next().unwrap(), values.next().unwrap())
+        })
+        .collect();
+    let (mx, my) = [(71, 81), (143, 163), (287, 323), (575, 647)][k.trailing_zeros() as usize];
+    let d = 0.1 / k as f64;
+    let grid = Grid::new(mx, my, d, d).unwrap();
+    let across = |y: f64| {
+        let after = profile.partition_point(|(at, _)| *at <= y);
+        let ((y0, h0), (y1, h1)) = (profile[after - 1], profile[after]);
+        h0 + (y - y0) / (y1 - y0) * (h1 - h0)
+    };
+    let h = (0..grid.len())
+        .map(|i| {
+            let x = -3.55 + ((i % mx) as f64 + 0.5) * d;
+            let y = -6.15 + ((i / mx) as f64 + 0.5) * d;
+            x * x / (2.0 * 483.931) + across(y)
+        })
+        .collect();
+    (grid, h)
+}
+
+/// The shift s of the data.
+pub fn shift(grid: &Grid) -> Friction<'static> {
+    let d = grid.dx;
+    // The middle of the grid lies beside the origin of the coordinates.
+    let centre = [3.55 - 0.5 * grid.mx as f64 * d, 6.15 - 0.5 * grid.my as f64 * d];
+    Friction {
+        prescribed: [Prescribed::Creepage(0.0005), Prescribed::Creepage(-0.0010)],
+        spin: 0.0008,
+        spin_centre: centre,
+        ..Friction::new(0.3)
+    }
+}
