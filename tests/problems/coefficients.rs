@@ -225,7 +225,7 @@ fn what_differs_from_the_set_up_is_named_with_its_values() {
     let own = |far| Scene { influence: Some(table(far)), ..plain.clone() };
     let softer = Scene { bodies: Bodies::same(0.5, 0.3), ..plain.clone() };
     let cases: &[(&Scene, &Scene, &[&str])] = &[
-        (&plain, &softer, &["bodies", "0.5", "1.0"]),
+        (&plain, &softer, &["shear_modulus[0]", "0.5", "1"]),
         (&layer(Layer::Uniform(0.25)), &layer(Layer::Uniform(0.5)), &["layer->compliance", "0.5", "0.25"]),
         (&layer(Layer::Uniform(0.25)), &plain, &["layer", "not given"]),
         (&layer(Layer::Uniform(0.25)), &layer(Layer::Uniform(0.0)), &["layer", "not given"]),
