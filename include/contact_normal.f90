@@ -107,7 +107,7 @@ module contact_normal
     type(c_ptr) :: patch = c_null_ptr, factors = c_null_ptr
   end type
 
-  ! A coating of one body; filled by contact_normal_set_coating. Since 0.1.
+  ! A coating of one body; filled by contact_normal_set_coating. Since 0.2.
   type, bind(C), public :: contact_normal_coating
     integer(c_int64_t) :: struct_size = 0
     real(c_double) :: thickness = 0
@@ -123,7 +123,7 @@ module contact_normal
     real(c_double) :: scale = 1
   end type
 
-  ! Friction; filled by contact_normal_set_friction. Since 0.1.
+  ! Friction; filled by contact_normal_set_friction. Since 0.2.
   type, bind(C), public :: contact_normal_friction
     integer(c_int64_t) :: struct_size = 0
     real(c_double) :: coefficient = 0
@@ -299,7 +299,7 @@ module contact_normal
     real(c_double) :: contact_area_target = 0
   end type
 
-  ! One row of the price list: what one accuracy costs, predicted. Since 0.1.
+  ! One row of the price list: what one accuracy costs, predicted. Since 0.2.
   type, bind(C), public :: contact_normal_price
     real(c_double) :: target = 0
     real(c_double) :: error = -1
@@ -325,7 +325,7 @@ module contact_normal
     real(c_double) :: area = 0
   end type
 
-  ! The largest value of a field of stresses, and where it is: its depth counted from 0, as the element (ix, iy) is. Since 0.1.
+  ! The largest value of a field of stresses, and where it is: its depth counted from 0, as the element (ix, iy) is. Since 0.2.
   type, bind(C), public :: contact_normal_stress_maximum
     real(c_double) :: value = 0
     real(c_double) :: x = 0
@@ -337,7 +337,7 @@ module contact_normal
     integer(c_int32_t) :: reserved = 0
   end type
 
-  ! What is wanted of subsurface stresses: see contact_normal_set_stress_outputs. Since 0.1.
+  ! What is wanted of subsurface stresses: see contact_normal_set_stress_outputs. Since 0.2.
   type, bind(C), public :: contact_normal_stress_outputs
     integer(c_int64_t) :: struct_size = 0
     type(c_ptr) :: stress(6) = c_null_ptr
@@ -422,7 +422,7 @@ contains
     message = fortran_string(c_last_error())
   end function
 
-  ! The version of the library, as "0.1.0". Since 0.1.
+  ! The version of the library, as "0.2.0". Since 0.1.
   function contact_normal_version_string() result(version)
     character(:), allocatable :: version
     version = fortran_string(c_version())
@@ -515,7 +515,7 @@ contains
     scene%row_tables = c_loc(row_tables)
   end subroutine
 
-  ! Body 1 or 2 has a coating; the elastic constants of the scene are those of the body below. Since 0.1.
+  ! Body 1 or 2 has a coating; the elastic constants of the scene are those of the body below. Since 0.2.
   subroutine contact_normal_set_coating(scene, body, coating, thickness, shear_modulus, poisson_ratio)
     type(contact_normal_scene), intent(inout) :: scene
     integer, intent(in) :: body
@@ -529,7 +529,7 @@ contains
   end subroutine
 
   ! The scene has friction of one coefficient, or of one per element (mx, my), a shift of 0: set the other components of `friction`
-  ! after this. `previous_x` and `previous_y`: the tractions before; `slip_x` and `slip_y`: a rigid slip. Since 0.1.
+  ! after this. `previous_x` and `previous_y`: the tractions before; `slip_x` and `slip_y`: a rigid slip. Since 0.2.
   subroutine contact_normal_set_friction(scene, friction, coefficient, coefficients, previous_x, previous_y, slip_x, slip_y)
     type(contact_normal_scene), intent(inout) :: scene
     type(contact_normal_friction), pointer, intent(in) :: friction
@@ -546,7 +546,7 @@ contains
     scene%friction = c_loc(friction)
   end subroutine
 
-  ! Attaches the arrays of friction that are wanted, (mx, my) each. Since 0.1.
+  ! Attaches the arrays of friction that are wanted, (mx, my) each. Since 0.2.
   subroutine contact_normal_set_friction_fields(fields, traction_x, traction_y, slip_x, slip_y, adhesion)
     type(contact_normal_fields), intent(inout) :: fields
     real(c_double), pointer, contiguous, intent(in), optional :: traction_x(..), traction_y(..), slip_x(..), slip_y(..)
@@ -571,7 +571,7 @@ contains
 
   ! Attaches what is wanted at n depths: stress(mx, my, n, 6) with the components xx, yy, zz, xy, xz, yz, von_mises and maximum_shear
   ! (mx, my, n), principal(mx, my, n, 3), directions(3, mx, my, n, 3), and the largest values. What is not given is not computed.
-  ! `outputs` must be initialised. Since 0.1.
+  ! `outputs` must be initialised. Since 0.2.
   subroutine contact_normal_set_stress_outputs(outputs, stress, von_mises, maximum_shear, principal, directions, &
       largest_von_mises, largest_shear)
     type(contact_normal_stress_outputs), intent(inout) :: outputs
@@ -655,7 +655,7 @@ contains
   end function
 
   ! All later solves with it use these coefficients: what contact_normal_set_influence has filled. Only for a solver that was
-  ! set up with coefficients of its own. Since 0.1.
+  ! set up with coefficients of its own. Since 0.2.
   function contact_normal_solver_set_influence(solver, influence) result(status)
     type(contact_normal_solver), intent(in) :: solver
     type(contact_normal_influence), intent(in) :: influence
@@ -689,7 +689,7 @@ contains
   end function
 
   ! Predicts what each relative error of `targets` costs: rows(i) is that of targets(i). `quantity`: CONTACT_NORMAL_QUANTITY_...,
-  ! by default the force or the approach. Of `accuracy` limits and surface are read. Since 0.1.
+  ! by default the force or the approach. Of `accuracy` limits and surface are read. Since 0.2.
   function contact_normal_cost_of_accuracy(scene, targets, rows, quantity, options, accuracy) result(status)
     type(contact_normal_scene), intent(in) :: scene
     real(c_double), intent(in) :: targets(:)

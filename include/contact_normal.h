@@ -1345,7 +1345,7 @@ const char *contact_normal_status_text(contact_normal_status status);
 const char *contact_normal_last_error(void);
 
 /*
- The version of the library, as "0.1.0"; static storage. Since 0.1.
+ The version of the library, as "0.2.0"; static storage. Since 0.1.
  */
 const char *contact_normal_version(void);
 
@@ -1370,14 +1370,14 @@ void contact_normal_influence_init(struct contact_normal_influence *influence);
 void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
 
 /*
- Fills a coating with no thickness. Since 0.1.
+ Fills a coating with no thickness. Since 0.2.
  */
 void contact_normal_coating_init(struct contact_normal_coating *coating);
 
 /*
  What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
  displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
- one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.1.
+ one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
  */
 contact_normal_status contact_normal_coating_compliance(const struct contact_normal_coating *coating,
                                                         double shear_modulus,
@@ -1406,7 +1406,7 @@ void contact_normal_layer_init(struct contact_normal_layer *layer);
 void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
 
 /*
- Fills a friction with a coefficient of 0 and a shift of 0. Since 0.1.
+ Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
  */
 void contact_normal_friction_init(struct contact_normal_friction *friction);
 
@@ -1459,7 +1459,7 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
 /*
  From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
  `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
- changes nothing. Since 0.1.
+ changes nothing. Since 0.2.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence);
@@ -1481,7 +1481,7 @@ void contact_normal_solver_free(struct contact_normal_solver *solver);
  Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
  contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
  used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
- `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.1.
+ `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(const struct contact_normal_scene *scene,
                                                       const double *pressure,
@@ -1542,7 +1542,7 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
  and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
- what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.1.
+ what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -1577,7 +1577,7 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           double *coefficients);
 
 /*
- Fills outputs with NULL: nothing is wanted. Since 0.1.
+ Fills outputs with NULL: nothing is wanted. Since 0.2.
  */
 void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *outputs);
 
@@ -1587,7 +1587,7 @@ void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *ou
  this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
  `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
  (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
- left alone. Since 0.1.
+ left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,
@@ -1603,7 +1603,7 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
  Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
  element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
  point. A point at z = 0 on the edge of an element is refused: stresses jump there or are infinite. Time grows with n times the
- number of loaded elements. With `period`: UNSUPPORTED. Since 0.1.
+ number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
  */
 contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
                                                       int32_t body,

@@ -24,7 +24,7 @@ pub struct contact_normal_coating {
 
 versioned! { contact_normal_coating, 32 }
 
-/// Fills a coating with no thickness. Since 0.1.
+/// Fills a coating with no thickness. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_coating_init(coating: *mut contact_normal_coating) {
     // SAFETY: NULL or a whole struct, by the conventions of the ABI.
@@ -33,7 +33,7 @@ pub unsafe extern "C" fn contact_normal_coating_init(coating: *mut contact_norma
 
 /// What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
 /// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
-/// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.1.
+/// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_coating_compliance(
     coating: *const contact_normal_coating,

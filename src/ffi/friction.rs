@@ -74,7 +74,7 @@ pub struct contact_normal_friction {
 
 versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0 }
 
-/// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.1.
+/// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_friction_init(friction: *mut contact_normal_friction) {
     // SAFETY: NULL or a whole struct, by the conventions of the ABI.

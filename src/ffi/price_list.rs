@@ -93,7 +93,7 @@ impl From<&Price> for contact_normal_price {
 /// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
 /// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
 /// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
-/// what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.1.
+/// what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,

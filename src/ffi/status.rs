@@ -134,7 +134,7 @@ pub extern "C" fn contact_normal_last_error() -> *const c_char {
     LAST_ERROR.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
-/// The version of the library, as "0.1.0"; static storage. Since 0.1.
+/// The version of the library, as "0.2.0"; static storage. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

@@ -64,7 +64,7 @@ pub struct contact_normal_stress_outputs {
 
 versioned! { contact_normal_stress_outputs, 136 }
 
-/// Fills outputs with NULL: nothing is wanted. Since 0.1.
+/// Fills outputs with NULL: nothing is wanted. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contact_normal_stress_outputs) {
     // SAFETY: NULL or a whole struct, by the conventions of the ABI.
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contac
 /// this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
 /// `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
 /// (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
-/// left alone. Since 0.1.
+/// left alone. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(
     scene: *const contact_normal_scene,
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
 /// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
 /// element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
 /// point. A point at z = 0 on the edge of an element is refused: stresses jump there or are infinite. Time grows with n times the
-/// number of loaded elements. With `period`: UNSUPPORTED. Since 0.1.
+/// number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_at_points(
     scene: *const contact_normal_scene,
