@@ -258,6 +258,7 @@ impl<T: Real> Iteration<T> {
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
         let Update { alpha, settled, factor } = *update;
+        let limited = S::LIMITED && at_limit.contains(&true);
         self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
             for (u, q) in u.iter_mut().zip(&q[row.clone()]) {
@@ -274,14 +275,14 @@ impl<T: Real> Iteration<T> {
             for ((h, u), inside) in h[row.clone()].iter().zip(&*u).zip(&contact[row.clone()]) {
                 any |= set.enters(false, h - approach + *u) & !inside;
             }
-            if S::LIMITED {
+            if limited {
                 for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
                     any |= set.enters(true, h - approach + *u) & at_limit;
                 }
             }
             entering[0] = any;
         });
-        let waits = S::LIMITED && self.limits.waits(h, u, at_limit, approach);
+        let waits = limited && self.limits.waits(h, u, at_limit, approach);
         let mut entered = 0;
         for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| any) {
             self.runs.change(iy * mx);
