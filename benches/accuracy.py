@@ -51,7 +51,7 @@ def picture(rows, path):
         if None in prices:
             ax.annotate(" finer than studied", (paid[-1] if paid else 1e-4, y), fontsize=8, va="center", xytext=(9, 0), textcoords="offset points")
     labels = [ax.plot([], [], m, color=c, label=l)[0] for c, (_, l, m) in zip(("tab:green", "tab:orange", "tab:red"), TARGETS)]
-    ax.legend(handles=labels, title="error of the force", loc="lower right")
+    ax.legend(handles=labels, title="error of the force", loc="center left", bbox_to_anchor=(1.16, 0.5))
     ax.set_yticks(range(len(cases)), list(reversed(cases)))
     ax.set(xscale="log", xlabel="seconds, one thread (numbers: elements in a direction)", ylim=(-0.6, len(cases) - 0.4))
     ax.grid(axis="x", alpha=0.3)
