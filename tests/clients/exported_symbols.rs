@@ -39,8 +39,8 @@ fn the_header_declares_each_export_and_since_when() {
         // "contact_normal_status contact_normal_solve(const ...": the word before the first parenthesis.
         let before = code.split('(').next().expect("text");
         let name = before.rsplit([' ', '\n', '*']).next().expect("a name");
-        let since = comment.trim_end().ends_with("Since 0.1.");
-        assert!(since, "the comment of {name} does not end with \"Since 0.1.\":{comment}");
+        let since = ["Since 0.1.", "Since 0.2."].iter().any(|since| comment.trim_end().ends_with(since));
+        assert!(since, "the comment of {name} does not end with the version that brought it:{comment}");
         declared.push(name.to_string());
     }
     declared.sort();
