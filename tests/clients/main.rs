@@ -8,4 +8,5 @@ mod host_environment;
 mod installed_package;
 mod papers;
 mod python;
+mod python_layout;
 mod support;
