@@ -8,7 +8,7 @@ use std::ptr::null_mut;
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
-use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Solver, Stop};
 
@@ -91,7 +91,7 @@ fn third_pass(m: usize, shifts: &[f64], table: Option<&Table>, options: &Options
         for scene in &scenes {
             let (stop, report) = solver.solve(scene, options, guess, None).expect("a solve");
             assert_eq!(stop, Stop::Converged, "{options:?}");
-            assert!(report.cycles > 0 && !solver.ledger().is_empty(), "something was solved");
+            assert!(report.count.cycles > 0 && !solver.ledger().is_empty(), "something was solved");
         }
     };
     assert!(allocations(&mut pass) > 0, "the first pass allocates, or nothing is counted");
@@ -120,8 +120,8 @@ fn every_smoother_solves_again_without_allocating() {
     for smoother in [SmootherKind::GaussSeidel, SmootherKind::RedBlack, SmootherKind::Fft] {
         for method in [Method::Multigrid, Method::FullMultigrid] {
             for coarsest in [4, 16] {
-                let smoother = Some(smoother);
-                let options = Options { method, smoother, coarsest, ..Options::default() };
+                let cycle = CycleShape { smoother, coarsest, ..CycleShape::default() };
+                let options = Options { method, cycle, ..Options::default() };
                 assert_eq!(third_pass(48, &[0.0, 3.0], None, &options), 0, "{options:?}");
             }
         }

@@ -51,11 +51,11 @@ pub fn report() {
         let [with, without] = medians([&mut || _ = report(&coated), &mut || _ = report(&plain)]);
         println!(
             "| {mu} | {t} | {} | {:.1} | {:.1} | {} | {:.1} | {:.1} |",
-            one.matrix_products,
-            one.work_units,
+            one.count.matrix_products,
+            one.count.work_units,
             1e3 * with,
-            other.matrix_products,
-            other.work_units,
+            other.count.matrix_products,
+            other.count.work_units,
             1e3 * without
         );
     }

@@ -31,7 +31,7 @@ pub fn methods(sizes: &[usize]) {
                 continue;
             }
             let times = in_turns(&mut [&mut || _ = cold(&scene, &one), &mut || _ = cold(&scene, &two)]);
-            print!(" {:.0} / {} / {} |", report.work_units, shown(median(&times[0])), shown(median(&times[1])));
+            print!(" {:.0} / {} / {} |", report.count.work_units, shown(median(&times[0])), shown(median(&times[1])));
         }
         println!();
     }

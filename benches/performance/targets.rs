@@ -58,7 +58,7 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
         shown(call),
         shown(product),
         call / product,
-        report.work_units,
+        report.count.work_units,
         mark(call, limit(product))
     );
 }
@@ -161,7 +161,7 @@ pub fn accuracy(threads: usize) {
         let case = ellipse(1024);
         let tight = Options { method, tolerance: 1e-8, ..options(threads) };
         let enough = Options { error_ratio: 0.1, ..tight };
-        let work = [&tight, &enough].map(|options| cold(&case.scene(), options).1.work_units);
+        let work = [&tight, &enough].map(|options| cold(&case.scene(), options).1.count.work_units);
         let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &tight), &mut || _ = cold(&case.scene(), &enough)]);
         let (tight, enough) = (median(&times[0]), median(&times[1]));
         let ratio = enough / tight;

@@ -87,7 +87,7 @@ fn run(problem: &Problem, method: Method, tolerance: f64) -> Option<(f64, f64, f
     let options = Options { method, tolerance, max_cycles: 3000, ..Options::default() };
     let (_, _, report) = solve(&scene, &options).ok()?;
     let found = report.measures.found(problem.load);
-    Some((found, report.setup_seconds + report.solve_seconds, report.work_units, report.cycles))
+    Some((found, report.setup_seconds + report.solve_seconds, report.count.work_units, report.count.cycles))
 }
 
 fn of_case(case: case::Case, name: &'static str, exact: f64) -> Problem {

@@ -102,7 +102,7 @@ fn main() {
     if let [row, m] = &arguments[..] {
         let arrays = Arrays::new(m.parse().expect("a number of elements"));
         let (_, report) = call(&arrays.scene(row));
-        println!("{row} {m}: {} products, force {:.1}", report.matrix_products, report.measures.force);
+        println!("{row} {m}: {} products, force {:.1}", report.count.matrix_products, report.measures.force);
         return;
     }
     let arrays = Arrays::new(512);
@@ -124,7 +124,7 @@ fn main() {
     for ((row, (setup, solve)), report) in ROWS.into_iter().zip(times).zip(reports) {
         let (setup, solve) = (1e3 * median(setup), 1e3 * median(solve));
         let bytes = report.bytes as f64 / arrays.grid.len() as f64;
-        let (products, work) = (report.matrix_products, report.work_units);
+        let (products, work) = (report.count.matrix_products, report.count.work_units);
         println!("| {row} | {setup:.1} | {solve:.1} | {products} | {work:.1} | {bytes:.1} |");
     }
 }

@@ -1,7 +1,7 @@
 //! The test problem of the paper (section 5.1) and the runs behind its tables.
 
 use contact_normal::grid::Grid;
-use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 
@@ -46,8 +46,7 @@ pub fn linear_system(
     let scene = scene(m, &h);
     let options = Options {
         method,
-        smoother: Some(smoother),
-        relaxation,
+        cycle: CycleShape { smoother, relaxation, ..CycleShape::default() },
         active_set: ActiveSet::Fixed,
         max_cycles: most,
         ..Options::default()
@@ -56,14 +55,18 @@ pub fn linear_system(
     let guess = Guess { pressure: &vec![0.0; h.len()], contact: &contact };
     let mut solver = Solver::new(&scene, &options).expect("a valid scene");
     let (stop, report) = solver.solve(&scene, &options, Some(guess), None).expect("a solvable scene");
-    let factor = report.measures.certificate.residual.powf(1.0 / report.cycles as f64);
+    let factor = report.measures.certificate.residual.powf(1.0 / report.count.cycles as f64);
     (stop, report, factor)
 }
 
 /// Tables 2 and 3: the whole problem by one of the methods.
 pub fn whole_problem(m: usize, method: Method, pre_sweeps: usize, post_sweeps: usize) -> (Stop, Report) {
     let h = undeformed_distance(m);
-    let options = Options { method, pre_sweeps, post_sweeps, ..Options::default() };
+    let options = Options {
+        method,
+        cycle: CycleShape { pre_sweeps, post_sweeps, ..CycleShape::default() },
+        ..Options::default()
+    };
     let (_, stop, report) = solve(&scene(m, &h), &options).expect("a solvable scene");
     (stop, report)
 }

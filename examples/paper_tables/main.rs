@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// Count, or a dash when the method did not converge.
 fn count(stop: Stop, report: &Report) -> String {
     if stop == Stop::Converged {
-        report.cycles.to_string()
+        report.count.cycles.to_string()
     } else {
         "-".into()
     }
@@ -86,14 +86,15 @@ fn table_2_and_3() {
         for (k, (pre, post)) in CYCLES.into_iter().enumerate() {
             let (stop, report) = whole_problem(m, Method::Multigrid, pre, post);
             if k == 0 {
-                per_cycle.push((m, report.solve_seconds / report.cycles as f64));
+                per_cycle.push((m, report.solve_seconds / report.count.cycles as f64));
             }
             let printed = or_dash(printed.map(|row| row.1[k]));
             print!(" {:>20}", format!("{printed} / {}  {:.3} s", count(stop, &report), report.solve_seconds));
         }
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
         let printed = or_dash(printed.map(|row| row.2));
-        let ours = format!("{} ({})  {:.3} s", count(stop, &report), report.active_set_steps, report.solve_seconds);
+        let ours =
+            format!("{} ({})  {:.3} s", count(stop, &report), report.count.active_set_steps, report.solve_seconds);
         println!(" {:>30}", format!("{printed} / {ours}"));
     }
 

@@ -37,7 +37,7 @@ fn main() {
 fn row(case: &case::Case, load: Load, largest: f64, factors: &mut Vec<f64>) {
     let plain = case.scene_with(load);
     let work = |scene: &Scene<'_>| match solve(scene, &Options::default()) {
-        Ok((_, Stop::Converged, report)) => Some(report.work_units),
+        Ok((_, Stop::Converged, report)) => Some(report.count.work_units),
         Ok((_, stop, _)) => panic!("{}: {stop:?}", case.name),
         Err(_) => None,
     };

@@ -62,7 +62,7 @@ fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
         Err(Error::NotPositiveDefinite(_)) => return "**NOT_POSITIVE_DEFINITE**".into(),
         Err(error) => return format!("**{error}**"),
     };
-    let numbers = format!("{:.0e}, {:.1}", recompute(case, found).residual, found.report.work_units);
+    let numbers = format!("{:.0e}, {:.1}", recompute(case, found).residual, found.report.count.work_units);
     match found.stop {
         _ if is_solved(case, outcome) => numbers,
         Stop::Converged => format!("**WRONG** {numbers}"),

@@ -12,7 +12,7 @@ mod rough;
 
 use std::time::Instant;
 
-use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::Scene;
 use contact_normal::solver::{ActiveSet, Guess, Method, Options, Report, Solver, Stop};
 
@@ -58,9 +58,7 @@ fn compare(name: &str, scene: &Scene<'_>, contact: Option<&[bool]>, production: 
     let by_cycles = |(pre_sweeps, post_sweeps)| {
         SMOOTHERS.map(|smoother| Options {
             method: Method::FullMultigrid,
-            smoother: Some(smoother),
-            pre_sweeps,
-            post_sweeps,
+            cycle: CycleShape { smoother, pre_sweeps, post_sweeps, ..CycleShape::default() },
             ..production
         })
     };
@@ -91,6 +89,6 @@ fn cell(run: &mut Run) -> String {
     run.seconds.sort_by(f64::total_cmp);
     let median = run.seconds[run.seconds.len() / 2];
     let Some((stop, report)) = &run.result else { return String::new() };
-    let cycles = if *stop == Stop::Converged { report.cycles.to_string() } else { format!("{stop:?}") };
-    format!("{cycles} / {} / {:.1} / {median:.3}", report.matrix_products, report.work_units)
+    let cycles = if *stop == Stop::Converged { report.count.cycles.to_string() } else { format!("{stop:?}") };
+    format!("{cycles} / {} / {:.1} / {median:.3}", report.count.matrix_products, report.count.work_units)
 }

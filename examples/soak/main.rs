@@ -44,7 +44,7 @@ fn lap(grid: &Grid, solver: &mut Solver, options: &Options, h: &mut [f64]) -> Re
             return Err(format!("step {k}: {stop:?}, {certificate:?}"));
         }
         lap.approaches += report.measures.approach;
-        lap.products += report.matrix_products;
+        lap.products += report.count.matrix_products;
         for p in &solver.state().p {
             lap.hash = (lap.hash ^ p.to_bits()).wrapping_mul(0x0000_0100_0000_01b3);
         }

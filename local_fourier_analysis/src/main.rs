@@ -122,7 +122,7 @@ fn relaxation() -> Vec<[f64; 6]> {
             let (stop, report, mean) = case::linear_system(m, Method::Multigrid, GaussSeidel, omega, 100);
             assert_eq!(stop, Stop::Converged);
             let asymptotic = if measured.is_nan() { "-".into() } else { text(measured) };
-            let cycles = report.cycles;
+            let cycles = report.count.cycles;
             println!("{m:>5} {omega:>5} {by_two:>7.3} {by_three:>7.3} {asymptotic:>7} {cycles:>4} ({mean:.4})");
             table.push([m as f64, omega, by_two, by_three, measured, mean]);
         }

@@ -6,7 +6,7 @@ use super::arguments::{count, not_negative, reserved, Regions};
 use super::report::contact_normal_progress;
 use super::status::Refusal;
 use super::structs::{self, versioned, Versioned};
-use crate::methods::multigrid::SmootherKind;
+use crate::methods::multigrid::{CycleShape, SmootherKind};
 use crate::solver::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 
 /// `method`: the fastest way known that is safe.
@@ -106,9 +106,9 @@ pub struct contact_normal_options {
 
 versioned! {
     contact_normal_options, 96,
-    pre_sweeps: Options::default().pre_sweeps as i32,
-    post_sweeps: Options::default().post_sweeps as i32,
-    coarsest: Options::default().coarsest as i32,
+    pre_sweeps: Options::default().cycle.pre_sweeps as i32,
+    post_sweeps: Options::default().cycle.post_sweeps as i32,
+    coarsest: Options::default().cycle.coarsest as i32,
     tolerance: Options::default().tolerance,
     max_cycles: Options::default().max_cycles as i32,
     threads: Options::default().threads as i32,
@@ -141,11 +141,13 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
     reserved("options->reserved", given.reserved)?;
     let options = Options {
         method: method(given.method)?,
-        smoother: smoother(given.smoother)?,
-        pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
-        post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
-        relaxation: given.relaxation,
-        coarsest: count("coarsest", given.coarsest)?,
+        cycle: CycleShape {
+            smoother: smoother(given.smoother)?,
+            pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
+            post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
+            relaxation: given.relaxation,
+            coarsest: count("coarsest", given.coarsest)?,
+        },
         active_set: match given.active_set {
             CONTACT_NORMAL_ACTIVE_SET_FREE => ActiveSet::Free,
             CONTACT_NORMAL_ACTIVE_SET_FIXED => ActiveSet::Fixed,
@@ -190,13 +192,12 @@ fn method(value: i32) -> Result<Method, Refusal> {
     })
 }
 
-fn smoother(value: i32) -> Result<Option<SmootherKind>, Refusal> {
+fn smoother(value: i32) -> Result<SmootherKind, Refusal> {
     Ok(match value {
-        CONTACT_NORMAL_SMOOTHER_AUTO => None,
-        CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => Some(SmootherKind::GaussSeidel),
-        CONTACT_NORMAL_SMOOTHER_RED_BLACK => Some(SmootherKind::RedBlack),
-        CONTACT_NORMAL_SMOOTHER_JACOBI => Some(SmootherKind::Jacobi),
-        CONTACT_NORMAL_SMOOTHER_FFT => Some(SmootherKind::Fft),
+        CONTACT_NORMAL_SMOOTHER_AUTO | CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL => SmootherKind::GaussSeidel,
+        CONTACT_NORMAL_SMOOTHER_RED_BLACK => SmootherKind::RedBlack,
+        CONTACT_NORMAL_SMOOTHER_JACOBI => SmootherKind::Jacobi,
+        CONTACT_NORMAL_SMOOTHER_FFT => SmootherKind::Fft,
         other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2, JACOBI 3 or FFT 4"),
     })
 }

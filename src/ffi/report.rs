@@ -231,7 +231,7 @@ impl contact_normal_report {
         ledger_capacity: i64,
     ) -> Self {
         let mut to = Self { ledger_rows: ledger_rows as i64, ledger_capacity, ledger, ..Self::defaults() };
-        copy!(report => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
+        copy!(report.count => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
         copy!(report.measures.certificate => to: penetration, complementarity, min_pressure);
         copy!(report.measures => to: edge_count);
         copy!(report => to: setup_seconds, solve_seconds, bytes, tolerance);

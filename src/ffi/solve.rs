@@ -132,7 +132,7 @@ pub(super) fn run(
 }
 
 pub(super) fn explain(stop: Stop, report: &Report, method: Method, state: Option<&State>) -> String {
-    let (cycles, residual) = (report.cycles, report.measures.certificate.residual);
+    let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
     let why = match stop {
         Stop::Converged => "solved",

@@ -52,13 +52,13 @@ impl Progress {
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
 /// What is counted. All but the work units start anew on each grid.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counters {
-    /// Cycles on the current grid.
+    /// Cycles (of multigrid) or iterations (of conjugate gradients, steps of GMRES) on the current grid.
     pub cycles: u64,
     /// Products on the current grid.
     pub matrix_products: u64,
-    /// Elements that changed sides on the current grid.
+    /// Elements that entered or left the contact area on the current grid, in all.
     pub active_set_changes: u64,
     /// Active-set steps on the current grid.
     pub active_set_steps: u64,

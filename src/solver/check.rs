@@ -46,7 +46,7 @@ impl SetUp {
     /// Refuses options that are not those of the set-up.
     pub fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
-        let (now, then) = (options.cycle_shape(), self.options.cycle_shape());
+        let (now, then) = (options.cycle, self.options.cycle);
         let numbers = [
             ("pre_sweeps", now.pre_sweeps, then.pre_sweeps),
             ("post_sweeps", now.post_sweeps, then.post_sweeps),
@@ -58,7 +58,7 @@ impl SetUp {
         }
         let others = [
             ("smoother", now.smoother != then.smoother),
-            ("relaxation", now.relaxation != then.relaxation),
+            ("relaxation", now.relaxation() != then.relaxation()),
             ("precision", options.precision != self.options.precision),
         ];
         if let Some((name, _)) = others.into_iter().find(|(_, differs)| *differs) {

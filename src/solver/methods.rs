@@ -51,7 +51,7 @@ impl Methods {
             descent: Descent::default(),
             norm: Norm::default(),
             best: Best::default(),
-            shape: options.cycle_shape(),
+            shape: options.cycle,
         })
     }
 

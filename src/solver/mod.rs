@@ -21,7 +21,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 pub use crate::operator::Precision;
-pub use crate::progress::{Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop};
+pub use crate::progress::{
+    Counters, Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop,
+};
 pub use batch::Problem;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use refinement::{

@@ -1,7 +1,7 @@
 //! How a scene is solved. The defaults suit everybody.
 
 use crate::error::{invalid, require, Result};
-use crate::methods::multigrid::{CycleShape, SmootherKind};
+use crate::methods::multigrid::CycleShape;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal};
 
@@ -48,16 +48,8 @@ pub enum InitialGuess {
 pub struct Options {
     /// The method.
     pub method: Method,
-    /// The smoother; `None`: Gauss-Seidel.
-    pub smoother: Option<SmootherKind>,
-    /// n1 of V(n1, n2).
-    pub pre_sweeps: usize,
-    /// n2 of V(n1, n2).
-    pub post_sweeps: usize,
-    /// omega; 0: what suits the smoother.
-    pub relaxation: f64,
-    /// The coarsest grid has at most this many elements in each direction.
-    pub coarsest: usize,
+    /// The V-cycle, where the method has one.
+    pub cycle: CycleShape,
     /// Free or given contact area.
     pub active_set: ActiveSet,
     /// Where to start.
@@ -83,11 +75,7 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             method: Method::Auto,
-            smoother: None,
-            pre_sweeps: 1,
-            post_sweeps: 1,
-            relaxation: 0.0,
-            coarsest: 4,
+            cycle: CycleShape::default(),
             active_set: ActiveSet::Free,
             initial_guess: InitialGuess::None,
             tolerance: 1e-6,
@@ -116,18 +104,19 @@ impl Options {
         if self.max_cycles == 0 {
             return invalid("max_cycles is 0; at least one cycle must be allowed".into());
         }
-        let omega = self.relaxation;
-        require((0.0..2.0).contains(&omega), "relaxation", omega, "it must lie in (0, 2), or be 0 for the default")?;
-        if self.pre_sweeps + self.post_sweeps == 0 {
+        let CycleShape { relaxation, pre_sweeps, post_sweeps, coarsest, .. } = self.cycle;
+        let allowed = "it must lie in (0, 2), or be 0 for the default";
+        require((0.0..2.0).contains(&relaxation), "relaxation", relaxation, allowed)?;
+        if pre_sweeps + post_sweeps == 0 {
             return invalid("pre_sweeps and post_sweeps are both 0; a cycle needs at least one sweep".into());
         }
-        for (name, sweeps) in [("pre_sweeps", self.pre_sweeps), ("post_sweeps", self.post_sweeps)] {
+        for (name, sweeps) in [("pre_sweeps", pre_sweeps), ("post_sweeps", post_sweeps)] {
             if sweeps > MOST_SWEEPS {
                 return invalid(format!("{name} is {sweeps}; at most {MOST_SWEEPS} are allowed"));
             }
         }
-        if !(1..=LARGEST_COARSEST).contains(&self.coarsest) {
-            return invalid(format!("coarsest is {}; it must lie in 1..{LARGEST_COARSEST}", self.coarsest));
+        if !(1..=LARGEST_COARSEST).contains(&coarsest) {
+            return invalid(format!("coarsest is {coarsest}; it must lie in 1..{LARGEST_COARSEST}"));
         }
         let ratio = self.error_ratio;
         require(ratio >= 0.0 && ratio.is_finite(), "error_ratio", ratio, "it must be positive and finite, or 0")?;
@@ -145,18 +134,5 @@ impl Options {
     /// What a solve has to reach.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
-    }
-
-    /// The V-cycle that these options ask for.
-    pub fn cycle_shape(&self) -> CycleShape {
-        let smoother = self.smoother.unwrap_or(SmootherKind::GaussSeidel);
-        let relaxation = if self.relaxation > 0.0 { self.relaxation } else { smoother.default_relaxation() };
-        CycleShape {
-            smoother,
-            relaxation,
-            pre_sweeps: self.pre_sweeps,
-            post_sweeps: self.post_sweeps,
-            coarsest: self.coarsest,
-        }
     }
 }

@@ -3,7 +3,7 @@
 use super::Method;
 use crate::friction;
 use crate::grid::Grid;
-use crate::progress::{DiscretisationError, Measures, Monitor, Stop};
+use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Stop};
 
 /// What limits the accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,18 +35,8 @@ impl Default for Halving {
 /// What a solve found and what it cost; grid by grid: [`Solver::ledger`](super::Solver::ledger).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
-    pub cycles: u64,
-    /// Elements that entered or left the contact area on the finest grid, in all.
-    pub active_set_changes: u64,
-    /// Active-set steps on the finest grid.
-    pub active_set_steps: u64,
-    /// rms over C of the last change of p.
-    pub update: f64,
-    /// Products on the finest grid.
-    pub matrix_products: u64,
-    /// Products on all grids, in products on the finest.
-    pub work_units: f64,
+    /// What was counted, on the finest grid.
+    pub count: Counters,
     /// The result.
     pub measures: Measures,
     /// And how far it is off.
@@ -70,25 +60,15 @@ pub struct Report {
 impl Report {
     /// What a solve counted and found, its last ledger row being the finest grid's; errors are not estimated yet.
     pub(super) fn of(monitor: &Monitor<'_>, tolerance: f64) -> Report {
-        let count = &monitor.count;
         let last = monitor.ledger.rows.last();
-        Report {
-            cycles: count.cycles,
-            active_set_changes: count.active_set_changes,
-            active_set_steps: count.active_set_steps,
-            update: count.update,
-            matrix_products: count.matrix_products,
-            work_units: count.work_units,
-            measures: last.map(|row| row.measures).unwrap_or_default(),
-            tolerance,
-            ..Report::default()
-        }
+        let measures = last.map(|row| row.measures).unwrap_or_default();
+        Report { count: monitor.count, measures, tolerance, ..Report::default() }
     }
 
     /// Says in the log how a solve went.
     pub(super) fn log(&self, method: Method, grid: &Grid, stop: Stop) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
-        let Report { cycles, work_units, .. } = self;
+        let Counters { cycles, work_units, .. } = self.count;
         log::info!(
             "{method:?} on {mx} x {my}: {stop:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
         );

@@ -53,7 +53,7 @@ fn one_by_one(problems: &[Problem<'_>], options: &Options, order: &[usize]) -> V
     let mut results = vec![None; problems.len()];
     for &i in order {
         let (stop, report) = solver.solve(&problems[i].scene, options, problems[i].guess, None).expect("a solve");
-        results[i] = Some(found(solver.state(), stop, report.cycles));
+        results[i] = Some(found(solver.state(), stop, report.count.cycles));
     }
     results.into_iter().map(|result| result.expect("all in order")).collect()
 }
@@ -92,7 +92,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
                 let batch = solver
                     .solve_batch(&problems, &options, |_, outcome, state| {
                         let (stop, report) = outcome.expect("a solve");
-                        found(state, stop, report.cycles)
+                        found(state, stop, report.count.cycles)
                     })
                     .expect("a batch");
                 assert!(batch == expected, "{threads} threads: {options:?}");
@@ -115,7 +115,7 @@ fn a_batch_leaves_the_solver_its_last_result() {
     let (_, again) = solver
         .solve(&scene, &Options { initial_guess: InitialGuess::Previous, ..options }, None, None)
         .expect("a solve");
-    assert!(again.cycles <= 1, "{} cycles from its own result", again.cycles);
+    assert!(again.count.cycles <= 1, "{} cycles from its own result", again.count.cycles);
     let previous = Options { initial_guess: InitialGuess::Previous, ..options };
     let refused = solver.solve_batch(&problems, &previous, |_, _, _| ());
     assert!(matches!(refused, Err(Error::InvalidArgument(message)) if message.contains("PREVIOUS")));

@@ -257,7 +257,12 @@ fn an_error_ratio_costs_less_and_loses_nothing_that_the_grid_could_show() {
             let [all, enough] = [all, enough].map(|rows| exact.error(&rows[rows.len() - 1], by_force));
             let what = format!("{}, by force: {by_force}, {method:?}", exact.name);
             assert!((enough / all - 1.0).abs() <= 0.15, "{what}: {enough} and {all}");
-            assert!(report.cycles < full.cycles, "{what}: {} and {}", report.cycles, full.cycles);
+            assert!(
+                report.count.cycles < full.count.cycles,
+                "{what}: {} and {}",
+                report.count.cycles,
+                full.count.cycles
+            );
         }
     }
 }

@@ -21,7 +21,8 @@ const TOLERANCE: f64 = 1e-8;
 
 /// V(1,1) with the FFT smoother.
 fn options(method: Method) -> Options {
-    Options { method, smoother: Some(SmootherKind::Fft), tolerance: TOLERANCE, max_cycles: 200, ..Options::default() }
+    let cycle = CycleShape { smoother: SmootherKind::Fft, ..CycleShape::default() };
+    Options { method, cycle, tolerance: TOLERANCE, max_cycles: 200, ..Options::default() }
 }
 
 /// NORM, solved further than what is compared with it.
@@ -62,9 +63,14 @@ fn the_linear_system_of_the_paper_takes_no_more_cycles_than_with_gauss_seidel() 
         let run = |smoother| case::linear_system(m, Method::Multigrid, smoother, 0.0, 100);
         let ((stop, fft, _), (_, gauss_seidel, _)) = (run(SmootherKind::Fft), run(SmootherKind::GaussSeidel));
         assert_eq!(stop, Stop::Converged);
-        assert!(fft.cycles <= gauss_seidel.cycles, "{m}: {} for {}", fft.cycles, gauss_seidel.cycles);
+        assert!(
+            fft.count.cycles <= gauss_seidel.count.cycles,
+            "{m}: {} for {}",
+            fft.count.cycles,
+            gauss_seidel.count.cycles
+        );
         // Three products a cycle, the fresh one that certifies, and the one of the start.
-        assert!(fft.matrix_products <= 3 * fft.cycles + 2, "{m}: {} products", fft.matrix_products);
+        assert!(fft.count.matrix_products <= 3 * fft.count.cycles + 2, "{m}: {} products", fft.count.matrix_products);
     }
 }
 
@@ -79,7 +85,8 @@ fn the_ellipse_is_solved_by_every_cycle_for_both_loads() {
             for method in [Method::Multigrid, Method::FullMultigrid] {
                 for (pre_sweeps, post_sweeps) in [(1, 1), (1, 0), (0, 1)] {
                     let what = format!("{m}, {:?}, {method:?}, V({pre_sweeps},{post_sweeps})", scene.load);
-                    let options = Options { pre_sweeps, post_sweeps, ..options(method) };
+                    let fft = options(method);
+                    let options = Options { cycle: CycleShape { pre_sweeps, post_sweeps, ..fft.cycle }, ..fft };
                     let (solver, stop, report) = solve(scene, &options).unwrap();
                     assert_converged(stop, &report, &what);
                     assert_same_pressures(&solver, &reference, &what);
@@ -103,7 +110,7 @@ fn the_rough_surface_is_solved() {
                 let what = format!("{m}, {:?}, {method:?}", scene.load);
                 assert_converged(stop, &report, &what);
                 assert_same_pressures(&solver, &reference, &what);
-                assert!(report.cycles < 40, "{what}: {} cycles", report.cycles);
+                assert!(report.count.cycles < 40, "{what}: {} cycles", report.count.cycles);
                 // 10 to 25 to 1e-8
             }
             let contact = &reference.state().contact;
@@ -143,7 +150,8 @@ fn scattered_spots_are_solved_as_norm_does() {
                 assert_eq!(stop, Stop::Converged);
                 for (pre_sweeps, post_sweeps) in [(1, 1), (1, 0), (0, 1)] {
                     let what = format!("{mx} x {my}, {fill}, {load:?}, V({pre_sweeps},{post_sweeps})");
-                    let options = Options { pre_sweeps, post_sweeps, ..options(Method::Multigrid) };
+                    let fft = options(Method::Multigrid);
+                    let options = Options { cycle: CycleShape { pre_sweeps, post_sweeps, ..fft.cycle }, ..fft };
                     let (solver, stop, report) = on_contact(&scene, options, &contact);
                     assert_converged(stop, &report, &what);
                     assert_same_pressures(&solver, &reference, &what);

@@ -346,7 +346,11 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
             let mut solver = Solver::new(&scene, &given).unwrap();
             let guess = Guess { pressure: &p, contact: &contact };
             let (stop, report) = solver.solve(&scene, &given, Some(guess), None).unwrap();
-            assert!(stop == Stop::Converged && report.cycles <= 3, "{method:?} {load:?}: {} cycles", report.cycles);
+            assert!(
+                stop == Stop::Converged && report.count.cycles <= 3,
+                "{method:?} {load:?}: {} cycles",
+                report.count.cycles
+            );
 
             let nonsense: Vec<f64> = (0..grid.len()).map(|i| (i % 17) as f64 - 5.0).collect();
             let corner: Vec<bool> = (0..grid.len()).map(|i| i % 60 < 7).collect();
@@ -373,7 +377,7 @@ fn the_update_criterion_means_the_last_change_of_the_pressures() {
         let state = solver.state();
         let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / state.contact_count() as f64).sqrt();
         assert_eq!(stop, Stop::Converged);
-        assert!(report.update <= 1e-5 * rms, "{method:?}: {} of {rms}", report.update);
+        assert!(report.count.update <= 1e-5 * rms, "{method:?}: {} of {rms}", report.count.update);
         // a stop by updates leaves an error of the size of an update over (1 - convergence factor)
         assert!(report.measures.certificate.residual <= 1e-4);
     }
@@ -393,7 +397,12 @@ fn an_error_ratio_stops_at_a_part_of_the_discretisation_error() {
                 report
             };
             let (exact, enough) = (run(0.0), run(0.1));
-            assert!(enough.cycles < exact.cycles, "{method:?}: {} and {} cycles", enough.cycles, exact.cycles);
+            assert!(
+                enough.count.cycles < exact.count.cycles,
+                "{method:?}: {} and {} cycles",
+                enough.count.cycles,
+                exact.count.cycles
+            );
             // what is found is off by less than the discretisation error that was estimated for it
             let off = match load {
                 Load::Approach(_) => enough.measures.force - exact.measures.force,
@@ -412,7 +421,7 @@ fn limits_and_cancellation_return_the_best_iterate() {
     for method in METHODS {
         let options = Options { method, tolerance: 1e-10, max_cycles: 2, ..Options::default() };
         let (solver, stop, report) = solve(&scene, &options).unwrap();
-        assert_eq!((stop, report.cycles), (Stop::IterationLimit, 2), "{method:?}");
+        assert_eq!((stop, report.count.cycles), (Stop::IterationLimit, 2), "{method:?}");
         assert!(solver.state().p.iter().all(|p| *p >= 0.0));
 
         for after in [1, 3, 8] {
@@ -491,14 +500,14 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
             // Two residuals of 1e-6 may differ by so much at the rim.
             assert!(difference <= 1e-3 * scale, "step {step}: {difference} of {scale}");
             if step >= 2 {
-                let (warm, cold) = (report.work_units, reference.work_units);
+                let (warm, cold) = (report.count.work_units, reference.count.work_units);
                 assert!(warm < 0.8 * cold, "step {step}: {warm} work units, {cold} from nothing");
             }
         }
         // The same once more: nothing is left to do, and no product is needed to see that.
         let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
         let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
-        assert_eq!((stop, report.cycles, report.matrix_products), (Stop::Converged, 0, 0));
+        assert_eq!((stop, report.count.cycles, report.count.matrix_products), (Stop::Converged, 0, 0));
         assert!(report.measures.certificate.residual <= 1e-6);
     }
 }

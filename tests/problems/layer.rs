@@ -127,8 +127,9 @@ fn the_count_of_products_does_not_grow() {
     let h = ellipse(&grid);
     for load in [Load::Approach(0.2), Load::Force(0.3)] {
         let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), load);
-        let products =
-            |layer: Option<Layer<'_>>| run(&Scene { layer, ..plain.clone() }, &Options::default()).1.matrix_products;
+        let products = |layer: Option<Layer<'_>>| {
+            run(&Scene { layer, ..plain.clone() }, &Options::default()).1.count.matrix_products
+        };
         let without = products(None);
         for relative in [1e-3, 0.1, 1.0, 10.0, 1e3] {
             let c = relative * self_influence(&plain);

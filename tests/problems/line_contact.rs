@@ -36,12 +36,12 @@ fn own_coefficients_on_one_row_or_column_keep_the_preconditioner() {
                 let (solver, stop, own) = solve(&scene, &Options::default()).unwrap();
                 assert_eq!(stop, Stop::Converged, "{mx} x {my} {load:?}");
                 // The preconditioner's circulant is that of the same coefficients but for what lies beyond the grid.
-                let allowed = report.cycles + 4;
+                let allowed = report.count.cycles + 4;
                 assert!(
-                    own.cycles <= allowed,
+                    own.count.cycles <= allowed,
                     "{mx} x {my} {load:?}: {} cycles, {} without a table",
-                    own.cycles,
-                    report.cycles
+                    own.count.cycles,
+                    report.count.cycles
                 );
                 let state = solver.state();
                 let mut u = vec![0.0; grid.len()];

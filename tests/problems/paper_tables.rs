@@ -29,7 +29,7 @@ fn table_1_counts_and_factors_are_the_printed_ones() {
     for (m, omega, count, factor) in TABLE_1 {
         let (stop, report, measured) = linear_system(m, Method::Multigrid, GaussSeidel, omega, 100);
         assert_eq!(stop, Stop::Converged);
-        assert_eq!(report.cycles, count, "{m} x {m}, omega {omega}");
+        assert_eq!(report.count.cycles, count, "{m} x {m}, omega {omega}");
         // printed to four digits
         assert!((measured - factor).abs() <= 0.5e-4, "{m} x {m}, omega {omega}: {measured} for {factor}");
     }
@@ -40,7 +40,11 @@ fn counts(method: Method, table: &[(usize, [u64; 3])]) {
         for ((pre, post), most) in [(1, 1), (1, 0), (0, 1)].into_iter().zip(most) {
             let (stop, report) = whole_problem(m, method, pre, post);
             assert_eq!(stop, Stop::Converged);
-            assert!(report.cycles <= most, "{m} x {m}, V({pre},{post}): {} cycles, at most {most}", report.cycles);
+            assert!(
+                report.count.cycles <= most,
+                "{m} x {m}, V({pre},{post}): {} cycles, at most {most}",
+                report.count.cycles
+            );
             assert!(report.measures.certificate.residual <= 1e-6);
             assert_eq!(report.measures.certificate.penetration, 0.0);
         }
@@ -61,9 +65,9 @@ fn table_3_full_multigrid_needs_no_more_cycles() {
 fn table_2_norm_needs_the_measured_iterations() {
     for (m, iterations, steps) in NORM {
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
-        assert_eq!((stop, report.active_set_steps), (Stop::Converged, steps));
-        let off = (report.cycles as f64 / iterations as f64 - 1.0).abs();
-        assert!(off <= 0.03, "{m} x {m}: {} iterations for {iterations}", report.cycles);
+        assert_eq!((stop, report.count.active_set_steps), (Stop::Converged, steps));
+        let off = (report.count.cycles as f64 / iterations as f64 - 1.0).abs();
+        assert!(off <= 0.03, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);
     }
 }
 
@@ -91,7 +95,11 @@ fn a_v11_cycle_costs_three_products_on_the_finest_grid_and_a_third_more_on_the_o
     // The growth of the wall time is printed by the paper_tables example.
     for m in [64, 256] {
         let (_, report) = whole_problem(m, Method::Multigrid, 1, 1);
-        assert_eq!(report.matrix_products, 3 * report.cycles);
-        assert!(report.work_units <= 4.0 * report.cycles as f64, "{m} x {m}: {} work units", report.work_units);
+        assert_eq!(report.count.matrix_products, 3 * report.count.cycles);
+        assert!(
+            report.count.work_units <= 4.0 * report.count.cycles as f64,
+            "{m} x {m}: {} work units",
+            report.count.work_units
+        );
     }
 }

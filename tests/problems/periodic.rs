@@ -325,7 +325,7 @@ fn the_iteration_needs_no_more_products_than_without_a_period() {
         let (_, stop, report) =
             solve(&scene(grid, &h, (true, true), Load::Force(share * grid.len() as f64)), &Options::default()).unwrap();
         assert_eq!(stop, Stop::Converged);
-        assert!(report.matrix_products <= 24, "{share}: {} products", report.matrix_products);
+        assert!(report.count.matrix_products <= 24, "{share}: {} products", report.count.matrix_products);
     }
 }
 

@@ -68,7 +68,7 @@ fn approaches_near_the_mean_are_solved() {
                 let what = format!("{m} x {m}, waves to m/{part}, {share} of the mean");
                 let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
                 assert_eq!(stop, Stop::Converged, "{what}");
-                assert!(report.work_units <= 200.0, "{what}: {} work units", report.work_units);
+                assert!(report.count.work_units <= 200.0, "{what}: {} work units", report.count.work_units);
                 let p = &solver.state().p;
                 let u = displacements(&scene, p);
                 assert_conditions(&h, approach, p, &u, &what);

@@ -104,7 +104,7 @@ fn a_limit_that_is_not_reached_changes_not_a_bit() {
             );
             let (a, b) = (without.state(), with.state());
             assert_eq!((&a.p, &a.u, &a.contact, a.approach), (&b.p, &b.u, &b.contact, b.approach));
-            assert_eq!((report.matrix_products, report.bytes), (again.matrix_products, again.bytes));
+            assert_eq!((report.count.matrix_products, report.bytes), (again.count.matrix_products, again.bytes));
             assert!(!b.at_limit.contains(&true));
         }
     }
@@ -248,10 +248,11 @@ fn a_limit_costs_at_most_three_times_the_plain_scene() {
                     let limit = PressureLimit::Uniform(share * found.measures.max_pressure);
                     let limited = Scene { pressure_limit: Some(limit), ..scene.clone() };
                     let (solver, stop, report) = solve(&limited, &Options::default()).unwrap();
-                    let what = format!("{m}, {load:?}, {share}: {} for {}", report.work_units, alone.work_units);
+                    let what =
+                        format!("{m}, {load:?}, {share}: {} for {}", report.count.work_units, alone.count.work_units);
                     assert_eq!(stop, Stop::Converged, "{what}");
                     assert!(solver.state().at_limit.contains(&true), "{what}: no limit is reached");
-                    assert!(report.work_units <= 3.0 * alone.work_units, "{what}");
+                    assert!(report.count.work_units <= 3.0 * alone.count.work_units, "{what}");
                 }
             }
         }

@@ -19,7 +19,7 @@ fn the_approach_that_a_force_leads_to_costs_about_as_much_as_that_force() {
         let scene = case.scene_with(Load::Approach(forced.measures.approach));
         let (by_approach, stop, approached) = solve(&scene, &options).unwrap();
         assert_eq!(stop, Stop::Converged);
-        let (approached, forced) = (approached.work_units, forced.work_units);
+        let (approached, forced) = (approached.count.work_units, forced.count.work_units);
         assert!(approached <= 2.0 * forced, "{m}: {approached} work units by approach, {forced} by force");
         let pairs = by_force.state().contact.iter().zip(&by_approach.state().contact);
         let different = pairs.filter(|(a, b)| a != b).count();

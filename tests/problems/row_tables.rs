@@ -148,7 +148,7 @@ fn tables_of_the_half_space_are_no_effect() {
                 assert_eq!(found.state().at_limit, expected.state().at_limit, "{load:?} {method:?}");
                 assert!(pressure_limit.is_none() || found.state().at_limit.contains(&true));
                 // Coarse coefficients are means, not those of larger elements; and there is no window or direct solve.
-                let (with, without) = (with.matrix_products, without.matrix_products);
+                let (with, without) = (with.count.matrix_products, without.count.matrix_products);
                 assert!(with <= without + without / 2 + 3, "{load:?} {layer:?} {method:?}: {with} products, {without}");
             }
         }
@@ -207,7 +207,11 @@ fn the_conditions_hold_with_the_direct_sum() {
                 };
                 assert_conditions(&scene, &solver, give, &format!("{load:?} {layer:?} {method:?}"));
                 // As of the plain scene on such a grid, or with conjugate gradients without preconditioner.
-                assert!(method == Method::Norm || report.matrix_products <= 60, "{} products", report.matrix_products);
+                assert!(
+                    method == Method::Norm || report.count.matrix_products <= 60,
+                    "{} products",
+                    report.count.matrix_products
+                );
             }
         }
     }

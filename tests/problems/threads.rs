@@ -4,7 +4,7 @@
 use crate::performance as case;
 
 use case::{ellipse, rough, wheel_rail, Case};
-use contact_normal::methods::multigrid::SmootherKind;
+use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Load, Scene};
 use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Precision, Solver, Stop};
 
@@ -21,14 +21,14 @@ fn found(solver: &Solver, cycles: u64) -> Found {
 fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     let (mut solver, stop, report) = solve(scene, options).expect("a solve");
     assert_eq!(stop, Stop::Converged, "{options:?}");
-    let cold = found(&solver, report.cycles);
+    let cold = found(&solver, report.count.cycles);
     let load = match scene.load {
         Load::Approach(approach) => Load::Approach(1.01 * approach),
         Load::Force(force) => Load::Force(1.01 * force),
     };
     let next = Options { initial_guess: InitialGuess::Previous, ..*options };
     let (_, report) = solver.solve(&Scene { load, ..scene.clone() }, &next, None, None).expect("a step");
-    [cold, found(&solver, report.cycles)]
+    [cold, found(&solver, report.count.cycles)]
 }
 
 /// Approach and force prescribed, all methods, 1, 2 and 3 threads.
@@ -36,16 +36,16 @@ fn same_for_any_number_of_threads(case: &Case) {
     let (solver, _, report) = solve(&case.scene(), &Options::default()).expect("a solve");
     let loads = [Load::Approach(solver.state().approach), Load::Force(report.measures.force)];
     let all = Options { max_cycles: 5000, ..Options::default() };
-    let fft = Some(SmootherKind::Fft);
+    let fft = CycleShape { smoother: SmootherKind::Fft, ..CycleShape::default() };
     let ways = [
         all,
         Options { precision: Precision::Double, criterion: Criterion::Update, ..all },
         Options { method: Method::ProjectedCg, ..all },
         Options { method: Method::Norm, ..all },
         Options { method: Method::Multigrid, ..all },
-        Options { method: Method::Multigrid, smoother: fft, ..all },
+        Options { method: Method::Multigrid, cycle: fft, ..all },
         Options { method: Method::FullMultigrid, ..all },
-        Options { method: Method::FullMultigrid, smoother: fft, ..all },
+        Options { method: Method::FullMultigrid, cycle: fft, ..all },
     ];
     for load in loads {
         for way in ways {

@@ -108,7 +108,7 @@ fn work_units(m: usize, border: usize, approach: f64, h: &[f64]) -> f64 {
     let p = &solver.state().p;
     let u = displacements(m, p);
     assert_conditions(h, approach, p, &u, &what);
-    report.work_units
+    report.count.work_units
 }
 
 /// Measured: 12 to 47. Where pressures were not scaled to the least energy after large truncations, 19 of these 66 stopped at the

@@ -22,16 +22,27 @@ pub struct CycleShape {
     pub pre_sweeps: usize,
     /// n2, sweeps after it.
     pub post_sweeps: usize,
-    /// omega.
+    /// omega; 0: what suits the smoother.
     pub relaxation: f64,
     /// The coarsest grid has at most this many elements in each direction.
     pub coarsest: usize,
 }
 
 impl Default for CycleShape {
-    /// The paper's best: V(1,1) with Gauss-Seidel, omega = 0.8, down to 4 x 4.
+    /// The paper's best: V(1,1) with Gauss-Seidel and its omega = 0.8, down to 4 x 4.
     fn default() -> CycleShape {
-        CycleShape { smoother: SmootherKind::GaussSeidel, pre_sweeps: 1, post_sweeps: 1, relaxation: 0.8, coarsest: 4 }
+        CycleShape { smoother: SmootherKind::GaussSeidel, pre_sweeps: 1, post_sweeps: 1, relaxation: 0.0, coarsest: 4 }
+    }
+}
+
+impl CycleShape {
+    /// omega.
+    pub fn relaxation(&self) -> f64 {
+        if self.relaxation > 0.0 {
+            self.relaxation
+        } else {
+            self.smoother.default_relaxation()
+        }
     }
 }
 
@@ -119,7 +130,7 @@ impl Multigrid {
             fft.start();
         }
         for _ in 0..shape.pre_sweeps {
-            level.smooth(shape.relaxation, workspace);
+            level.smooth(shape.relaxation(), workspace);
             level.update_residual(workspace);
         }
 
@@ -136,7 +147,7 @@ impl Multigrid {
         // Post-smoothing.
         for _ in 0..shape.post_sweeps {
             level.update_residual(workspace);
-            level.smooth(shape.relaxation, workspace);
+            level.smooth(shape.relaxation(), workspace);
         }
     }
 

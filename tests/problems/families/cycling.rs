@@ -94,7 +94,7 @@ mod promises {
         for case in cases() {
             for method in [Method::FullMultigrid, Method::Multigrid, Method::Norm] {
                 let found = run_with(&case, &Options { method, ..Options::default() }).expect("a solve");
-                assert!(found.report.cycles <= 1000, "{}: {method:?}", case.name);
+                assert!(found.report.count.cycles <= 1000, "{}: {method:?}", case.name);
             }
         }
     }

@@ -114,10 +114,10 @@ mod promises {
                     // UPDATE at 1e-8 leaves a residual of at most about that: A is well scaled on the solution.
                     assert_certified(&case, &format!("{method:?} from the solution"), &again, 1e-7);
                     // A V-cycle or two to see that nothing changes; conjugate gradients see it from the residual.
-                    assert!(again.report.cycles <= 4, "{method:?}: {} cycles", again.report.cycles);
+                    assert!(again.report.count.cycles <= 4, "{method:?}: {} cycles", again.report.count.cycles);
                     let bent: Vec<f64> = exact.p.iter().enumerate().map(|(i, p)| p * [1.01, 0.99][i % 2]).collect();
                     let other = from(&bent);
-                    assert!(other.report.cycles > 0, "{method:?}: returned what was put in");
+                    assert!(other.report.count.cycles > 0, "{method:?}: returned what was put in");
                     assert_certified(&case, &format!("{method:?} from nearly the solution"), &other, 1e-7);
                 }
             }

@@ -34,7 +34,7 @@ mod promises {
                     assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
                     let floor_or_exact = found.stop == Stop::Stagnated
                         || criterion == Criterion::Update && found.stop == Stop::Converged;
-                    assert!(floor_or_exact, "{what}: {:?} after {}", found.stop, found.report.cycles);
+                    assert!(floor_or_exact, "{what}: {:?} after {}", found.stop, found.report.count.cycles);
                 }
             }
         }
@@ -94,7 +94,7 @@ mod promises {
                     let options = Options { method, max_cycles, tolerance: 1e-12, ..Options::default() };
                     let found = run_with(&case, &options).expect("a solve");
                     assert_eq!(
-                        (found.stop, found.report.cycles),
+                        (found.stop, found.report.count.cycles),
                         (Stop::IterationLimit, max_cycles as u64),
                         "{method:?}"
                     );

@@ -85,7 +85,11 @@ mod promises {
                 {
                     let case = converted(&steel(load), "powers of two", length, pressure, scale);
                     let there = run(&case, method).expect("a solve");
-                    assert_eq!((there.stop, there.report.cycles), (here.stop, here.report.cycles), "{method:?}");
+                    assert_eq!(
+                        (there.stop, there.report.count.cycles),
+                        (here.stop, here.report.count.cycles),
+                        "{method:?}"
+                    );
                     assert_eq!(there.approach, here.approach * length * scale, "{method:?} {load:?}");
                     for (p, q) in here.p.iter().zip(&there.p) {
                         assert_eq!((p * pressure * scale).to_bits(), q.to_bits(), "{method:?} {load:?}");
