@@ -243,7 +243,7 @@ module contact_normal
     real(c_double) :: work_units = 0
     real(c_double) :: update = 0
     real(c_double) :: residual = 0
-    real(c_double) :: penetration = 0
+    real(c_double) :: violation = 0
     real(c_double) :: complementarity = 0
     real(c_double) :: min_pressure = 0
     real(c_double) :: approach = 0

@@ -940,9 +940,9 @@ typedef struct contact_normal_report {
    */
   double residual;
   /*
-   Largest -e outside C, or 0: a length.
+   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
    */
-  double penetration;
+  double violation;
   /*
    `sum of p |e| / sum of p |u|`.
    */

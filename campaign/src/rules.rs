@@ -171,7 +171,7 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     let gaps =
         (0..n).all(|i| if case.h[i].is_infinite() { found.e[i] == f64::INFINITY } else { found.e[i].is_finite() });
     let report = &found.report;
-    let numbers = [report.approach, report.force, report.residual, report.penetration, report.max_pressure];
+    let numbers = [report.approach, report.force, report.residual, report.violation, report.max_pressure];
     if !finite || !gaps || numbers.iter().any(|v| !v.is_finite()) {
         return failure("no NaN or infinity", format!("status {status}, residual reported {:.2e}", report.residual));
     }

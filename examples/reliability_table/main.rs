@@ -50,7 +50,7 @@ fn main() {
 fn is_solved(case: &Case, outcome: &Result<Found, Error>) -> bool {
     outcome.as_ref().is_ok_and(|found| {
         let measures = recompute(case, found);
-        let worst = measures.residual.max(measures.penetration).max(measures.complementarity);
+        let worst = measures.residual.max(measures.violation).max(measures.complementarity);
         found.stop == Stop::Converged && worst <= Options::default().tolerance + measures.round_off
     })
 }

@@ -215,7 +215,7 @@ class Report(ctypes.Structure):
         ("work_units", c_double),
         ("update", c_double),
         ("residual", c_double),
-        ("penetration", c_double),
+        ("violation", c_double),
         ("complementarity", c_double),
         ("min_pressure", c_double),
         ("approach", c_double),

@@ -9,8 +9,8 @@ use super::{AdmissibleSet, State};
 pub struct Certificate {
     /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C.
     pub residual: f64,
-    /// Largest `-e` over the exterior area, 0 when the bodies penetrate nowhere: a length.
-    pub penetration: f64,
+    /// Largest `-e` over the exterior area, or e over the elements at their limit, 0 when there is none: a length.
+    pub violation: f64,
     /// `sum of p |e| / sum of p |u|` over all elements: pressures times gaps, against the elastic energy.
     pub complementarity: f64,
     /// Smallest pressure.
@@ -31,7 +31,7 @@ pub struct Survey {
     /// rms of the same over C and the elements at their limit: what violations are compared with.
     pub scale: f64,
     /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
-    pub penetration: f64,
+    pub violation: f64,
     /// Elements in contact, free or at their limit.
     pub contact_count: usize,
     /// Sum of p.
@@ -70,8 +70,8 @@ impl Survey {
         if noise.is_finite() && self.distance <= noise && self.residual <= noise {
             self.residual = 0.0;
             let largest = offset + state.round_off * self.range.1;
-            if self.penetration <= largest {
-                self.penetration = 0.0;
+            if self.violation <= largest {
+                self.violation = 0.0;
             }
             self.work.0 = 0.0;
         }
@@ -90,7 +90,7 @@ impl Survey {
         if penetrates {
             let free = |i: &usize| !contact[*i] && !state.at_limit.get(row.start + i).is_some_and(|at_limit| *at_limit);
             for i in (0..h.len()).filter(free) {
-                self.penetration = self.penetration.max(state.approach - h[i] - u[i]);
+                self.violation = self.violation.max(state.approach - h[i] - u[i]);
             }
         }
         if loaded {
@@ -106,7 +106,7 @@ impl Survey {
         for i in (0..state.p.len()).filter(|&i| state.at_limit[i]) {
             let (p, e) = (state.p[i], state.deformed_distance(i));
             self.contact_count += 1;
-            self.penetration = self.penetration.max(e);
+            self.violation = self.violation.max(e);
             self.work.0 += p * (e.max(0.0) - e.abs());
             touching += (state.h[i] - state.approach).powi(2);
         }
@@ -141,15 +141,15 @@ impl Survey {
         self.work = (self.work.0 + gaps, self.work.1 + energy);
     }
 
-    /// How far the conditions are from being met: the larger of the relative residual and the relative penetration, p = 0 having 1; infinite
+    /// How far the conditions are from being met: the larger of the relative residual and the relative violation, p = 0 having 1; infinite
     /// where pressures are not admissible. `max` alone would drop what is not a number.
     pub fn violation<S: AdmissibleSet>(&self, _: S) -> f64 {
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let residual = relative(self.residual, self.distance);
-        let penetration = if S::FIXED { 0.0 } else { relative(self.penetration, self.scale) };
+        let violation = if S::FIXED { 0.0 } else { relative(self.violation, self.scale) };
         let admissible = S::FIXED || self.range.0 >= 0.0;
-        match residual.max(penetration) {
-            worst if admissible && worst >= residual && worst >= penetration => worst,
+        match residual.max(violation) {
+            worst if admissible && worst >= residual && worst >= violation => worst,
             _ => f64::INFINITY,
         }
     }
@@ -159,7 +159,7 @@ impl Survey {
         let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         Certificate {
             residual: relative(self.residual, self.distance),
-            penetration: self.penetration,
+            violation: self.violation,
             complementarity: relative(self.work.0.max(0.0), self.work.1),
             min_pressure: self.range.0,
         }

@@ -135,8 +135,8 @@ pub struct contact_normal_report {
     pub update: f64,
     /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
     pub residual: f64,
-    /// Largest -e outside C, or 0: a length.
-    pub penetration: f64,
+    /// Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
+    pub violation: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
     /// Smallest pressure.
@@ -232,7 +232,7 @@ impl contact_normal_report {
     ) -> Self {
         let mut to = Self { ledger_rows: ledger_rows as i64, ledger_capacity, ledger, ..Self::defaults() };
         copy!(report.count => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
-        copy!(report.measures.certificate => to: penetration, complementarity, min_pressure);
+        copy!(report.measures.certificate => to: violation, complementarity, min_pressure);
         copy!(report.measures => to: edge_count);
         copy!(report => to: setup_seconds, solve_seconds, bytes, tolerance);
         set_result!(to, report.measures, report.error);

@@ -45,7 +45,7 @@ impl Goal {
         // An empty C has no residual, whatever p is.
         let finite = survey.residual.is_finite() && survey.pressures.is_finite();
         let conditions = finite && survey.residual <= allowed * survey.distance;
-        let free = survey.penetration <= allowed * survey.scale && survey.work.0 <= allowed * survey.work.1;
+        let free = survey.violation <= allowed * survey.scale && survey.work.0 <= allowed * survey.work.1;
         small && conditions && (S::FIXED || free && survey.range.0 >= 0.0)
     }
 

@@ -45,10 +45,10 @@ pub fn iterate<S: AdmissibleSet>(
         let mut survey = certify(task, &change, left);
         let violation = survey.violation(set);
         let mut entered = 0;
-        if habits.exchanged_by_loop && !S::FIXED && survey.penetration > 0.0 {
+        if habits.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
             entered = admit(task.state, set);
-            let penetration = survey.penetration;
-            survey = Survey { penetration, ..Survey::of(task.state) };
+            let before = survey.violation;
+            survey = Survey { violation: before, ..Survey::of(task.state) };
         }
         let changes = change.changes + (left + entered) as u64;
         if habits.step_is_cycle {

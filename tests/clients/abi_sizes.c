@@ -148,7 +148,7 @@ int main(void)
     OFFSET(contact_normal_report, work_units);
     OFFSET(contact_normal_report, update);
     OFFSET(contact_normal_report, residual);
-    OFFSET(contact_normal_report, penetration);
+    OFFSET(contact_normal_report, violation);
     OFFSET(contact_normal_report, complementarity);
     OFFSET(contact_normal_report, min_pressure);
     OFFSET(contact_normal_report, approach);

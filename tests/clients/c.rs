@@ -273,7 +273,7 @@ fn c_and_rust_agree_on_every_struct() {
         }
         contact_normal_report {
             struct_size, cycles, active_set_steps, active_set_changes, matrix_products, work_units, update,
-            residual, penetration, complementarity, min_pressure, approach, force, max_pressure, contact_area,
+            residual, violation, complementarity, min_pressure, approach, force, max_pressure, contact_area,
             contact_count, error_force, error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
             halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,

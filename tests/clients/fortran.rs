@@ -228,7 +228,7 @@ fn derived_types_are_laid_out_as_the_structs() {
             max_pressure, contact_area, corrected_area, error_force, error_max_pressure, error_contact_area,
             error_corrected_area, error_pressure, contact_count, untrusted, reserved;
         contact_normal_report: struct_size, cycles, active_set_steps, active_set_changes,
-            matrix_products, work_units, update, residual, penetration, complementarity,
+            matrix_products, work_units, update, residual, violation, complementarity,
             min_pressure, approach, force, max_pressure, contact_area, contact_count, error_force,
             error_max_pressure, error_contact_area, setup_seconds, solve_seconds, bytes,
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,

@@ -183,7 +183,7 @@ program fortran_layout
   call show("contact_normal_report.work_units", c_loc(report%work_units))
   call show("contact_normal_report.update", c_loc(report%update))
   call show("contact_normal_report.residual", c_loc(report%residual))
-  call show("contact_normal_report.penetration", c_loc(report%penetration))
+  call show("contact_normal_report.violation", c_loc(report%violation))
   call show("contact_normal_report.complementarity", c_loc(report%complementarity))
   call show("contact_normal_report.min_pressure", c_loc(report%min_pressure))
   call show("contact_normal_report.approach", c_loc(report%approach))

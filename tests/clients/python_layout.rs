@@ -155,7 +155,7 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         work_units,
         update,
         residual,
-        penetration,
+        violation,
         complementarity,
         min_pressure,
         approach,

@@ -63,7 +63,7 @@ pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
     pub residual: f64,
     /// Largest `-e` outside C, over the rms of `h - approach` in C.
-    pub penetration: f64,
+    pub violation: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
     /// Smallest pressure.
@@ -102,7 +102,7 @@ pub fn recompute(
     let count = contact.iter().filter(|&&inside| inside).count().max(1);
     Recomputed {
         residual: (r2 / h2).sqrt(),
-        penetration: outside / (h2 / count as f64).sqrt(),
+        violation: outside / (h2 / count as f64).sqrt(),
         complementarity: gaps / energy,
         min_pressure: p.iter().copied().fold(f64::INFINITY, f64::min),
         force: p.iter().sum::<f64>() * grid.element_area(),
@@ -112,7 +112,7 @@ pub fn recompute(
 /// Every measure is at most `tolerance`, as status OK promises.
 pub fn assert_certified(measures: &Recomputed, tolerance: f64) {
     assert!(measures.residual <= tolerance, "{measures:?}");
-    assert!(measures.penetration <= tolerance, "{measures:?}");
+    assert!(measures.violation <= tolerance, "{measures:?}");
     assert!(measures.complementarity <= tolerance, "{measures:?}");
     assert!(measures.min_pressure >= 0.0, "{measures:?}");
 }

@@ -46,7 +46,7 @@ fn counts(method: Method, table: &[(usize, [u64; 3])]) {
                 report.count.cycles
             );
             assert!(report.measures.certificate.residual <= 1e-6);
-            assert_eq!(report.measures.certificate.penetration, 0.0);
+            assert_eq!(report.measures.certificate.violation, 0.0);
         }
     }
 }

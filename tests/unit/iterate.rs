@@ -51,7 +51,7 @@ fn every_cycle_of_descent_lowers_the_energy_until_the_conditions_hold() {
             last = energy;
         }
         let survey = Survey::of(&state);
-        assert!(survey.residual <= 1e-9 * survey.distance && survey.penetration <= 1e-9, "{survey:?}");
+        assert!(survey.residual <= 1e-9 * survey.distance && survey.violation <= 1e-9, "{survey:?}");
         assert!(state.contact_count() > 10 && state.contact_count() < 154, "{}", state.contact_count());
     }
 }

@@ -34,7 +34,7 @@ pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
     pub residual: f64,
     /// Largest `-e` outside C, over the rms of `h - approach` in C.
-    pub penetration: f64,
+    pub violation: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
     #[allow(dead_code)] // for tests/problems/properties.rs
@@ -99,7 +99,7 @@ pub fn recompute(case: &Case, found: &Found) -> Recomputed {
     let scale = (h2 / count.max(1.0)).sqrt();
     Recomputed {
         residual: part(r2.sqrt(), h2.sqrt()),
-        penetration: part(outside, scale),
+        violation: part(outside, scale),
         complementarity: part(gaps, work),
         energy,
         // A product is good to some units of round-off of its largest value, and so is the difference h - approach.
@@ -133,12 +133,12 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     measures
 }
 
-/// What status OK promises: residual, penetration and complementarity are at most `tolerance`.
+/// What status OK promises: residual, violation and complementarity are at most `tolerance`.
 pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) -> Recomputed {
     assert_eq!(found.stop, Stop::Converged, "{}, {what}: {:?}", case.name, found.report);
     let measures = assert_sound(case, what, found);
     let allowed = tolerance + measures.round_off;
-    let worst = measures.residual.max(measures.penetration).max(measures.complementarity);
+    let worst = measures.residual.max(measures.violation).max(measures.complementarity);
     assert!(worst <= allowed, "{}, {what}: {measures:?}", case.name);
     measures
 }
