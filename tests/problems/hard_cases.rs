@@ -366,6 +366,29 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
     }
 }
 
+/// A product for each iteration; beside them the start, what truncation leaves, the end of the round, and the certificate. A round more
+/// to prove the update would take two.
+#[test]
+fn the_update_criterion_costs_no_round_of_its_own_in_double_precision() {
+    let grid = Grid::new(96, 64, 0.1, 0.1).unwrap();
+    let h = paraboloid(&grid, 0.1);
+    for load in [Load::Approach(0.2), Load::Force(1.0)] {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let options = Options {
+                method: Method::ProjectedCg,
+                precision: Precision::Double,
+                criterion: Criterion::Update,
+                tolerance,
+                ..Options::default()
+            };
+            let (_, stop, report) = solve(&Scene::new(grid, &h, rigid_on(1.0), load), &options).unwrap();
+            let (products, cycles) = (report.count.matrix_products, report.count.cycles);
+            assert_eq!(stop, Stop::Converged);
+            assert!(products <= cycles + 4, "{load:?}, {tolerance:e}: {products} products for {cycles} iterations");
+        }
+    }
+}
+
 #[test]
 fn the_update_criterion_means_the_last_change_of_the_pressures() {
     let grid = Grid::new(40, 40, 0.1, 0.1).unwrap();
