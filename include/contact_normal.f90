@@ -349,6 +349,23 @@ module contact_normal
     type(c_ptr) :: largest_shear = c_null_ptr
   end type
 
+  ! Where the results of contact_normal_friction_batch go: see contact_normal_set_friction_results. Since 0.2.
+  type, bind(C), public :: contact_normal_friction_results
+    integer(c_int64_t) :: struct_size = 0
+    type(c_ptr) :: force = c_null_ptr
+    type(c_ptr) :: moment = c_null_ptr
+    type(c_ptr) :: creepage = c_null_ptr
+    type(c_ptr) :: residual = c_null_ptr
+    type(c_ptr) :: gap = c_null_ptr
+    type(c_ptr) :: products = c_null_ptr
+    type(c_ptr) :: stick_count = c_null_ptr
+    type(c_ptr) :: slip_count = c_null_ptr
+    type(c_ptr) :: status = c_null_ptr
+    type(c_ptr) :: traction = c_null_ptr
+    type(c_ptr) :: slip = c_null_ptr
+    type(c_ptr) :: adhesion = c_null_ptr
+  end type
+
   ! Operators and workspace for many solves. Copies share what they stand for: free one of them. Since 0.1.
   type, public :: contact_normal_solver
     private
@@ -391,352 +408,13 @@ module contact_normal
     contact_normal_solver_free, norm_solve, tang_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
     contact_normal_set_row_tables, contact_normal_set_coating, contact_normal_set_friction, &
-    contact_normal_set_friction_fields
+    contact_normal_set_friction_fields, contact_normal_set_friction_results
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
 contains
 
-  function fortran_string(text) result(string)
-    type(c_ptr), intent(in) :: text
-    character(:), allocatable :: string
-    character(kind=c_char), pointer :: letters(:)
-    integer :: i
-    call c_f_pointer(text, letters, [c_strlen(text)])
-    allocate (character(size(letters)) :: string)
-    do i = 1, size(letters)
-      string(i:i) = letters(i)
-    end do
-  end function
-
-  ! A short text for a status. Since 0.1.
-  function contact_normal_status_text(status) result(text)
-    integer(c_int32_t), intent(in) :: status
-    character(:), allocatable :: text
-    text = fortran_string(c_status_text(status))
-  end function
-
-  ! The message of the last call on this thread that did not return OK, or "". Since 0.1.
-  function contact_normal_last_error_message() result(message)
-    character(:), allocatable :: message
-    message = fortran_string(c_last_error())
-  end function
-
-  ! The version of the library, as "0.2.0". Since 0.1.
-  function contact_normal_version_string() result(version)
-    character(:), allocatable :: version
-    version = fortran_string(c_version())
-  end function
-
-  ! Attaches h(mx, my). Since 0.1.
-  subroutine contact_normal_set_undeformed_distance(scene, h)
-    type(contact_normal_scene), intent(inout) :: scene
-    real(c_double), pointer, contiguous, intent(in) :: h(..)
-    scene%undeformed_distance = c_loc(h)
-  end subroutine
-
-  ! The scene uses own coefficients(-cx:cx-1, -cy:cy-1) instead of the half-space, times `scale` (1 if it is not given);
-  ! `influence` keeps what is said about them. Since 0.1.
-  subroutine contact_normal_set_influence(scene, influence, cx, cy, coefficients, scale)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_influence), pointer, intent(in) :: influence
-    integer(c_int32_t), intent(in) :: cx, cy
-    real(c_double), pointer, contiguous, intent(in) :: coefficients(..)
-    real(c_double), intent(in), optional :: scale
-    call contact_normal_influence_init(influence)
-    if (present(scale)) influence%scale = scale
-    influence%cx = cx
-    influence%cy = cy
-    influence%coefficients = c_loc(coefficients)
-    scene%influence = c_loc(influence)
-  end subroutine
-
-  ! The scene has a layer of one compliance, or of one per element (mx, my); `layer` keeps what is said about it. Since 0.1.
-  subroutine contact_normal_set_layer(scene, layer, compliance, compliances)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_layer), pointer, intent(in) :: layer
-    real(c_double), intent(in), optional :: compliance
-    real(c_double), pointer, contiguous, intent(in), optional :: compliances(..)
-    call contact_normal_layer_init(layer)
-    if (present(compliance)) layer%compliance = compliance
-    if (present(compliances)) layer%compliances = c_loc(compliances)
-    scene%layer = c_loc(layer)
-  end subroutine
-
-  ! Pressures have one limit, or one per element (mx, my). Since 0.1.
-  subroutine contact_normal_set_pressure_limit(scene, pressure_limit, limit, limits)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_pressure_limit), pointer, intent(in) :: pressure_limit
-    real(c_double), intent(in), optional :: limit
-    real(c_double), pointer, contiguous, intent(in), optional :: limits(..)
-    call contact_normal_pressure_limit_init(pressure_limit)
-    if (present(limit)) pressure_limit%limit = limit
-    if (present(limits)) pressure_limit%limits = c_loc(limits)
-    scene%pressure_limit = c_loc(pressure_limit)
-  end subroutine
-
-  ! The scene repeats itself in x, in y or in both. Since 0.1.
-  subroutine contact_normal_set_period(scene, period, x, y)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_period), pointer, intent(in) :: period
-    logical, intent(in) :: x, y
-    call contact_normal_period_init(period)
-    period%x = merge(1_c_int32_t, 0_c_int32_t, x)
-    period%y = merge(1_c_int32_t, 0_c_int32_t, y)
-    scene%period = c_loc(period)
-  end subroutine
-
-  ! patch(mx, my), from 0 on, is the patch of each element; factors(n, n) scale the influence of one on another. Since 0.1.
-  subroutine contact_normal_set_patches(scene, patches, patch, factors)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_patches), pointer, intent(in) :: patches
-    integer(c_int32_t), pointer, contiguous, intent(in) :: patch(..)
-    real(c_double), pointer, contiguous, intent(in) :: factors(:, :)
-    call contact_normal_patches_init(patches)
-    patches%count = size(factors, 1, kind=c_int32_t)
-    patches%patch = c_loc(patch)
-    patches%factors = c_loc(factors)
-    scene%patches = c_loc(patches)
-  end subroutine
-
-  ! The scene uses own coefficients(-cx:cx-1, my, my), of offset, row and loaded row, instead of the half-space, times
-  ! `scale` (1 if it is not given). Since 0.1.
-  subroutine contact_normal_set_row_tables(scene, row_tables, cx, coefficients, scale)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_row_tables), pointer, intent(in) :: row_tables
-    integer(c_int32_t), intent(in) :: cx
-    real(c_double), pointer, contiguous, intent(in) :: coefficients(:, :, :)
-    real(c_double), intent(in), optional :: scale
-    call contact_normal_row_tables_init(row_tables)
-    if (present(scale)) row_tables%scale = scale
-    row_tables%cx = cx
-    row_tables%rows = size(coefficients, 3, kind=c_int32_t)
-    row_tables%coefficients = c_loc(coefficients)
-    scene%row_tables = c_loc(row_tables)
-  end subroutine
-
-  ! Body 1 or 2 has a coating; the elastic constants of the scene are those of the body below. Since 0.2.
-  subroutine contact_normal_set_coating(scene, body, coating, thickness, shear_modulus, poisson_ratio)
-    type(contact_normal_scene), intent(inout) :: scene
-    integer, intent(in) :: body
-    type(contact_normal_coating), pointer, intent(in) :: coating
-    real(c_double), intent(in) :: thickness, shear_modulus, poisson_ratio
-    call contact_normal_coating_init(coating)
-    coating%thickness = thickness
-    coating%shear_modulus = shear_modulus
-    coating%poisson_ratio = poisson_ratio
-    scene%coating(body) = c_loc(coating)
-  end subroutine
-
-  ! The scene has friction of one coefficient, or of one per element (mx, my), a shift of 0: set the other components of `friction`
-  ! after this. `previous_x` and `previous_y`: the tractions before; `slip_x` and `slip_y`: a rigid slip. Since 0.2.
-  subroutine contact_normal_set_friction(scene, friction, coefficient, coefficients, previous_x, previous_y, slip_x, slip_y)
-    type(contact_normal_scene), intent(inout) :: scene
-    type(contact_normal_friction), pointer, intent(in) :: friction
-    real(c_double), intent(in), optional :: coefficient
-    real(c_double), pointer, contiguous, intent(in), optional :: coefficients(..)
-    real(c_double), pointer, contiguous, intent(in), optional :: previous_x(..), previous_y(..), slip_x(..), slip_y(..)
-    call contact_normal_friction_init(friction)
-    if (present(coefficient)) friction%coefficient = coefficient
-    if (present(coefficients)) friction%coefficients = c_loc(coefficients)
-    if (present(previous_x)) friction%previous_traction(1) = c_loc(previous_x)
-    if (present(previous_y)) friction%previous_traction(2) = c_loc(previous_y)
-    if (present(slip_x)) friction%rigid_slip(1) = c_loc(slip_x)
-    if (present(slip_y)) friction%rigid_slip(2) = c_loc(slip_y)
-    scene%friction = c_loc(friction)
-  end subroutine
-
-  ! Attaches the arrays of friction that are wanted, (mx, my) each. Since 0.2.
-  subroutine contact_normal_set_friction_fields(fields, traction_x, traction_y, slip_x, slip_y, adhesion)
-    type(contact_normal_fields), intent(inout) :: fields
-    real(c_double), pointer, contiguous, intent(in), optional :: traction_x(..), traction_y(..), slip_x(..), slip_y(..)
-    integer(c_int32_t), pointer, contiguous, intent(in), optional :: adhesion(..)
-    if (present(traction_x)) fields%traction(1) = c_loc(traction_x)
-    if (present(traction_y)) fields%traction(2) = c_loc(traction_y)
-    if (present(slip_x)) fields%slip(1) = c_loc(slip_x)
-    if (present(slip_y)) fields%slip(2) = c_loc(slip_y)
-    if (present(adhesion)) fields%adhesion = c_loc(adhesion)
-  end subroutine
-
-  ! Attaches the arrays that are wanted, (mx, my) each; those not given stay as they are. Since 0.1.
-  subroutine contact_normal_set_fields(fields, pressure, contact, displacement, deformed_distance)
-    type(contact_normal_fields), intent(inout) :: fields
-    real(c_double), pointer, contiguous, intent(in), optional :: pressure(..), displacement(..), deformed_distance(..)
-    integer(c_int32_t), pointer, contiguous, intent(in), optional :: contact(..)
-    if (present(pressure)) fields%pressure = c_loc(pressure)
-    if (present(contact)) fields%contact = c_loc(contact)
-    if (present(displacement)) fields%displacement = c_loc(displacement)
-    if (present(deformed_distance)) fields%deformed_distance = c_loc(deformed_distance)
-  end subroutine
-
-  ! Attaches what is wanted at n depths: stress(mx, my, n, 6) with the components xx, yy, zz, xy, xz, yz, von_mises and maximum_shear
-  ! (mx, my, n), principal(mx, my, n, 3), directions(3, mx, my, n, 3), and the largest values. What is not given is not computed.
-  ! `outputs` must be initialised. Since 0.2.
-  subroutine contact_normal_set_stress_outputs(outputs, stress, von_mises, maximum_shear, principal, directions, &
-      largest_von_mises, largest_shear)
-    type(contact_normal_stress_outputs), intent(inout) :: outputs
-    real(c_double), pointer, contiguous, intent(in), optional :: stress(:, :, :, :), von_mises(:, :, :), maximum_shear(:, :, :)
-    real(c_double), pointer, contiguous, intent(in), optional :: principal(:, :, :, :), directions(:, :, :, :, :)
-    type(contact_normal_stress_maximum), pointer, intent(in), optional :: largest_von_mises, largest_shear
-    integer :: k
-    if (present(stress)) then
-      do k = 1, 6
-        outputs%stress(k) = c_loc(stress(1, 1, 1, k))
-      end do
-    end if
-    if (present(von_mises)) outputs%von_mises = c_loc(von_mises)
-    if (present(maximum_shear)) outputs%maximum_shear = c_loc(maximum_shear)
-    if (present(principal)) then
-      do k = 1, 3
-        outputs%principal(k) = c_loc(principal(1, 1, 1, k))
-      end do
-    end if
-    if (present(directions)) then
-      do k = 1, 3
-        outputs%directions(k) = c_loc(directions(1, 1, 1, 1, k))
-      end do
-    end if
-    if (present(largest_von_mises)) outputs%largest_von_mises = c_loc(largest_von_mises)
-    if (present(largest_shear)) outputs%largest_shear = c_loc(largest_shear)
-  end subroutine
-
-  ! Attaches room for the ledger. Since 0.1.
-  subroutine contact_normal_set_ledger(report, ledger)
-    type(contact_normal_report), intent(inout) :: report
-    type(contact_normal_ledger_row), pointer, contiguous, intent(in) :: ledger(:)
-    report%ledger = c_loc(ledger)
-    report%ledger_capacity = size(ledger, kind=c_int64_t)
-  end subroutine
-
-  ! Sets the progress callback; without one: none. Since 0.1.
-  subroutine contact_normal_set_progress(options, callback)
-    type(contact_normal_options), intent(inout) :: options
-    procedure(contact_normal_progress_callback), optional :: callback
-    options%progress = c_null_funptr
-    if (present(callback)) options%progress = c_funloc(callback)
-  end subroutine
-
-  ! Sets where the undeformed distance of each grid comes from; without a callback: the scene's is refined. Since 0.1.
-  subroutine contact_normal_set_surface(accuracy, callback)
-    type(contact_normal_accuracy), intent(inout) :: accuracy
-    procedure(contact_normal_surface_callback), optional :: callback
-    accuracy%surface = c_null_funptr
-    if (present(callback)) accuracy%surface = c_funloc(callback)
-  end subroutine
-
-  ! Sends log messages up to `level` to `callback`; without one: none. For the whole process; call it while no other
-  ! thread is inside the library. Since 0.1.
-  function contact_normal_set_log(callback, level) result(status)
-    procedure(contact_normal_log_callback), optional :: callback
-    integer(c_int32_t), intent(in) :: level
-    integer(c_int32_t) :: status
-    if (present(callback)) then
-      log_target => callback
-      status = c_set_log(c_funloc(forward_log), level, c_null_ptr)
-    else
-      status = c_set_log(c_null_funptr, level, c_null_ptr)
-    end if
-  end function
-
-  subroutine forward_log(level, message, user) bind(C)
-    integer(c_int32_t), value, intent(in) :: level
-    type(c_ptr), value, intent(in) :: message, user
-    if (c_associated(user)) return     ! never: set_log passes none
-    call log_target(level, fortran_string(message))
-  end subroutine
-
-  ! Sets up a solver for the grid, bodies and coefficients of `scene`. `solver` must not hold one already. Since 0.1.
-  function contact_normal_solver_new(scene, options, solver) result(status)
-    type(contact_normal_scene), intent(in) :: scene
-    type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_solver), intent(inout) :: solver
-    integer(c_int32_t) :: status
-    status = c_solver_new(scene, options, solver%handle)
-  end function
-
-  ! All later solves with it use these coefficients: what contact_normal_set_influence has filled. Only for a solver that was
-  ! set up with coefficients of its own. Since 0.2.
-  function contact_normal_solver_set_influence(solver, influence) result(status)
-    type(contact_normal_solver), intent(in) :: solver
-    type(contact_normal_influence), intent(in) :: influence
-    integer(c_int32_t) :: status
-    status = c_solver_set_influence(solver%handle, influence)
-  end function
-
-  ! Solves with it. Since 0.1.
-  function contact_normal_solver_solve(solver, scene, options, fields, report) result(status)
-    type(contact_normal_solver), intent(in) :: solver
-    type(contact_normal_scene), intent(in) :: scene
-    type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_fields), intent(inout), optional :: fields
-    type(contact_normal_report), intent(inout), optional :: report
-    integer(c_int32_t) :: status
-    status = c_solver_solve(solver%handle, scene, options, fields, report)
-  end function
-
-  ! Solves one problem for each of the scenes, as many at a time as the solver was set up with threads. A problem that is
-  ! refused does not keep the others from being solved; the result is the status of the first that was refused (< 0), or
-  ! else of the first that stopped early, or else OK. The message names it, counted from 0. Since 0.1.
-  function contact_normal_solver_solve_batch(solver, scenes, options, fields, reports, statuses) result(status)
-    type(contact_normal_solver), intent(in) :: solver
-    type(contact_normal_scene), intent(in) :: scenes(:)
-    type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_fields), intent(inout), optional :: fields(size(scenes))
-    type(contact_normal_report), intent(inout), optional :: reports(size(scenes))
-    integer(c_int32_t), intent(inout), optional :: statuses(size(scenes))
-    integer(c_int32_t) :: status
-    status = c_solver_solve_batch(solver%handle, size(scenes, kind=c_int32_t), scenes, options, fields, reports, statuses)
-  end function
-
-  ! Predicts what each relative error of `targets` costs: rows(i) is that of targets(i). `quantity`: CONTACT_NORMAL_QUANTITY_...,
-  ! by default the force or the approach. Of `accuracy` limits and surface are read. Since 0.2.
-  function contact_normal_cost_of_accuracy(scene, targets, rows, quantity, options, accuracy) result(status)
-    type(contact_normal_scene), intent(in) :: scene
-    real(c_double), intent(in) :: targets(:)
-    type(contact_normal_price), intent(inout) :: rows(:)
-    integer(c_int32_t), intent(in), optional :: quantity
-    type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_accuracy), intent(in), optional :: accuracy
-    type(contact_normal_price) :: list(size(targets))
-    real(c_double) :: wanted(size(targets))
-    integer(c_int32_t) :: status, what
-    what = CONTACT_NORMAL_QUANTITY_FORCE
-    if (present(quantity)) what = quantity
-    wanted = targets
-    status = c_cost_of_accuracy(scene, options, accuracy, what, min(size(targets), size(rows)), wanted, list)
-    if (status >= 0) rows(:min(size(targets), size(rows))) = list(:min(size(targets), size(rows)))
-  end function
-
-  ! Solves on finer and finer grids until accuracy%target is met; accuracy%mx, my, dx, dy are the grid that was used. `solver`
-  ! must not hold one already; it gets the result, for contact_normal_solver_fields. Since 0.1.
-  function contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report) result(status)
-    type(contact_normal_scene), intent(in) :: scene
-    type(contact_normal_options), intent(in), optional :: options
-    type(contact_normal_accuracy), intent(inout) :: accuracy
-    type(contact_normal_solver), intent(inout), optional :: solver
-    type(contact_normal_report), intent(inout), optional :: report
-    integer(c_int32_t) :: status
-    if (present(solver)) then
-      status = c_solve_to_accuracy(scene, options, accuracy, solver%handle, report)
-    else
-      status = c_solve_to_accuracy(scene, options, accuracy, report=report)
-    end if
-  end function
-
-  ! Copies the last result of a solver. Since 0.1.
-  function contact_normal_solver_fields(solver, fields) result(status)
-    type(contact_normal_solver), intent(in) :: solver
-    type(contact_normal_fields), intent(inout) :: fields
-    integer(c_int32_t) :: status
-    status = c_solver_fields(solver%handle, fields)
-  end function
-
-  ! Frees it; doing so twice is harmless. Since 0.1.
-  subroutine contact_normal_solver_free(solver)
-    type(contact_normal_solver), intent(inout) :: solver
-    call c_solver_free(solver%handle)
-    solver%handle = c_null_ptr
-  end subroutine
+  include 'contact_normal_procedures.inc'
 
   include 'contact_normal_norm_solve.inc'
 

@@ -110,6 +110,27 @@ impl Threads {
         }
     }
 
+    /// Calls `own(scratch)` for the first on the calling thread, and meanwhile `others(scratch)` for the rest on the others.
+    pub fn for_each_beside<S: Send>(
+        &self,
+        scratch: &mut [S],
+        own: impl FnOnce(&mut S),
+        others: impl Fn(&mut S) + Sync + Send,
+    ) {
+        let Some((first, rest)) = scratch.split_first_mut() else { return };
+        let others = &others;
+        match self.workers() {
+            None => {
+                own(first);
+                rest.iter_mut().for_each(others);
+            }
+            Some(workers) => workers.in_place_scope(|scope| {
+                rest.iter_mut().for_each(|s| scope.spawn(move |_| others(s)));
+                own(first);
+            }),
+        }
+    }
+
     /// Calls `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
     pub fn for_each_row<A: Send, S: Send>(
         &self,

@@ -17,6 +17,7 @@ from ._structs import (
     Coating,
     Fields,
     Friction,
+    FrictionResults,
     HertzSolution,
     Influence,
     Layer,
@@ -53,6 +54,11 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "solve_tangential": (
         c_int32,
         [POINTER(Scene), POINTER(c_double), POINTER(Options), POINTER(Fields), POINTER(Report)],
+    ),
+    "friction_results_init": (None, [POINTER(FrictionResults)]),
+    "friction_batch": (
+        c_int32,
+        [POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],
     ),
     "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
     "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),

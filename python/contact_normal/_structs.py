@@ -253,6 +253,26 @@ class Report(ctypes.Structure):
     ]
 
 
+class FrictionResults(ctypes.Structure):
+    """contact_normal_friction_results."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("force", POINTER(c_double)),
+        ("moment", POINTER(c_double)),
+        ("creepage", POINTER(c_double)),
+        ("residual", POINTER(c_double)),
+        ("gap", POINTER(c_double)),
+        ("products", POINTER(c_double)),
+        ("stick_count", POINTER(c_int64)),
+        ("slip_count", POINTER(c_int64)),
+        ("status", POINTER(c_int32)),
+        ("traction", POINTER(c_double)),
+        ("slip", POINTER(c_double)),
+        ("adhesion", POINTER(c_int32)),
+    ]
+
+
 SurfaceCallback = CFUNCTYPE(c_int32, c_int32, c_int32, c_double, c_double, POINTER(c_double), c_void_p)
 
 
@@ -359,6 +379,7 @@ SIZED: dict[str, type[ctypes.Structure]] = {
     "options": Options,
     "fields": Fields,
     "report": Report,
+    "friction_results": FrictionResults,
     "accuracy": Accuracy,
     "stress_outputs": StressOutputs,
 }

@@ -73,7 +73,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
             let outcome = unsafe { batch.solve(i, worker, &options.options) };
             not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
         })?;
-        not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome().conclude()
+        not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("problem").conclude()
     })
 }
 
@@ -179,10 +179,10 @@ const LINES: usize = 1000;
 
 /// The problems that are not OK: those that were refused before those that stopped early, then by number.
 #[derive(Default)]
-struct NotOk(Vec<(usize, Outcome)>);
+pub(super) struct NotOk(Vec<(usize, Outcome)>);
 
 impl NotOk {
-    fn note(&mut self, problem: usize, outcome: Outcome) {
+    pub fn note(&mut self, problem: usize, outcome: Outcome) {
         let rank = |(problem, outcome): &(usize, Outcome)| (outcome.status > CONTACT_NORMAL_OK, *problem);
         if outcome.status != CONTACT_NORMAL_OK {
             let noted = (problem, outcome);
@@ -191,11 +191,11 @@ impl NotOk {
         }
     }
 
-    /// What the call returns: the status of the first, and a line for each.
-    fn outcome(self) -> Outcome {
+    /// What the call returns: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
+    pub fn outcome(self, each: &str) -> Outcome {
         let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let lines: Vec<String> =
-            self.0.iter().map(|(i, outcome)| format!("problem {i}: {}", outcome.message)).collect();
+            self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
         Outcome { status, message: lines.join("\n") }
     }
 }

@@ -24,7 +24,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, &mut buffers, |_| Ok(()))? };
+            unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(()))? };
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let mut solver = Solver::new(&scene, &options.options)?;
@@ -40,14 +40,14 @@ pub(super) struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written. The caller's arrays must live as long as the result is used.
+    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays must live as long as the result is used.
     pub unsafe fn read<'a>(
         scene: *const contact_normal_scene,
         options: *const contact_normal_options,
         fields: *mut contact_normal_fields,
         report: *mut contact_normal_report,
         buffers: &mut Buffers,
-        also: impl FnOnce(&mut Regions) -> Result<(), Refusal>,
+        also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
     ) -> Result<Request<'a>, Refusal> {
         // SAFETY (all): by the caller.
         unsafe {
@@ -58,7 +58,7 @@ impl Request<'_> {
             named.add_to(regions, scene)?;
             translated.add_to(regions, options)?;
             outputs.add_to(regions, named.len())?;
-            also(regions)?;
+            also(regions, named.len())?;
             regions.check()?;
             Ok(Request { scene: named.translate()?, options: translated, outputs })
         }

@@ -85,7 +85,7 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         }
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, .. } = unsafe {
-            let also = |regions: &mut Regions| regions.output("solver", solver, 1);
+            let also = |regions: &mut Regions, _| regions.output("solver", solver, 1);
             Request::read(scene, options, null_mut(), null_mut(), &mut Buffers::default(), also)?
         };
         let new = Solver::new(&scene, &options.options)?;
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
         let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, buffers, |_| Ok(()))? };
+            unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(()))? };
         run_watched(solver, &scene, &options, &outputs, buffers)
     })
 }

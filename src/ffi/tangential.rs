@@ -1,6 +1,6 @@
 //! `contact_normal_solve_tangential`: the tangential problem alone, with pressures that are given.
 
-use super::arguments::{required, Regions};
+use super::arguments::required;
 use super::guard::guard;
 use super::options::contact_normal_options;
 use super::outputs::Buffers;
@@ -25,8 +25,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
     guard(|| {
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, outputs } = unsafe {
-            let also = |_: &mut Regions| Ok(());
-            Request::read(scene, options, fields, report, &mut Buffers::default(), also)?
+            Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))?
         };
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };

@@ -33,8 +33,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// After a depth of subsurface stresses: a cycle is a depth.
-    pub fn of_depth(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
+    /// After a part of work that has no cycles: a depth of subsurface stresses, an entry of a table. These count as cycles.
+    pub fn of_part(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
         Progress {
             mx: grid.mx,
             my: grid.my,

@@ -7,6 +7,7 @@ mod batch;
 mod best;
 mod check;
 mod estimates;
+mod friction_batch;
 mod iterate;
 mod methods;
 mod nested;
@@ -25,6 +26,7 @@ pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop,
 };
 pub use batch::Problem;
+pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use refinement::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Outcome, Price, Quantity, SurfaceCallback,

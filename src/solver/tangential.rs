@@ -141,29 +141,40 @@ pub fn solve_tangential(
     let Some(friction) = &scene.friction else {
         return invalid("friction is not given: there is nothing to solve".into());
     };
-    if pressure.len() != scene.grid.len() {
-        let (values, elements) = (pressure.len(), scene.grid.len());
-        return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
-    }
-    if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
-        let (element, p) = (scene.grid.element(i), pressure[i]);
-        return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
-    }
+    check_pressures(&scene.grid, pressure)?;
     let threads = Threads::new(options.threads)?;
     let mut monitor = Monitor::new(progress, Vec::new(), false);
     let mut tangent = Tangent::new(scene, options, &threads)?;
     let turn = Turn { scene, friction, options, threads: &threads };
     let (stop, found) = tangent.solve(&turn, pressure, false, &mut monitor)?;
-    let positive = || pressure.iter().filter(|p| **p > 0.0);
-    let measures = Measures {
-        force: positive().sum::<f64>() * scene.grid.element_area(),
-        max_pressure: positive().copied().fold(0.0, f64::max),
-        contact_count: positive().count(),
-        ..Measures::default()
-    };
+    let measures = measures(&scene.grid, pressure);
     let (friction, tolerance, solve_seconds) = (Some(found), options.tolerance, monitor.seconds());
     let report = super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() };
     Ok((stop, tangent.solution().cloned().unwrap_or_default(), report))
+}
+
+/// Refuses pressures that are not one finite value per element.
+pub(super) fn check_pressures(grid: &Grid, pressure: &[f64]) -> Result<()> {
+    if pressure.len() != grid.len() {
+        let (values, elements) = (pressure.len(), grid.len());
+        return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
+    }
+    if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
+        let (element, p) = (grid.element(i), pressure[i]);
+        return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
+    }
+    Ok(())
+}
+
+/// What is to be said of pressures that are given.
+pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
+    let positive = || pressure.iter().filter(|p| **p > 0.0);
+    Measures {
+        force: positive().sum::<f64>() * grid.element_area(),
+        max_pressure: positive().copied().fold(0.0, f64::max),
+        contact_count: positive().count(),
+        ..Measures::default()
+    }
 }
 
 impl Coupled {

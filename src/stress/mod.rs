@@ -125,7 +125,7 @@ pub fn subsurface_stress(
             done += 1;
             if let Some(told) = &mut progress {
                 let seconds = began.elapsed().as_secs_f64();
-                if told(&Progress::of_depth(&body.grid, done as u64, seconds)) {
+                if told(&Progress::of_part(&body.grid, done as u64, seconds)) {
                     return Ok(false);
                 }
             }

@@ -183,6 +183,21 @@ int main(void)
     OFFSET(contact_normal_report, slip_count);
     OFFSET(contact_normal_report, tangential_products);
     OFFSET(contact_normal_report, tangential_seconds);
+    SIZE(contact_normal_friction_results);
+    OFFSET(contact_normal_friction_results, struct_size);
+    OFFSET(contact_normal_friction_results, force);
+    OFFSET(contact_normal_friction_results, moment);
+    OFFSET(contact_normal_friction_results, creepage);
+    OFFSET(contact_normal_friction_results, residual);
+    OFFSET(contact_normal_friction_results, gap);
+    OFFSET(contact_normal_friction_results, products);
+    OFFSET(contact_normal_friction_results, stick_count);
+    OFFSET(contact_normal_friction_results, slip_count);
+    OFFSET(contact_normal_friction_results, status);
+    OFFSET(contact_normal_friction_results, traction);
+    OFFSET(contact_normal_friction_results, slip);
+    OFFSET(contact_normal_friction_results, adhesion);
+
     SIZE(contact_normal_accuracy);
     OFFSET(contact_normal_accuracy, struct_size);
     OFFSET(contact_normal_accuracy, target);

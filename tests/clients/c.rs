@@ -279,6 +279,10 @@ fn c_and_rust_agree_on_every_struct() {
             halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,
             tangential_residual, tangential_gap, stick_count, slip_count, tangential_products, tangential_seconds
         }
+        contact_normal_friction_results {
+            struct_size, force, moment, creepage, residual, gap, products, stick_count, slip_count, status, traction, slip,
+            adhesion
+        }
         contact_normal_accuracy {
             struct_size, target, max_seconds, max_bytes, max_elements, surface, user, mx, my, dx, dy, reached, seconds,
             max_pressure_target, contact_area_target

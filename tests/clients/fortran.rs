@@ -241,6 +241,7 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_hertz_solution: semi_axis_x, semi_axis_y, max_pressure, approach, force,
             area;
         contact_normal_coating: struct_size, thickness, shear_modulus, poisson_ratio;
+        contact_normal_friction_results: struct_size, force, moment, creepage, residual, gap, products, stick_count, slip_count, status, traction, slip, adhesion;
         contact_normal_stress_maximum: value, x, y, z, ix, iy, depth, reserved;
         contact_normal_stress_outputs: struct_size, stress, von_mises, maximum_shear, principal, directions, largest_von_mises, largest_shear;
     };
@@ -250,7 +251,7 @@ fn derived_types_are_laid_out_as_the_structs() {
 #[test]
 fn the_module_has_every_constant_and_every_export_of_the_header() {
     let read = |name: &str| std::fs::read_to_string(root().join("include").join(name)).expect("an include file");
-    let (header, module) = (read("contact_normal.h"), read("contact_normal.f90") + &read("contact_normal_exports.inc"));
+    let (header, module) = (read("contact_normal.h"), read("contact_normal.f90") + &read("contact_normal_exports.inc") + &read("contact_normal_procedures.inc"));
     let mut constants = 0;
     for line in header.lines().filter_map(|line| line.strip_prefix("#define CONTACT_NORMAL_")) {
         let Some((name, value)) = line.split_once(' ') else { continue };

@@ -22,6 +22,7 @@ program fortran_layout
   type(contact_normal_coating), target :: coating
   type(contact_normal_stress_maximum), target :: largest
   type(contact_normal_stress_outputs), target :: outputs
+  type(contact_normal_friction_results), target :: results
   integer(c_intptr_t) :: base
 
   base = place(c_loc(influence))
@@ -267,6 +268,22 @@ program fortran_layout
   call show("contact_normal_coating.thickness", c_loc(coating%thickness))
   call show("contact_normal_coating.shear_modulus", c_loc(coating%shear_modulus))
   call show("contact_normal_coating.poisson_ratio", c_loc(coating%poisson_ratio))
+
+  base = place(c_loc(results))
+  print '(a, i0)', "contact_normal_friction_results ", c_sizeof(results)
+  call show("contact_normal_friction_results.struct_size", c_loc(results%struct_size))
+  call show("contact_normal_friction_results.force", c_loc(results%force))
+  call show("contact_normal_friction_results.moment", c_loc(results%moment))
+  call show("contact_normal_friction_results.creepage", c_loc(results%creepage))
+  call show("contact_normal_friction_results.residual", c_loc(results%residual))
+  call show("contact_normal_friction_results.gap", c_loc(results%gap))
+  call show("contact_normal_friction_results.products", c_loc(results%products))
+  call show("contact_normal_friction_results.stick_count", c_loc(results%stick_count))
+  call show("contact_normal_friction_results.slip_count", c_loc(results%slip_count))
+  call show("contact_normal_friction_results.status", c_loc(results%status))
+  call show("contact_normal_friction_results.traction", c_loc(results%traction))
+  call show("contact_normal_friction_results.slip", c_loc(results%slip))
+  call show("contact_normal_friction_results.adhesion", c_loc(results%adhesion))
 
   base = place(c_loc(largest))
   print '(a, i0)', "contact_normal_stress_maximum ", c_sizeof(largest)

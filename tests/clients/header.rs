@@ -22,6 +22,7 @@ fn the_committed_header_is_the_generated_one() {
         "solve",
         "solver",
         "tangential",
+        "friction_batch",
         "batch",
         "accuracy",
         "price_list",

@@ -207,6 +207,24 @@ fn ctypes_structs_have_the_layout_of_the_library() {
     );
     layout!(
         ours,
+        "FrictionResults",
+        contact_normal_friction_results,
+        struct_size,
+        force,
+        moment,
+        creepage,
+        residual,
+        gap,
+        products,
+        stick_count,
+        slip_count,
+        status,
+        traction,
+        slip,
+        adhesion
+    );
+    layout!(
+        ours,
         "Accuracy",
         contact_normal_accuracy,
         struct_size,

@@ -1,5 +1,6 @@
 //! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
 
+mod batch;
 mod cattaneo;
 mod coefficients;
 mod conditions;

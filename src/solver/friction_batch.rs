@@ -1,0 +1,210 @@
+//! Many tangential problems of one scene: its pressures once, then one motion or force after the other, spread over threads.
+//!
+//! Entries are solved in runs of [`RUN`] that stand side by side in the table. The first of a run starts from nothing, each other one
+//! from the tractions of the one before; what ends without its certificate is solved once more from nothing. Runs are the same whoever
+//! takes them: the results have the same bits for any number of threads.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::tangential::{check_pressures, measures, Tangent, Turn};
+use super::{Options, Progress, ProgressCallback, Report, Solver, Stop};
+use crate::effects::{Effect, Previous};
+use crate::error::{invalid, Result};
+use crate::friction::{self, Solution};
+use crate::memory::collected;
+use crate::progress::Monitor;
+use crate::scene::{Friction, Prescribed, Scene};
+use crate::threads::Threads;
+
+/// Entries of a run.
+pub const RUN: usize = 16;
+
+/// What one entry of a table prescribes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Entry {
+    /// In x and in y: the force where the scene's friction prescribes forces, else the creepage.
+    pub amount: [f64; 2],
+    /// phi.
+    pub spin: f64,
+}
+
+impl Entry {
+    /// The friction of a table with what this entry prescribes.
+    fn friction<'a>(&self, of: &Friction<'a>) -> Friction<'a> {
+        let mut friction = Friction { spin: self.spin, ..*of };
+        for (prescribed, amount) in friction.prescribed.iter_mut().zip(self.amount) {
+            *prescribed = match prescribed {
+                Prescribed::Creepage(_) => Prescribed::Creepage(amount),
+                Prescribed::Force(_) => Prescribed::Force(amount),
+            };
+        }
+        friction
+    }
+}
+
+/// How the entry of a table ended, and what was found; `Stop::Cancelled`: it was not solved.
+pub type Ended = Result<(Stop, friction::Report)>;
+
+/// Solves the tangential problem of a scene for each of the entries, with pressures `[my][mx]` that are given, or with those of the
+/// scene's normal problem, which is solved once. `found(i, ended, solution)` is called for each entry, on the thread that solved it and
+/// in no particular order, with a solution where there is one. Returns the stop and the report of the normal problem.
+///
+/// An entry that is refused does not keep the others from being solved. Of unlike bodies the pressures displace the surfaces sideways,
+/// but tractions do not change the pressures. `progress` is told on the calling thread: of the normal problem, and then of entries that
+/// are done, which count as cycles. When it cancels, entries that are not done end as `Stop::Cancelled`.
+pub fn solve_friction_batch(
+    scene: &Scene<'_>,
+    pressure: Option<&[f64]>,
+    entries: &[Entry],
+    options: &Options,
+    mut progress: Option<ProgressCallback<'_>>,
+    found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
+) -> Result<(Stop, Report)> {
+    scene.check()?;
+    options.check()?;
+    let Some(friction) = &scene.friction else {
+        return invalid("friction is not given: there is nothing to solve".into());
+    };
+    if friction.previous == Previous::Kept {
+        return invalid("friction->continues is 1; in a table there is no step before".into());
+    }
+    let threads = Threads::new(options.threads)?;
+    let solver;
+    let (stop, mut report, pressure) = match pressure {
+        Some(pressure) => {
+            check_pressures(&scene.grid, pressure)?;
+            let measures = measures(&scene.grid, pressure);
+            (Stop::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, pressure)
+        }
+        None => {
+            let normal = Scene { friction: None, ..scene.clone() };
+            let mut new = Solver::new(&normal, options)?;
+            let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
+            let (stop, report) = new.solve(&normal, options, None, watch)?;
+            solver = new;
+            (stop, report, &solver.state().p[..])
+        }
+    };
+    let table = Table { scene, friction, pressure, entries, options, done: Done::default() };
+    if stop == Stop::Cancelled {
+        table.done.cancelled.store(true, Ordering::Relaxed);
+    }
+    let began = std::time::Instant::now();
+    table.solve(&threads, progress, &found)?;
+    report.solve_seconds += began.elapsed().as_secs_f64();
+    let cancelled = table.done.cancelled.into_inner();
+    Ok((if cancelled { Stop::Cancelled } else { stop }, report))
+}
+
+/// What all workers read, and where they say what is done.
+struct Table<'a> {
+    scene: &'a Scene<'a>,
+    friction: &'a Friction<'a>,
+    pressure: &'a [f64],
+    entries: &'a [Entry],
+    options: &'a Options,
+    done: Done,
+}
+
+/// What is done so far.
+#[derive(Default)]
+struct Done {
+    /// The next run that nobody has taken.
+    next_run: AtomicUsize,
+    entries: AtomicUsize,
+    products: Mutex<f64>,
+    cancelled: AtomicBool,
+}
+
+impl Table<'_> {
+    fn solve(
+        &self,
+        threads: &Threads,
+        mut progress: Option<ProgressCallback<'_>>,
+        found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
+    ) -> Result<()> {
+        let runs = self.entries.len().div_ceil(RUN);
+        let workers = threads.count().min(runs).max(1);
+        // Set up before any entry is solved: there is none that one lack of memory could lose.
+        let tangents = (0..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
+        let mut crew = collected(tangents, "the workers of a table")?.into_iter().collect::<Result<Vec<_>>>()?;
+        let began = std::time::Instant::now();
+        let mut told = |residual: f64| {
+            let Some(progress) = &mut progress else { return };
+            let cycles = self.done.entries.load(Ordering::Relaxed) as u64;
+            let work_units = *self.done.products.lock().unwrap_or_else(PoisonError::into_inner);
+            let (seconds, grid) = (began.elapsed().as_secs_f64(), &self.scene.grid);
+            if progress(&Progress { work_units, residual, ..Progress::of_part(grid, cycles, seconds) }) {
+                self.done.cancelled.store(true, Ordering::Relaxed);
+            }
+        };
+        threads.for_each_beside(
+            &mut crew,
+            |tangent| self.work(tangent, &mut told, found),
+            |tangent| self.work(tangent, &mut |_| (), found),
+        );
+        Ok(())
+    }
+
+    /// Takes runs until there are none left; `told` hears the residual of each entry.
+    fn work(
+        &self,
+        tangent: &mut Tangent,
+        told: &mut dyn FnMut(f64),
+        found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
+    ) {
+        loop {
+            let first = self.done.next_run.fetch_add(1, Ordering::Relaxed).saturating_mul(RUN);
+            if first >= self.entries.len() {
+                return;
+            }
+            let mut warm = false;
+            for i in first..(first + RUN).min(self.entries.len()) {
+                let ended = self.entry(i, tangent, warm);
+                warm = matches!(ended, Ok((Stop::Converged, _)));
+                let residual = ended.as_ref().map_or(-1.0, |(_, report)| report.certificate.residual);
+                let has_solution = matches!(ended, Ok((stop, _)) if stop != Stop::Cancelled);
+                if let Ok((_, report)) = &ended {
+                    *self.done.products.lock().unwrap_or_else(PoisonError::into_inner) += report.products;
+                }
+                found(i, ended, if has_solution { tangent.solution() } else { None });
+                self.done.entries.fetch_add(1, Ordering::Relaxed);
+                if !self.is_cancelled() {
+                    told(residual);
+                }
+            }
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.done.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Solves entry i; `warm`: from the result of the one before.
+    fn entry(&self, i: usize, tangent: &mut Tangent, warm: bool) -> Ended {
+        if self.is_cancelled() {
+            return Ok((Stop::Cancelled, friction::Report::default()));
+        }
+        let friction = self.entries[i].friction(self.friction);
+        friction.check(&self.scene.grid)?;
+        let turn = Turn { scene: self.scene, friction: &friction, options: self.options, threads: &Threads::One };
+        let mut watch = |_: &Progress| self.is_cancelled();
+        let mut spent = 0.0;
+        if warm {
+            if let Ok((stop, report)) = self.step(tangent, &turn, true, &mut watch) {
+                if stop == Stop::Converged || stop == Stop::Cancelled {
+                    return Ok((stop, report));
+                }
+                spent = report.products;
+            }
+        }
+        let (stop, mut report) = self.step(tangent, &turn, false, &mut watch)?;
+        report.products += spent;
+        Ok((stop, report))
+    }
+
+    fn step(&self, tangent: &mut Tangent, turn: &Turn<'_>, again: bool, watch: ProgressCallback<'_>) -> Ended {
+        tangent.solve(turn, self.pressure, again, &mut Monitor::new(Some(watch), Vec::new(), false))
+    }
+}
