@@ -1085,6 +1085,64 @@ typedef struct contact_normal_report {
 } contact_normal_report;
 
 /*
+ Where the results of n entries are written; NULL (the default of each): not wanted.
+ */
+typedef struct contact_normal_friction_results {
+  /*
+   Set by `contact_normal_friction_results_init`.
+   */
+  int64_t struct_size;
+  /*
+   The sums of q dx dy in x and y, on body 1, `[n][2]`.
+   */
+  double *force;
+  /*
+   The sums of (x qy - y qx) dx dy about the centre of spin, `[n]`.
+   */
+  double *moment;
+  /*
+   Creepages in x and y, given or found, `[n][2]`.
+   */
+  double *creepage;
+  /*
+   As `tangential_residual` of the report, `[n]`.
+   */
+  double *residual;
+  /*
+   As `tangential_gap` of the report, `[n]`.
+   */
+  double *gap;
+  /*
+   As `tangential_products` of the report, `[n]`.
+   */
+  double *products;
+  /*
+   Elements that stick, `[n]`.
+   */
+  int64_t *stick_count;
+  /*
+   Elements that slip, `[n]`.
+   */
+  int64_t *slip_count;
+  /*
+   The status of each entry, `[n]`.
+   */
+  contact_normal_status *status;
+  /*
+   Tractions, `[n][2][my][mx]`: those in x and then those in y of each entry.
+   */
+  double *traction;
+  /*
+   Slip, `[n][2][my][mx]`.
+   */
+  double *slip;
+  /*
+   CONTACT_NORMAL_ADHESION_... of each element, `[n][my][mx]`.
+   */
+  int32_t *adhesion;
+} contact_normal_friction_results;
+
+/*
  Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
  `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
  in its floating-point environment.
@@ -1488,6 +1546,38 @@ contact_normal_status contact_normal_solve_tangential(const struct contact_norma
                                                       const struct contact_normal_options *options,
                                                       struct contact_normal_fields *fields,
                                                       struct contact_normal_report *report);
+
+/*
+ Fills results with NULL: nothing is wanted. Since 0.2.
+ */
+void contact_normal_friction_results_init(struct contact_normal_friction_results *results);
+
+/*
+ Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
+ (the creepage or, where `scene->friction->prescribed` says so, the force) and the spin; those of `scene->friction` itself are not
+ used. `pressure` `[my][mx]`: as for `contact_normal_solve_tangential`; NULL: the normal problem of the scene is solved first, once. Of
+ unlike bodies the tractions do not change the pressures.
+
+ As many entries are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in a row
+ are solved one after the other, each from the tractions of the one before, and all meet the tolerance. Results have the same bits for any
+ number of threads.
+
+ An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
+ status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
+ (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
+ "entry 3: ..." for each of them, counted from 0: 1000 lines at most. `report` (NULL: not wanted) is that of the normal problem.
+
+ `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
+ the entries that are done and `residual` is that of the last one. When it cancels, the results of entries that are not done stay as
+ they are, with the status CANCELLED. Since 0.2.
+ */
+contact_normal_status contact_normal_friction_batch(const struct contact_normal_scene *scene,
+                                                    const double *pressure,
+                                                    const struct contact_normal_options *options,
+                                                    int32_t n,
+                                                    const double *entries,
+                                                    struct contact_normal_friction_results *results,
+                                                    struct contact_normal_report *report);
 
 /*
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the

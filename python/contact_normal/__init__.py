@@ -11,6 +11,7 @@ Arrays are (my, mx), C order: x runs along a row. Constants have the names of in
 from ._arguments import SolveOptions
 from ._callbacks import Progress, set_log
 from ._constants import *  # noqa: F403
+from ._friction_batch import FrictionBatch, friction_batch
 from ._library import VERSION, ContactNormalError
 from ._prices import Price, cost_of_accuracy
 from ._result import Ledger, Result
@@ -24,6 +25,7 @@ __version__ = VERSION
 __all__ = [
     "AccurateResult",
     "ContactNormalError",
+    "FrictionBatch",
     "HertzSolution",
     "Ledger",
     "Price",
@@ -34,6 +36,7 @@ __all__ = [
     "SubsurfaceStress",
     "VERSION",
     "cost_of_accuracy",
+    "friction_batch",
     "hertz",
     "influence_half_space",
     "set_log",

@@ -194,8 +194,7 @@ impl NotOk {
     /// What the call returns: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
     pub fn outcome(self, each: &str) -> Outcome {
         let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
-        let lines: Vec<String> =
-            self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
+        let lines: Vec<String> = self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
         Outcome { status, message: lines.join("\n") }
     }
 }

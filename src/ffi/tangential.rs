@@ -24,9 +24,8 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let Request { scene, options, outputs } = unsafe {
-            Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))?
-        };
+        let Request { scene, options, outputs } =
+            unsafe { Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))? };
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
         let mut callback = watcher(&options);

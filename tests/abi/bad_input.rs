@@ -535,6 +535,7 @@ fn inits_ignore_null_and_levels_are_checked() {
         contact_normal_fields_init(null_mut());
         contact_normal_report_init(null_mut());
         contact_normal_accuracy_init(null_mut());
+        contact_normal_friction_results_init(null_mut());
         let status = contact_normal_set_log(None, 9, null_mut());
         assert_eq!((status, last_error().contains("level is 9")), (INVALID, true));
         let text = std::ffi::CStr::from_ptr(contact_normal_status_text(12345)).to_str().expect("UTF-8");

@@ -5,5 +5,6 @@ mod boundary;
 mod call;
 mod callbacks;
 mod coating;
+mod friction_batch;
 mod rows;
 mod subsurface_stress;

@@ -251,7 +251,10 @@ fn derived_types_are_laid_out_as_the_structs() {
 #[test]
 fn the_module_has_every_constant_and_every_export_of_the_header() {
     let read = |name: &str| std::fs::read_to_string(root().join("include").join(name)).expect("an include file");
-    let (header, module) = (read("contact_normal.h"), read("contact_normal.f90") + &read("contact_normal_exports.inc") + &read("contact_normal_procedures.inc"));
+    let (header, module) = (
+        read("contact_normal.h"),
+        read("contact_normal.f90") + &read("contact_normal_exports.inc") + &read("contact_normal_procedures.inc"),
+    );
     let mut constants = 0;
     for line in header.lines().filter_map(|line| line.strip_prefix("#define CONTACT_NORMAL_")) {
         let Some((name, value)) = line.split_once(' ') else { continue };

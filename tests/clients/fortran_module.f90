@@ -189,9 +189,62 @@ program fortran_module
   call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "NORM takes over")
   call hold(messages > 0, "a message")
   call hold(contact_normal_set_log(level=CONTACT_NORMAL_LOG_OFF) == CONTACT_NORMAL_OK, "no log any more")
+  call table_of_forces()
   print '(a)', "all hold"
 
 contains
+
+  ! The entries of a table are what single solves find; one that is refused is named.
+  subroutine table_of_forces()
+    integer(c_int32_t), parameter :: n = 3
+    type(contact_normal_scene) :: ball
+    type(contact_normal_friction), target :: friction
+    type(contact_normal_friction_results) :: results
+    type(contact_normal_report) :: normal, one
+    real(dp), target :: distance(M, M), force(2, n), moment(n), traction(M, M, 2, n)
+    real(dp) :: entries(3, n)
+    integer(c_int32_t), target :: status(n)
+    integer :: ix, iy, k
+    do iy = 1, M
+      do ix = 1, M
+        distance(ix, iy) = 1e-4_dp*((ix - 12.5_dp)**2 + (iy - 12.5_dp)**2)
+      end do
+    end do
+    call contact_normal_scene_init(ball)
+    call contact_normal_set_undeformed_distance(ball, distance)
+    ball%dx = 0.1_dp
+    ball%dy = 0.1_dp
+    ball%shear_modulus = 82000
+    ball%poisson_ratio = 0.28_dp
+    ball%load = CONTACT_NORMAL_PRESCRIBED_FORCE
+    ball%force = 1000
+    call contact_normal_set_friction(ball, friction, coefficient=0.3_dp)
+    do k = 1, n
+      entries(:, k) = [-1e-3_dp*k, 2e-4_dp, 1e-4_dp]
+    end do
+    call contact_normal_friction_results_init(results)
+    call contact_normal_set_friction_results(results, force=force, moment=moment, status=status, traction=traction)
+    call contact_normal_report_init(normal)
+    call contact_normal_report_init(one)
+    call hold(contact_normal_friction_batch(ball, n=n, entries=entries, results=results, report=normal) == &
+      CONTACT_NORMAL_OK, "a table")
+    call hold(all(status == CONTACT_NORMAL_OK) .and. abs(normal%force - 1000) < 1e-2_dp, "its statuses and its normal force")
+    do k = 1, n
+      friction%creepage = entries(1:2, k)
+      friction%spin = entries(3, k)
+      call hold(contact_normal_solve(ball, report=one) == CONTACT_NORMAL_OK, "an entry alone")
+      ! A residual of 1e-6 leaves some 1e-7 of mu N.
+      call hold(all(abs(force(:, k) - one%tangential_force) <= 1e-5_dp*300), "the forces of an entry")
+      call hold(abs(moment(k) - one%tangential_moment) <= 1e-5_dp*300, "the moment of an entry")
+      call hold(abs(sum(traction(:, :, 1, k))*0.01_dp - force(1, k)) <= 1e-9_dp*300, "the tractions of an entry")
+    end do
+    friction%prescribed(1) = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
+    entries(1, 2) = 1e9_dp
+    call hold(contact_normal_friction_batch(ball, n=n, entries=entries, results=results) == CONTACT_NORMAL_INFEASIBLE, &
+      "a force that friction does not carry")
+    call hold(index(contact_normal_last_error_message(), "entry 1: ") == 1, "the entry is named")
+    call hold(all(status == [CONTACT_NORMAL_OK, CONTACT_NORMAL_INFEASIBLE, CONTACT_NORMAL_OK]), "the others are solved")
+  end subroutine
 
   subroutine hold(condition, what)
     logical, intent(in) :: condition

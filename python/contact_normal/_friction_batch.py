@@ -1,0 +1,159 @@
+"""Many tangential problems of one scene: tables of tangential forces."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from ctypes import c_int32, c_int64
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import Both, SolveOptions, doubles, options, pointer
+from ._callbacks import Progress, Watched
+from ._library import check, initialised, last_error, library
+from ._result import _value
+from ._scene import Scene
+from ._structs import Report, names
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from typing_extensions import Unpack
+
+
+class FrictionBatch:
+    """What `friction_batch` found: of each entry its numbers, and the fields if they were asked for.
+
+    Attributes
+    ----------
+    status : ndarray of int, (n,)
+        Of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. What was not solved has NaN.
+    message : str
+        A line "entry 3: ..." for each entry that is not solved.
+    force, creepage : ndarray, (n, 2)
+        The tangential forces on body 1, and the creepages, given or found.
+    moment : ndarray, (n,)
+        About the centre of spin.
+    residual, gap, products : ndarray, (n,)
+        As `tangential_residual`, `tangential_gap` and `tangential_products` of a report.
+    stick_count, slip_count : ndarray of int, (n,)
+        Elements that stick, that slip.
+    traction, slip : ndarray, (n, 2, my, mx), or None
+        With `fields=True`.
+    adhesion : ndarray of int, (n, my, mx), or None
+        With `fields=True`: 0 exterior, 1 stick, 2 slip.
+    report : dict
+        Of the normal problem.
+    """
+
+    traction: npt.NDArray[np.float64] | None = None
+    slip: npt.NDArray[np.float64] | None = None
+    adhesion: npt.NDArray[np.int32] | None = None
+
+    def __init__(self, count: int, shape: tuple[int, int], fields: bool) -> None:
+        self.message = ""
+        self.report: dict[str, Any] = {}
+        self.force, self.creepage = np.full((count, 2), np.nan), np.full((count, 2), np.nan)
+        self.moment, self.residual = np.full(count, np.nan), np.full(count, np.nan)
+        self.gap, self.products = np.full(count, np.nan), np.full(count, np.nan)
+        self.stick_count, self.slip_count = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
+        self.status = np.zeros(count, dtype=np.int32)
+        if fields:
+            self.traction, self.slip = np.full((count, 2, *shape), np.nan), np.full((count, 2, *shape), np.nan)
+            self.adhesion = np.zeros((count, *shape), dtype=np.int32)
+
+    def _results(self) -> Any:
+        """The struct that points to these arrays."""
+        results = initialised("friction_results")
+        kinds = {"stick_count": c_int64, "slip_count": c_int64, "status": c_int32, "adhesion": c_int32}
+        for name in names(type(results))[1:]:
+            array = getattr(self, name)
+            if array is not None:
+                setattr(results, name, pointer(array, kinds.get(name, ctypes.c_double)))
+        return results
+
+
+def friction_batch(
+    h: npt.ArrayLike | None,
+    dx: float,
+    dy: float,
+    entries: npt.ArrayLike,
+    *,
+    friction: Mapping[str, Any],
+    shear_modulus: Both,
+    poisson_ratio: Both,
+    approach: float | None = None,
+    force: float | None = None,
+    pressure: npt.ArrayLike | None = None,
+    layer: npt.ArrayLike | None = None,
+    pressure_limit: npt.ArrayLike | None = None,
+    fields: bool = False,
+    progress: Callable[[Progress], Any] | None = None,
+    **given: Unpack[SolveOptions],
+) -> FrictionBatch:
+    """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
+
+    The normal problem is solved once, or not at all if there are pressures. As many entries are solved at a time as `threads` says;
+    neighbours in the list should be neighbours in the motion, for each starts from the tractions of the one before.
+
+    Parameters
+    ----------
+    h : array_like, (my, mx), or None
+        Undeformed distance; None where `pressure` is given.
+    dx, dy : float
+        Element sizes.
+    entries : array_like, (n, 3)
+        Of each entry what is prescribed in x and in y, and the spin.
+    friction : mapping
+        As for `solve`. Its creepages, forces and spin are not used; in a direction whose "force" is not None, entries are forces.
+    approach, force : float
+        Exactly one of them, where there is no `pressure`.
+    pressure : array_like, (my, mx), optional
+        The pressures of a normal problem that is solved already.
+    fields : bool
+        Whether tractions and slip are wanted, too.
+    progress : callable, optional
+        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels.
+    shear_modulus, poisson_ratio, layer, pressure_limit, **given
+        As for `solve`.
+
+    Returns
+    -------
+    FrictionBatch
+
+    Raises
+    ------
+    ContactNormalError
+        If the call itself is refused; an entry that is refused has a negative `status`.
+    """
+    pressures = None if pressure is None else doubles("pressure", pressure)
+    if h is None:
+        if pressures is None:
+            raise TypeError("give either h or pressure")
+        h = np.zeros(pressures.shape)
+    if pressures is not None and approach is None and force is None:
+        approach = 0.0  # not used
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio,
+                  {"layer": layer, "pressure_limit": pressure_limit, "friction": friction})
+    if pressures is not None:
+        pressures = doubles("pressure", pressures, scene.shape)
+    table = doubles("entries", entries, dimensions="(n, 3)")
+    if table.shape[1] != 3:
+        raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")
+    struct = options(given)
+    watched = Watched(progress, struct, scene.h.size)
+    found = FrictionBatch(len(table), scene.shape, fields)
+    results, report = found._results(), initialised("report")
+    untouched = -(2**31)
+    found.status[:] = untouched
+    status = library.contact_normal_friction_batch(
+        ctypes.byref(scene.struct), None if pressures is None else pointer(pressures), ctypes.byref(struct), len(table),
+        pointer(table), ctypes.byref(results), ctypes.byref(report),
+    )
+    found.message = last_error() if status else ""
+    watched.finish()
+    if not len(table) or untouched in found.status:
+        check(status)
+    hidden = ("struct_size", "ledger", "ledger_capacity")
+    found.report = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
+    return found
