@@ -212,6 +212,8 @@ contains
     end do
     call contact_normal_scene_init(ball)
     call contact_normal_set_undeformed_distance(ball, distance)
+    ball%mx = M
+    ball%my = M
     ball%dx = 0.1_dp
     ball%dy = 0.1_dp
     ball%shear_modulus = 82000
