@@ -131,7 +131,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->coefficients", "(5, 4)", "inf"], NOT_FINITE, |c| { c.each[29] = INF; c.use_friction().coefficients = c.each.as_ptr(); }),
     (&["friction->motion", "7"], INVALID, |c| c.use_friction().motion = 7),
     (&["friction->rolling_distance", "tenth"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e-3); }),
-    (&["friction->rolling_distance", "1e30"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e30); }),
+    (&["friction->rolling_distance", "million"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e30); }),
     (&["friction->continues", "2"], INVALID, |c| c.use_friction().continues = 2),
     (&["friction->prescribed[1]", "-1"], INVALID, |c| c.use_friction().prescribed[1] = -1),
     (&["friction->creepage[0]", "NaN"], NOT_FINITE, |c| c.use_friction().creepage[0] = NAN),
