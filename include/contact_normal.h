@@ -102,7 +102,7 @@
 #define CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING 1
 
 /*
- `motion`: rolling that does not change any more. This version does not solve it (UNSUPPORTED): take steps of transient rolling.
+ `motion`: rolling that does not change any more; the tractions before are only where the iteration starts.
  */
 #define CONTACT_NORMAL_MOTION_STEADY_ROLLING 2
 

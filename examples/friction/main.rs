@@ -1,11 +1,14 @@
-//! What friction costs, in products of two components and in seconds: `cargo run --release --example friction [-- quick]`.
+//! What friction costs, in products of two components and in seconds: `cargo run --release --example friction [-- quick] [rolling]`.
 //!
-//! A wheel on a rail (CONTACT's performance tests), Cattaneo's ball, rough surfaces, random ellipses with motions and forces.
+//! A wheel on a rail (CONTACT's performance tests), Cattaneo's ball, rough surfaces, random ellipses with motions and forces; steady
+//! rolling of the wheel and of ellipses.
 
+mod rolling;
 #[path = "../smoothers/rough.rs"]
 #[allow(dead_code)]
 mod rough;
 mod scenes;
+mod steady;
 #[path = "../../tests/friction/wheel_on_rail.rs"]
 mod wheel_on_rail;
 
@@ -18,10 +21,14 @@ use contact_normal::threads::Threads;
 
 fn main() -> Result<(), Error> {
     let quick = std::env::args().any(|argument| argument == "quick");
+    if std::env::args().any(|argument| argument == "rolling") {
+        return rolling::all(quick);
+    }
     wheel(if quick { &[1, 2, 4] } else { &[1, 2, 4, 8] })?;
     ball(if quick { &[32, 64, 128] } else { &[32, 64, 128, 256, 512] })?;
     rough_surfaces(if quick { &[128, 256] } else { &[128, 256, 512, 1024] })?;
-    random(if quick { 60 } else { 300 })
+    random(if quick { 60 } else { 300 })?;
+    rolling::all(quick)
 }
 
 fn wheel(grids: &[usize]) -> Result<(), Error> {
@@ -55,7 +62,7 @@ fn wheel(grids: &[usize]) -> Result<(), Error> {
 }
 
 /// The tangential problem on pressures that are given.
-fn tangential(
+pub fn tangential(
     grid: Grid,
     nu: f64,
     g: &[f64],

@@ -79,8 +79,8 @@ def solve(
         Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
         are then those of the body below.
     friction : mapping, optional
-        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default) or "TRANSIENT_ROLLING"; "creepage",
-        a pair; "force", a pair of tangential forces, None where the creepage is given; "spin", "spin_centre", "rolling_distance",
+        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or
+        "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin", "spin_centre", "rolling_distance",
         "rolling_direction", "spin_offset"; "previous_traction" and "rigid_slip", pairs of (my, mx); "continues": from the tractions
         that a `Solver` found last. docs/friction.md has the signs.
     pressure, contact : array_like, (my, mx), optional

@@ -29,6 +29,12 @@ impl Coefficient<'_> {
     }
 }
 
+/// Steps of steady rolling, in elements.
+const STEPS: std::ops::RangeInclusive<f64> = 0.1..=1e6;
+
+/// Of angles and lengths.
+const ROUND_OFF: f64 = 1e-14;
+
 /// How the bodies move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
@@ -37,6 +43,9 @@ pub enum Motion {
     Shift,
     /// A step of rolling, from the tractions before.
     TransientRolling,
+    /// Rolling that does not change any more: the tractions before are those of now. Those that are given or kept are only where the
+    /// iteration starts.
+    SteadyRolling,
 }
 
 /// What is prescribed in a direction; the other one is found.
@@ -111,6 +120,19 @@ impl Friction<'_> {
         }
     }
 
+    /// How many elements a step of rolling goes in x and in y. Of whole numbers round-off is removed: coefficients are simpler there.
+    pub fn elements_rolled(&self, grid: &Grid) -> (f64, f64) {
+        let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
+        let clean = |value: f64| {
+            if (value - value.round()).abs() <= ROUND_OFF * distance / grid.dx.min(grid.dy) {
+                value.round()
+            } else {
+                value
+            }
+        };
+        (clean(distance * cosine / grid.dx), clean(distance * sine / grid.dy))
+    }
+
     /// The rigid slip of the step at element i; without creepages that are to be found.
     pub fn rigid_slip_at(&self, grid: &Grid, i: usize) -> [f64; 2] {
         let distance = self.distance(grid);
@@ -129,6 +151,18 @@ impl Friction<'_> {
         });
         let own = self.rigid_slip.map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+    }
+
+    /// Refuses steps of steady rolling that elements do not resolve.
+    fn check_step(&self, grid: &Grid) -> Result<()> {
+        if self.motion != Motion::SteadyRolling {
+            return Ok(());
+        }
+        let (x, y) = self.elements_rolled(grid);
+        let longest = x.abs().max(y.abs());
+        let rule =
+            "a step of steady rolling must be at least a tenth of an element long, and at most a million elements";
+        require(STEPS.contains(&longest), "friction->rolling_distance", self.distance(grid), rule)
     }
 
     /// Refuses numbers that are none.
@@ -174,6 +208,7 @@ impl Effect for Friction<'_> {
             Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
             Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
         }
+        self.check_step(grid)?;
         let finite = |name: &str, value: f64| match value.is_finite() {
             true => Ok(()),
             false => Err(Error::NotFinite(format!("{name} is {value}; it must be finite"))),

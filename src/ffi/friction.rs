@@ -3,7 +3,6 @@
 use super::arguments::{optional, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::{self, versioned};
-use crate::error::Error;
 use crate::friction::{EXTERIOR, SLIP, STICK};
 use crate::grid::Grid;
 use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
@@ -12,7 +11,7 @@ use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
 /// `motion`: a step of rolling, from the tractions before.
 pub const CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING: i32 = 1;
-/// `motion`: rolling that does not change any more. This version does not solve it (UNSUPPORTED): take steps of transient rolling.
+/// `motion`: rolling that does not change any more; the tractions before are only where the iteration starts.
 pub const CONTACT_NORMAL_MOTION_STEADY_ROLLING: i32 = 2;
 
 /// `prescribed`: the creepage of a direction is given.
@@ -87,12 +86,9 @@ impl contact_normal_friction {
         let motion = match self.motion {
             CONTACT_NORMAL_MOTION_SHIFT => Motion::Shift,
             CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING => Motion::TransientRolling,
-            CONTACT_NORMAL_MOTION_STEADY_ROLLING => {
-                let message = "friction->motion is STEADY_ROLLING, which this version does not solve";
-                return Err(Error::Unsupported(message.into()).into());
-            }
+            CONTACT_NORMAL_MOTION_STEADY_ROLLING => Motion::SteadyRolling,
             other => {
-                let rule = "it must be SHIFT 0 or TRANSIENT_ROLLING 1";
+                let rule = "it must be SHIFT 0, TRANSIENT_ROLLING 1 or STEADY_ROLLING 2";
                 return Err(Refusal::invalid(format!("friction->motion is {other}; {rule}")));
             }
         };

@@ -1,7 +1,8 @@
 //! Nested iteration: the problem on coarser grids, coarsest first, each the start of the next.
 //!
 //! ```text
-//! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C
+//! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C,
+//!                                                                              in steady rolling times 2: a step is 2 dq long
 //! start of the next grid: q/g, interpolated between the centres of those in C, times g;
 //!                         a unit vector where all that it is interpolated from slip
 //! ```
@@ -62,7 +63,9 @@ pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads)
     let mut next = coarser(&grid);
     while let Some(grid) = next {
         let tangential = tangential.for_element(grid.dx, grid.dy);
-        levels.push(Level::new(grid, Operators::new(&tangential, &grid, single, threads)?)?);
+        let last = &levels[levels.len() - 1].problem;
+        let rolling = last.operators.step().map(|rolling| rolling.on(&last.grid, &grid));
+        levels.push(Level::new(grid, Operators::new(&tangential, &grid, rolling, single, threads)?)?);
         next = coarser(&grid);
     }
     Ok(levels)
@@ -72,6 +75,7 @@ pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads)
 pub fn restrict(fine: &Problem, coarse: &mut Level) {
     let Level { problem, state, .. } = coarse;
     let (from, to) = (fine.grid, problem.grid);
+    let longer = step_ratio(problem, fine);
     let all = (1 + usize::from(to.dx > from.dx)) * (1 + usize::from(to.dy > from.dy));
     for i in 0..to.len() {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
@@ -81,14 +85,22 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
             rigid = add(rigid, fine.rigid[child]);
             count += 1;
         }
-        let share = 1.0 / f64::from(count.max(1));
+        let share = longer / f64::from(count.max(1));
         problem.bound[i] = bound / all as f64;
         problem.slip[i] = [share * slip[0], share * slip[1]];
         problem.rigid[i] = [share * rigid[0], share * rigid[1]];
     }
-    (problem.offset, problem.scale) = (fine.offset, fine.scale);
+    (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
     problem.bound_changed();
     state.unload();
+}
+
+/// How much longer a step of steady rolling is on a coarse grid.
+fn step_ratio(coarse: &Problem, fine: &Problem) -> f64 {
+    match (coarse.operators.step(), fine.operators.step()) {
+        (Some(coarse), Some(fine)) => coarse.distance / fine.distance,
+        _ => 1.0,
+    }
 }
 
 /// q on the next finer grid, from the coarser one.
@@ -120,7 +132,8 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) {
         let part = if all_slip && length > 0.0 { part.map(|part| part / length) } else { part };
         fine.state.q[i] = onto_disc([g * part[0], g * part[1]], g);
     }
-    fine.problem.offset = coarse.problem.offset;
+    let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
+    fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
     fine.state.is_exact = false;
 }
 

@@ -16,6 +16,7 @@ pub mod cross;
 pub mod dense;
 mod fgmres;
 mod levels;
+mod march;
 mod newton;
 mod problem;
 mod shift;

@@ -2,8 +2,9 @@
 
 use super::certificate::Certificate;
 use super::levels::{interpolate, levels, restrict, Level};
+use super::march::Rolling;
 use super::newton::{self, Forces};
-use super::problem::{dot, square, Operators, Scale};
+use super::problem::{dot, square, Operators, Problem, Scale};
 use super::shift::{self, End, Goal};
 use super::toeplitz::{Toeplitz, Workspace};
 use super::{Tangential, Vector};
@@ -17,6 +18,7 @@ use crate::threads::Threads;
 const FIELDS: &str = "tangential fields";
 /// Coarser grids are solved to this residual: what they leave wrong costs more on the finest.
 const COARSE: f64 = 3e-4;
+const COARSE_ROLLING: f64 = 1e-3;
 /// Iterations at most on each of them.
 const COARSE_LIMIT: u64 = 60;
 /// With forces given, the coarsest grid is solved with these parts of the load first, to this residual.
@@ -194,11 +196,14 @@ impl Solver {
         }
         let kept = &self.before;
         let from_rest = (0..self.grid.len()).all(|i| before(kept, i) == [0.0; 2]);
-        let window = Window::around(&self.grid, |i| pressure[i] > 0.0 || before(kept, i) != [0.0; 2]);
+        let rolling = (friction.motion == Motion::SteadyRolling)
+            .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
+        let window =
+            Window::around(&self.grid, |i| pressure[i] > 0.0 || rolling.is_none() && before(kept, i) != [0.0; 2]);
         let mut end = End::Converged;
         let mut report = Report::default();
         if let Some(window) = window {
-            self.set_up(window)?;
+            self.set_up(window, rolling)?;
             let had_slip = self.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
             let goal = (request.tolerance, request.limit);
             let mut work = Work { products: 0.0, watch };
@@ -233,13 +238,14 @@ impl Solver {
     }
 
     /// Operators of a window.
-    fn set_up(&mut self, window: Window) -> Result<()> {
+    fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
         let grid = window.grid(&self.grid);
-        if self.levels.first().is_some_and(|level| level.problem.grid == grid) {
+        let fits = |problem: &Problem| problem.grid == grid && problem.operators.step() == rolling;
+        if self.levels.first().is_some_and(|level| fits(&level.problem)) {
             return Ok(());
         }
         self.levels.clear();
-        let operators = Operators::new(&self.tangential, &grid, self.single, &self.threads)?;
+        let operators = Operators::new(&self.tangential, &grid, rolling, self.single, &self.threads)?;
         self.levels = levels(operators, grid, self.single, &self.threads)?;
         Ok(())
     }
@@ -261,8 +267,15 @@ impl Solver {
             problem.rigid[k] = super::problem::add(friction.rigid_slip_at(&self.grid, i), sideways);
             state.q[k] = before(&self.before, i);
         }
-        problem.offset = [0.0; 2];
-        problem.scale = if friction.motion == Motion::Shift { Scale::SlipOrDisplacement } else { Scale::Slip };
+        // A warm start of steady rolling starts from the last creepages, too.
+        let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
+        let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
+        problem.offset = [0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 });
+        problem.scale = match friction.motion {
+            Motion::Shift => Scale::SlipOrDisplacement,
+            Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
+            _ => Scale::Slip,
+        };
         problem.bound_changed();
         problem.slip.copy_from_slice(&problem.rigid);
         if !from_rest {
@@ -286,10 +299,10 @@ impl Solver {
     fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
         let Level { problem, state, .. } = &mut self.levels[0];
         match friction.motion {
+            Motion::SteadyRolling => return Ok(()),
             Motion::Shift => problem.operators.multiply(&state.q, &mut state.u),
             Motion::TransientRolling => {
-                let (distance, direction) = (friction.distance(&self.grid), friction.rolling_direction);
-                let by = (distance * direction.cos() / self.grid.dx, distance * direction.sin() / self.grid.dy);
+                let by = friction.elements_rolled(&self.grid);
                 let displaced = displaced(&mut self.displaced, &self.tangential, problem.grid, by, &self.threads)?;
                 displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
             }
@@ -322,7 +335,8 @@ impl Solver {
                     self.approach(l, forces, part, work)?;
                 }
                 let level = &mut self.levels[l];
-                let end = one(level, forces, forces.any(), (tolerance.max(COARSE), COARSE_LIMIT), part, work)?;
+                let coarse = if level.problem.operators.rolling.is_some() { COARSE_ROLLING } else { COARSE };
+                let end = one(level, forces, forces.any(), (tolerance.max(coarse), COARSE_LIMIT), part, work)?;
                 if end == End::Cancelled {
                     return Ok(end);
                 }
@@ -418,7 +432,8 @@ fn one(
         state.unload();
         return Ok(End::Converged);
     }
-    for newton in [newton_first, true, newton_first && forces.any()] {
+    let only_newton = forces.any() || problem.operators.rolling.is_some();
+    for newton in [newton_first || only_newton, true, only_newton] {
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
         let goal = Goal { tolerance, limit, watch };
         end = if newton {

@@ -15,6 +15,9 @@ use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
 
+/// In steady rolling D weighs so much beside the self-influence.
+const OF_ROLLING: f64 = 0.5;
+
 /// What an element does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
@@ -102,19 +105,27 @@ impl Tangent {
 
     /// `z = P(E M E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/a0)`, for r of which P r = r: the circulant inverse of A and, where the
     /// curvature D dominates, its own inverse.
+    /// In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
+        let stiffness = if problem.operators.rolling.is_some() { OF_ROLLING / a0 } else { 1.0 / a0 };
+        let mixing = |i: usize| 1.0 / (1.0 + stiffness * self.curvature[i]);
         mixed.fill([0.0; 2]);
         for i in problem.contact() {
-            let e = 1.0 / (1.0 + self.curvature[i] / a0);
+            let e = mixing(i);
             mixed[i] = [e * r[i][0], e * r[i][1]];
         }
         problem.operators.precondition(mixed, unit, z);
         for i in problem.contact() {
-            let d = self.curvature[i];
-            let e = 1.0 / (1.0 + d / a0);
-            let own = (1.0 - e) / (d + a0);
-            z[i] = plus(self.project(i, [e * z[i][0], e * z[i][1]]), own, r[i]);
+            let e = mixing(i);
+            z[i] = self.project(i, [e * z[i][0], e * z[i][1]]);
+        }
+        if let Some((_, march)) = &problem.operators.rolling {
+            march.solve(problem, self, mixing, z);
+        }
+        for i in problem.contact() {
+            let own = (1.0 - mixing(i)) / (self.curvature[i] + a0);
+            z[i] = plus(z[i], own, r[i]);
         }
     }
 }

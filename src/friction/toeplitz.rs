@@ -107,17 +107,36 @@ impl<T: Real> Toeplitz<T> {
 
     /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
     pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
-        let unit = unit_of(tangential.at(0.0, 0.0)[0]);
+        let fill = |x: f64, y: f64| tangential.at(x + by.0, y + by.1);
+        Toeplitz::general(grid, fill, unit_of(tangential.at(0.0, 0.0)[0]), threads)
+    }
+
+    /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
+    pub fn rolling(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
+        let fill = |x: f64, y: f64| {
+            let (here, there) = (tangential.at(x, y), tangential.at(x + by.0, y + by.1));
+            [here[0] - there[0], here[1] - there[1], here[2] - there[2]]
+        };
+        Toeplitz::general(grid, fill, unit_of(tangential.at(0.0, 0.0)[0]), threads)
+    }
+
+    /// Of coefficients that are neither even nor odd: `fill(x, y)` gives that of an offset.
+    fn general(
+        grid: &Grid,
+        fill: impl Fn(f64, f64) -> Entry + Sync + Send,
+        unit: f64,
+        threads: &Threads,
+    ) -> Result<Toeplitz<T>> {
         let (px, py) = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
         let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
         let (nb, mx, my) = (rows.bins(), grid.mx as i64, grid.my as i64);
         let mut in_x: Vec<[Complex<f64>; 3]> = zeros((2 * grid.my - 1) * nb, SPECTRUM)?;
         let mut scratch = SetUp::for_pieces(threads, &rows, &columns);
         threads.for_each_row(&mut in_x, nb, &mut scratch, |i, out, piece| {
-            let ky = (i as i64 - (my - 1)) as f64 + by.1;
+            let ky = (i as i64 - (my - 1)) as f64;
             piece.row.fill([0.0; 3]);
             for kx in 1 - mx..mx {
-                piece.row[kx.rem_euclid(px as i64) as usize] = tangential.at(kx as f64 + by.0, ky);
+                piece.row[kx.rem_euclid(px as i64) as usize] = fill(kx as f64, ky);
             }
             piece.transform_row(&rows, |k, component, bin| out[k][component] = bin);
         });

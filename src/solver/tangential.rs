@@ -197,17 +197,16 @@ impl Coupled {
         let Turn { scene, friction, threads, .. } = turn;
         self.sideways.fill([0.0; 2]);
         self.here.add_sideways(p, 1.0, &mut self.sideways);
-        let before = match friction.previous {
-            Previous::None => return Ok(()),
-            Previous::Given(_) => p,
-            Previous::Kept => &self.last_pressure,
+        let before = match (friction.motion, friction.previous) {
+            (Motion::SteadyRolling, _) | (_, Previous::Given(_)) => p,
+            (_, Previous::None) => return Ok(()),
+            (_, Previous::Kept) => &self.last_pressure,
         };
         if friction.motion == Motion::Shift {
             self.here.add_sideways(before, -1.0, &mut self.sideways);
             return Ok(());
         }
-        let (distance, (sine, cosine)) = (friction.distance(&scene.grid), friction.rolling_direction.sin_cos());
-        let by = (distance * cosine / scene.grid.dx, distance * sine / scene.grid.dy);
+        let by = friction.elements_rolled(&scene.grid);
         if !self.there.as_ref().is_some_and(|(known, _)| *known == by) {
             self.there = Some((by, Coupling::new(&scene.grid, self.unlike, by, threads)?));
         }

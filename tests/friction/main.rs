@@ -9,6 +9,9 @@ mod rolling;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]
 mod scenes;
+mod steady;
+#[path = "../../examples/friction/steady.rs"]
+mod steady_scenes;
 mod support;
 mod unlike;
 mod wheel_on_rail;

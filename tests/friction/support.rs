@@ -51,7 +51,8 @@ pub fn residual(
         Motion::Shift => (0.0, 0.0),
         _ => (distance * cosine / grid.dx, distance * sine / grid.dy),
     };
-    dense::apply(&tangential, grid, by, before, &mut u_before);
+    let is_steady = friction.motion == Motion::SteadyRolling;
+    dense::apply(&tangential, grid, by, if is_steady { q } else { before }, &mut u_before);
     let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for i in 0..n {
         let Coefficient::Uniform(mu) = friction.coefficient else { panic!("one coefficient") };
@@ -80,10 +81,12 @@ pub fn residual(
         }
         left.push(length(rest));
         rigid.push(length(w));
-        displaced.push(length(u[i]));
+        displaced.push(length(if is_steady { [u[i][0] - u_before[i][0], u[i][1] - u_before[i][1]] } else { u[i] }));
     }
+    let forces = friction.prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_)));
     let scale = match friction.motion {
-        Motion::Shift => rms(rigid.into_iter(), count).max(rms(displaced.into_iter(), count)),
+        Motion::SteadyRolling if !forces => rms(rigid.into_iter(), count),
+        Motion::Shift | Motion::SteadyRolling => rms(rigid.into_iter(), count).max(rms(displaced.into_iter(), count)),
         _ => rms(rigid.into_iter(), count),
     };
     rms(left.into_iter(), count) / scale

@@ -1,7 +1,7 @@
 //! A wheel on a rail: the shift of CONTACT's performance tests (data/friction/README.md).
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Friction, Prescribed};
+use contact_normal::scene::{Friction, Motion, Prescribed};
 
 /// Undeformed distances on grid `k` (1, 2, 4 or 8).
 pub fn surface(k: usize) -> (Grid, Vec<f64>) {
@@ -31,15 +31,34 @@ pub fn surface(k: usize) -> (Grid, Vec<f64>) {
     (grid, h)
 }
 
+/// The origin of the coordinates, from the middle of the grid.
+fn origin(grid: &Grid) -> [f64; 2] {
+    [3.55 - 0.5 * grid.mx as f64 * grid.dx, 6.15 - 0.5 * grid.my as f64 * grid.dy]
+}
+
 /// The shift s of the data.
 pub fn shift(grid: &Grid) -> Friction<'static> {
-    let d = grid.dx;
-    // The middle of the grid lies beside the origin of the coordinates.
-    let centre = [3.55 - 0.5 * grid.mx as f64 * d, 6.15 - 0.5 * grid.my as f64 * d];
     Friction {
         prescribed: [Prescribed::Creepage(0.0005), Prescribed::Creepage(-0.0010)],
         spin: 0.0008,
-        spin_centre: centre,
+        spin_centre: origin(grid),
         ..Friction::new(0.3)
     }
+}
+
+/// Steady rolling, c of the data: creepages given.
+pub fn rolling(grid: &Grid) -> Friction<'static> {
+    Friction {
+        motion: Motion::SteadyRolling,
+        prescribed: [Prescribed::Creepage(0.0005), Prescribed::Creepage(0.0)],
+        spin: 0.0003,
+        spin_centre: origin(grid),
+        ..Friction::new(0.3)
+    }
+}
+
+/// Steady rolling, f of the data: the forces given, `carried` being mu N.
+pub fn rolling_with_forces(grid: &Grid, carried: f64) -> Friction<'static> {
+    let prescribed = [-0.573, -0.327].map(|part| Prescribed::Force(part * carried));
+    Friction { prescribed, ..rolling(grid) }
 }

@@ -1,14 +1,15 @@
-//! The shift of a wheel on a rail, against what CONTACT printed (data/friction/README.md).
+//! The shift and the steady rolling of a wheel on a rail, against what CONTACT printed (data/friction/README.md).
 
-use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Scene};
 use contact_normal::solver::{solve, Options, Report, Stop};
 
-use super::wheel_on_rail::{shift, surface};
+use super::wheel_on_rail::{rolling, rolling_with_forces, shift, surface};
 
-fn solved(k: usize, tolerance: f64) -> Report {
+fn solved(k: usize, tolerance: f64, friction: impl Fn(&Grid) -> Friction<'static>) -> Report {
     let (grid, h) = surface(k);
     let steel = Bodies::same(82000.0, 0.28);
-    let scene = Scene { friction: Some(shift(&grid)), ..Scene::new(grid, &h, steel, Load::Approach(0.02084)) };
+    let scene = Scene { friction: Some(friction(&grid)), ..Scene::new(grid, &h, steel, Load::Approach(0.02084)) };
     let (_, stop, report) = solve(&scene, &Options { tolerance, ..Options::default() }).unwrap();
     assert_eq!(stop, Stop::Converged);
     report
@@ -21,7 +22,7 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
         (2, 12902, 7243, [-0.2197644, 0.1581319]),
         (4, 50796, 28260, [-0.2197680, 0.1581256]),
     ] {
-        let report = solved(k, 1e-7);
+        let report = solved(k, 1e-7, shift);
         let found = report.friction.unwrap();
         assert_eq!(report.measures.contact_count, in_contact);
         assert_eq!(found.certificate.stick_count + found.certificate.slip_count, in_contact);
@@ -30,6 +31,42 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
             let part = found / (0.3 * report.measures.force);
             // The digits printed, and what a residual of 1e-7 hides.
             assert!((part - force).abs() <= 2e-7, "{part} {force}");
+        }
+    }
+}
+
+#[test]
+fn steady_rolling_of_a_wheel_is_that_of_contact() {
+    for (k, slips, force) in
+        [(1, 1872, [-0.5729502, -0.3269461]), (2, 7735, [-0.5714346, -0.3258107]), (4, 30181, [-0.5709366, -0.3254764])]
+    {
+        let report = solved(k, 1e-9, rolling);
+        let found = report.friction.unwrap();
+        assert_eq!(found.certificate.slip_count, slips);
+        for (found, force) in found.force.iter().zip(force) {
+            let part = found / (0.3 * report.measures.force);
+            // Half of the last digit printed, and what a residual of 1e-9 hides.
+            assert!((part - force).abs() <= 5.1e-8, "{part} {force}");
+        }
+    }
+}
+
+#[test]
+fn creepages_of_a_wheel_with_forces_are_those_of_contact() {
+    for (k, slips, xi, eta) in
+        [(1, 1872, 5.000884e-4, 8.310e-8), (2, 7757, 5.027396e-4, 1.92857e-6), (4, 30263, 5.0361e-4, f64::NAN)]
+    {
+        // The normal force is that of the approach.
+        let carried = 0.3 * solved(k, 1e-9, rolling).measures.force;
+        let report = solved(k, 1e-7, |grid| rolling_with_forces(grid, carried));
+        let found = report.friction.unwrap();
+        assert_eq!(found.certificate.slip_count, slips);
+        let printed = if eta.is_nan() { 5e-9 } else { 5e-11 };
+        // The digits printed, and what a residual of 1e-7 hides of creepages of this size.
+        assert!((found.creepage[0] - xi).abs() <= printed + 1e-10, "{:?}", found.creepage);
+        assert!(eta.is_nan() || (found.creepage[1] - eta).abs() <= printed + 1e-10, "{:?}", found.creepage);
+        for (found, part) in found.force.iter().zip([-0.573, -0.327]) {
+            assert!((found / carried - part).abs() <= 1e-7, "{found}");
         }
     }
 }

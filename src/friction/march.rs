@@ -1,0 +1,103 @@
+//! Steady rolling: what one step of rolling does to tractions, undone element by element from the leading edge.
+//!
+//! A step of length dq in the direction chi displaces by `(bx, by)` elements, and the operator is a product,
+//!
+//! ```text
+//! B = A d,    (d q)(x) = q(x) - q(x + dq)        dq = (dq cos chi, dq sin chi)
+//! ```
+//!
+//! `d x = v` is solved from the leading edge on, where x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly.
+//! What slips passes on what a layer of compliance D leaves of it (see [`Tangent`]):
+//!
+//! ```text
+//! stick: x_i = x(ahead of i) + v_i
+//! slip:  x_i = t t.(E_i x(ahead of i) + v_i)
+//! ```
+
+use super::problem::{plus, Problem};
+use super::tangent::Tangent;
+use super::Vector;
+use crate::grid::Grid;
+
+/// How far a step of rolling goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rolling {
+    /// dq, a length.
+    pub distance: f64,
+    /// `(dq cos chi/dx, dq sin chi/dy)`.
+    pub by: (f64, f64),
+}
+
+/// The neighbours ahead of an element, with their weights, and the element's own.
+#[derive(Clone, Debug)]
+pub struct March {
+    by: (f64, f64),
+    ahead: Vec<(isize, isize, f64)>,
+    own: f64,
+}
+
+impl Rolling {
+    /// On a coarser grid a step of as many elements, of one at least: the slip per length depends little on the step.
+    pub fn on(&self, fine: &Grid, coarse: &Grid) -> Rolling {
+        let (is_along_x, length) = (self.by.0.abs() >= self.by.1.abs(), self.by.0.abs().max(self.by.1.abs()));
+        let factor = if is_along_x { coarse.dx / fine.dx } else { coarse.dy / fine.dy } / length.min(1.0);
+        let by = (self.by.0 * factor * fine.dx / coarse.dx, self.by.1 * factor * fine.dy / coarse.dy);
+        Rolling { distance: self.distance * factor, by }
+    }
+}
+
+impl March {
+    /// Of steps.
+    pub fn new(rolling: &Rolling) -> March {
+        let (x, y) = (rolling.by.0.floor(), rolling.by.1.floor());
+        let (in_x, in_y) = (rolling.by.0 - x, rolling.by.1 - y);
+        let mut march = March { by: rolling.by, ahead: Vec::new(), own: 0.0 };
+        for (row, of_row) in [(y, 1.0 - in_y), (y + 1.0, in_y)] {
+            for (column, of_column) in [(x, 1.0 - in_x), (x + 1.0, in_x)] {
+                let weight = of_row * of_column;
+                match (column as isize, row as isize) {
+                    (0, 0) => march.own = weight,
+                    (column, row) if weight > 0.0 => march.ahead.push((column, row, weight)),
+                    _ => (),
+                }
+            }
+        }
+        march
+    }
+
+    /// Axx and Ayy ahead of a loaded element, interpolated from `at(x, y)`.
+    pub fn ahead_of(&self, at: impl Fn(f64, f64) -> [f64; 3]) -> Vector {
+        let own = at(0.0, 0.0);
+        self.ahead.iter().fold([self.own * own[0], self.own * own[1]], |sum, &(x, y, weight)| {
+            let [xx, yy, _] = at(x as f64, y as f64);
+            plus(sum, weight, [xx, yy])
+        })
+    }
+
+    /// Solves for x; `x` holds v on entry. `mixing(i)` is E.
+    pub fn solve(&self, problem: &Problem, tangent: &Tangent, mixing: impl Fn(usize) -> f64, x: &mut [Vector]) {
+        let Grid { mx, my, .. } = problem.grid;
+        let factor = 1.0 / (1.0 - self.own);
+        let place = |k: usize, m: usize, towards: f64| if towards > 0.0 { m - 1 - k } else { k };
+        for row in 0..my {
+            let iy = place(row, my, self.by.1);
+            for column in 0..mx {
+                let ix = place(column, mx, self.by.0);
+                let i = iy * mx + ix;
+                if !(problem.bound[i] > 0.0) {
+                    x[i] = [0.0; 2];
+                    continue;
+                }
+                let mut ahead = [0.0; 2];
+                for &(in_x, in_y, weight) in &self.ahead {
+                    let (jx, jy) = (ix.wrapping_add_signed(in_x), iy.wrapping_add_signed(in_y));
+                    if jx < mx && jy < my {
+                        ahead = plus(ahead, weight, x[jy * mx + jx]);
+                    }
+                }
+                let sum = plus(x[i], mixing(i), ahead);
+                x[i] = tangent.project(i, [factor * sum[0], factor * sum[1]]);
+            }
+        }
+    }
+}
