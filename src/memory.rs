@@ -70,8 +70,8 @@ pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: 
     allocate(v, n, what)
 }
 
-/// The same from the system, for values that are not kept.
-pub(crate) fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
+/// The same from the system.
+fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     v.try_reserve_exact(n - v.len()).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
     ask_for_huge_pages(v.as_mut_ptr().cast(), v.capacity() * size_of::<A>());
     Ok(())
@@ -141,15 +141,23 @@ fn ask_for_huge_pages(block: *mut libc::c_void, bytes: usize) {
 #[cfg(not(target_os = "linux"))]
 fn ask_for_huge_pages(_: *mut libc::c_void, _: usize) {}
 
-/// Values that are computed.
-pub(crate) fn collected<A: Copy + Send + 'static>(
+/// Values that are computed, of any type: their memory is not kept.
+pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
+    let mut collected = Vec::new();
+    allocate(&mut collected, values.len(), what)?;
+    collected.extend(values);
+    Ok(collected)
+}
+
+/// An array that is computed.
+pub(crate) fn computed<A: Copy + Send + 'static>(
     values: impl ExactSizeIterator<Item = A>,
     what: &str,
 ) -> Result<Vec<A>> {
-    let mut collected = Vec::new();
-    reserve(&mut collected, values.len(), what)?;
-    collected.extend(values);
-    Ok(collected)
+    let mut computed = Vec::new();
+    reserve(&mut computed, values.len(), what)?;
+    computed.extend(values);
+    Ok(computed)
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::structs::{self, Versioned};
-use crate::memory::allocate;
+use crate::memory::collected;
 use crate::solver::{Options, Solver};
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
@@ -133,9 +133,7 @@ impl Batch {
                 let fields = fields.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "fields"))?;
                 Outputs::of(fields, report)
             };
-            let mut outputs = Vec::new();
-            allocate(&mut outputs, count, "the outputs of a batch")?;
-            outputs.extend((0..count).map(outputs_of));
+            let outputs = collected((0..count).map(outputs_of), "the outputs of a batch")?;
             Ok(Batch { scenes, outputs, statuses })
         }
     }

@@ -64,17 +64,23 @@ struct Shape {
     near_x: usize,
 }
 
+/// A shape that was computed, and of which element.
+struct Computed {
+    element: (f64, f64),
+    shape: Arc<Shape>,
+}
+
 thread_local! {
-    /// The last one that was computed, and of which element: as long as many passes over a small grid, and most hosts have one element.
-    static LAST: RefCell<Option<((f64, f64), Arc<Shape>)>> = const { RefCell::new(None) };
+    /// The last one: it takes as long as all else that is set up for a small grid, and most programs have one element.
+    static LAST: RefCell<Option<Computed>> = const { RefCell::new(None) };
 }
 
 impl Shape {
-    /// That of an element, once computed.
+    /// That of an element, computed once.
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
         LAST.with_borrow_mut(|last| match last {
-            Some((element, shape)) if *element == (dx, dy) => shape.clone(),
-            _ => last.insert(((dx, dy), Arc::new(Shape::new(dx, dy)))).1.clone(),
+            Some(last) if last.element == (dx, dy) => last.shape.clone(),
+            _ => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
         })
     }
 

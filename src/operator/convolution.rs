@@ -16,7 +16,7 @@ use super::rows::{Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::{collected, keep, unwritten};
+use crate::memory::{computed, keep, unwritten};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -106,10 +106,10 @@ impl<T: Real> Convolution<T> {
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|from| convert(*from)), SPECTRUM)?),
+            Spectrum::Even(from) => Spectrum::Even(computed(from.iter().map(|from| convert(*from)), SPECTRUM)?),
             Spectrum::General(from) => {
                 let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
-                Spectrum::General(collected(from.iter().map(convert), SPECTRUM)?)
+                Spectrum::General(computed(from.iter().map(convert), SPECTRUM)?)
             }
         };
         Ok(Convolution { columns: ColumnTransform::new(self.columns.length()), spectrum })

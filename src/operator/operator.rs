@@ -18,7 +18,7 @@ use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Patches};
-use crate::memory::{collected, keep, reserve, unwritten, zeros};
+use crate::memory::{computed, keep, reserve, unwritten, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -184,7 +184,7 @@ impl<T: Real> Operator<T> {
 
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
-        let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
+        let diagonal = computed(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         Ok(Operator {
             rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {

@@ -15,7 +15,7 @@ use super::fft::{Complex, Real, RowTransform};
 use super::rows::{Product, Rows};
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
-use crate::memory::{collected, keep, zeros};
+use crate::memory::{computed, keep, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -73,7 +73,7 @@ impl<T: Real> PerRow<T> {
 
     /// The same in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
-        let values = collected(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
+        let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
         Ok(PerRow { my: self.my, planes: self.planes, values })
     }
 
