@@ -131,7 +131,7 @@ impl Threads {
         }
     }
 
-    /// Calls `work(row, its data, scratch)` on each row of `data`, a run of rows per piece.
+    /// Calls `work(row, its data, scratch)` on each row of `data`, a run of rows per piece; the last row may be shorter.
     pub fn for_each_row<A: Send, S: Send>(
         &self,
         data: &mut [A],
@@ -139,9 +139,9 @@ impl Threads {
         scratch: &mut [S],
         work: impl Fn(usize, &mut [A], &mut S) + Sync + Send,
     ) {
-        let rows_per_piece = (data.len() / row_length).div_ceil(scratch.len()).max(1);
+        let rows_per_piece = data.len().div_ceil(row_length).div_ceil(scratch.len()).max(1);
         self.for_each_chunk_pair((data, rows_per_piece * row_length), (scratch, 1), |k, rows, scratch| {
-            for (i, row) in rows.chunks_exact_mut(row_length).enumerate() {
+            for (i, row) in rows.chunks_mut(row_length).enumerate() {
                 work(k * rows_per_piece + i, row, &mut scratch[0]);
             }
         });

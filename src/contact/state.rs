@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::{keep, reserve};
 use crate::operator::zeros;
 use crate::scene::Load;
 
@@ -179,6 +179,13 @@ impl State {
     }
 }
 
+impl Drop for State {
+    fn drop(&mut self) {
+        keep([&mut self.h, &mut self.p, &mut self.u]);
+        keep([&mut self.contact, &mut self.at_limit]);
+    }
+}
+
 /// The least of all distances; infinite if there is no surface.
 pub fn lowest(h: &[f64]) -> f64 {
     // Several at a time: that the compiler can vectorise.
@@ -231,5 +238,12 @@ impl Snapshot {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.p.len() * (size_of::<f64>() + size_of::<bool>())
+    }
+}
+
+impl Drop for Snapshot {
+    fn drop(&mut self) {
+        keep([&mut self.p]);
+        keep([&mut self.contact, &mut self.at_limit]);
     }
 }

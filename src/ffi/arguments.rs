@@ -39,6 +39,7 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
 }
 
 /// Memory of the caller's.
+#[derive(Clone, Copy)]
 struct Region {
     start: usize,
     end: usize,

@@ -16,6 +16,7 @@
 //! * between them the integral is exact in one direction, `asinh(X+/|y|) - asinh(X-/|y|)` written as one logarithm of
 //!   positive terms, and by Gauss-Legendre in the other, where `y = 0` is at least three half-widths away.
 
+use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -63,7 +64,26 @@ struct Shape {
     near_x: usize,
 }
 
+/// A shape that was computed, and of which element.
+struct Computed {
+    element: (f64, f64),
+    shape: Arc<Shape>,
+}
+
+thread_local! {
+    /// The last one: it takes as long as all else that is set up for a small grid, and most programs have one element.
+    static LAST: RefCell<Option<Computed>> = const { RefCell::new(None) };
+}
+
 impl Shape {
+    /// That of an element, computed once.
+    fn of(dx: f64, dy: f64) -> Arc<Shape> {
+        LAST.with_borrow_mut(|last| match last {
+            Some(last) if last.element == (dx, dy) => last.shape.clone(),
+            _ => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
+        })
+    }
+
     fn new(dx: f64, dy: f64) -> Shape {
         let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
         // Of a needle of an element there are more than can be counted.
@@ -82,13 +102,13 @@ impl Shape {
 impl HalfSpace {
     /// Coefficients for elements `dx` by `dy`; `compliance` is `1/E* = sum of (1 - nu)/(2 G)` over the bodies.
     pub fn new(dx: f64, dy: f64, compliance: f64) -> HalfSpace {
-        HalfSpace { dx, dy, compliance: compliance / PI, shape: Arc::new(Shape::new(dx, dy)) }
+        HalfSpace { dx, dy, compliance: compliance / PI, shape: Shape::of(dx, dy) }
     }
 
     /// The same bodies, another element size.
     pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
         let same_shape = dx / self.dx == dy / self.dy;
-        let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
+        let shape = if same_shape { self.shape.clone() } else { Shape::of(dx, dy) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 

@@ -7,6 +7,7 @@
 //! Per block of eight columns: gather, transform, multiply, transform back, scatter. Even coefficients have a real, even spectrum: a
 //! quarter of it is kept. Two columns of it share one complex transform, one as its real and one as its imaginary part.
 
+use std::mem::take;
 use std::ops::Range;
 
 use super::columns::for_each_block;
@@ -15,19 +16,31 @@ use super::rows::{Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::{collected, reserve};
+use crate::memory::{computed, keep, unwritten};
 use crate::threads::Threads;
 
 /// What memory is for.
 const COEFFICIENTS: &str = "the influence coefficients";
 const SPECTRUM: &str = "the operator's spectrum";
 
+/// Pairs of columns that are gathered at a time in a set-up: eight double precision numbers are a cache line.
+const PAIRS: usize = 4;
+
 /// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
-enum Spectrum<T> {
+enum Spectrum<T: Real> {
     /// Even coefficients: real, `py/2 + 1` values a column.
     Even(Vec<T>),
     /// General coefficients: `py` complex values a column.
     General(Vec<Complex<T>>),
+}
+
+impl<T: Real> Drop for Spectrum<T> {
+    fn drop(&mut self) {
+        match self {
+            Spectrum::Even(values) => keep([values]),
+            Spectrum::General(values) => keep([values]),
+        }
+    }
 }
 
 /// Transforms in y, and the spectrum.
@@ -54,6 +67,13 @@ pub struct SetUp {
     pieces: Vec<Piece>,
 }
 
+impl Drop for SetUp {
+    fn drop(&mut self) {
+        keep([&mut self.real]);
+        keep([&mut self.complex]);
+    }
+}
+
 /// That of one piece of the work.
 #[derive(Default)]
 struct Piece {
@@ -69,19 +89,11 @@ impl Piece {
         pieces.resize_with(threads.pieces(), Piece::default);
         for piece in pieces {
             piece.row.resize(rows.length(), 0.0);
-            piece.column.resize(rows.bins().max(columns.length()), Complex::default());
+            piece.column.resize(rows.bins().max(PAIRS * columns.length()), Complex::default());
             rows.fit(&mut piece.rows);
             columns.fit(&mut piece.columns);
         }
     }
-}
-
-/// Makes room for n values, which keep what they hold.
-fn resize<A: Clone + Default>(values: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
-    values.truncate(n);
-    reserve(values, n, what)?;
-    values.resize(n, A::default());
-    Ok(())
 }
 
 impl<T: Real> Convolution<T> {
@@ -94,10 +106,10 @@ impl<T: Real> Convolution<T> {
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|from| convert(*from)), SPECTRUM)?),
+            Spectrum::Even(from) => Spectrum::Even(computed(from.iter().map(|from| convert(*from)), SPECTRUM)?),
             Spectrum::General(from) => {
                 let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
-                Spectrum::General(collected(from.iter().map(convert), SPECTRUM)?)
+                Spectrum::General(computed(from.iter().map(convert), SPECTRUM)?)
             }
         };
         Ok(Convolution { columns: ColumnTransform::new(self.columns.length()), spectrum })
@@ -161,7 +173,7 @@ impl<T: Real> Convolution<T> {
         let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
         let nb = rows.bins();
         let SetUp { real: in_x, pieces, .. } = set_up;
-        resize(in_x, rows_given * nb, COEFFICIENTS)?;
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS)?;
         Piece::suit(pieces, threads, &rows, &columns);
         threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row;
@@ -174,27 +186,34 @@ impl<T: Real> Convolution<T> {
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
         let half = py / 2 + 1;
-        let mut spectrum = match std::mem::replace(&mut self.spectrum, Spectrum::Even(Vec::new())) {
-            Spectrum::Even(spectrum) => spectrum,
+        let mut spectrum = match &mut self.spectrum {
+            Spectrum::Even(spectrum) => take(spectrum),
             Spectrum::General(_) => Vec::new(),
         };
-        resize(&mut spectrum, (nb + nb % 2) * half, SPECTRUM)?;
+        unwritten(&mut spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
         let scale = 1.0 / (px as f64 * py as f64);
-        threads.for_each_row(&mut spectrum, 2 * half, pieces, |pair, out, piece| {
-            let column = &mut piece.column[..py];
-            let second = (2 * pair + 1).min(nb - 1);
-            column.fill(Complex::default());
+        threads.for_each_row(&mut spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
+            let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
+            let block = &mut piece.column[..pairs * py];
+            block.fill(Complex::default());
             for ky in 0..rows_given {
-                let value = Complex::new(in_x[ky * nb + 2 * pair], in_x[ky * nb + second]);
-                column[ky] = value;
-                if ky > 0 {
-                    column[py - ky] = value;
+                let row = &in_x[ky * nb..(ky + 1) * nb];
+                for (pair, column) in block.chunks_exact_mut(py).enumerate() {
+                    let bin = 2 * (first + pair);
+                    let value = Complex::new(row[bin], row[(bin + 1).min(nb - 1)]);
+                    column[ky] = value;
+                    if ky > 0 {
+                        column[py - ky] = value;
+                    }
                 }
             }
-            columns.forward(column, &mut piece.columns);
-            for (ky, bin) in column[..half].iter().enumerate() {
-                out[ky] = T::of(scale * (even.finish)(bin.re));
-                out[half + ky] = T::of(scale * (even.finish)(bin.im));
+            columns.forward(block, &mut piece.columns);
+            for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
+                let (re, im) = out.split_at_mut(half);
+                for ((bin, re), im) in column.iter().zip(re).zip(im) {
+                    *re = T::of(scale * (even.finish)(bin.re));
+                    *im = T::of(scale * (even.finish)(bin.im));
+                }
             }
         });
         self.spectrum = Spectrum::Even(spectrum);
@@ -207,7 +226,7 @@ impl<T: Real> Convolution<T> {
         let half = py / 2 + 1;
         let scale = 1.0 / (px as f64 * py as f64);
         let mut spectrum = Vec::new();
-        resize(&mut spectrum, (nb + nb % 2) * half, SPECTRUM)?;
+        unwritten(&mut spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
         for (i, out) in spectrum[..nb * half].iter_mut().enumerate() {
             *out = T::of(scale * value(i / half, i % half));
         }
@@ -229,7 +248,7 @@ impl<T: Real> Convolution<T> {
         let nb = rows.bins();
         let (mx, my) = (grid.mx, grid.my);
         let SetUp { complex: in_x, pieces, .. } = set_up;
-        resize(in_x, (2 * my - 1) * nb, COEFFICIENTS)?;
+        unwritten(in_x, (2 * my - 1) * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
         Piece::suit(pieces, threads, &rows, &columns);
         threads.for_each_row(in_x, nb, pieces, |i, out, piece| {
             let row = &mut piece.row;
@@ -239,11 +258,11 @@ impl<T: Real> Convolution<T> {
             coefficients.fill_row(1 - mx as i64, ky, &mut row[px - (mx - 1)..]);
             rows.forward(row, out, &mut piece.rows);
         });
-        let mut spectrum = match std::mem::replace(&mut self.spectrum, Spectrum::Even(Vec::new())) {
-            Spectrum::General(spectrum) => spectrum,
+        let mut spectrum = match &mut self.spectrum {
+            Spectrum::General(spectrum) => take(spectrum),
             Spectrum::Even(_) => Vec::new(),
         };
-        resize(&mut spectrum, nb * py, SPECTRUM)?;
+        unwritten(&mut spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
         let scale = factor / (px as f64 * py as f64);
         threads.for_each_row(&mut spectrum, py, pieces, |kx, out, piece| {
             let column = &mut piece.column[..py];

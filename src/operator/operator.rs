@@ -7,6 +7,7 @@
 //! The product is fused and pruned: transforms in x of those rows only that hold pressures ([`Rows`]); in y a [`Convolution`], or where
 //! A is Toeplitz in x only a product by matrices ([`PerRow`]); transforms back in x, to which a diagonal is added.
 
+use std::mem::take;
 use std::ops::Range;
 
 use super::columns::BLOCK;
@@ -17,7 +18,7 @@ use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Patches};
-use crate::memory::{collected, reserve, zeros};
+use crate::memory::{computed, keep, reserve, unwritten, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -51,14 +52,14 @@ pub struct Workspace<T: Real> {
 impl<T: Real> Workspace<T> {
     /// Makes room for products by another operator too. A smaller grid may need more of something: its transforms may be
     /// of another kind.
-    pub fn cover(&mut self, other: Workspace<T>) {
+    pub fn cover(&mut self, mut other: Workspace<T>) {
         fn longer<A>(mine: &mut Vec<A>, other: Vec<A>) {
             if other.len() > mine.len() {
                 *mine = other;
             }
         }
-        longer(&mut self.product.bins, other.product.bins);
-        for (mine, other) in self.product.pieces.iter_mut().zip(other.product.pieces) {
+        longer(&mut self.product.bins, take(&mut other.product.bins));
+        for (mine, other) in self.product.pieces.iter_mut().zip(take(&mut other.product.pieces)) {
             longer(&mut mine.row, other.row);
             longer(&mut mine.columns, other.columns);
             longer(&mut mine.scratch, other.scratch);
@@ -68,6 +69,14 @@ impl<T: Real> Workspace<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.product.bins[..]) + 3 * size_of_val(&self.given[..])
+    }
+}
+
+impl<T: Real> Drop for Workspace<T> {
+    fn drop(&mut self) {
+        keep([&mut self.product.bins]);
+        let [scaled, product] = &mut self.masked;
+        keep([scaled, product, &mut self.given]);
     }
 }
 
@@ -175,7 +184,7 @@ impl<T: Real> Operator<T> {
 
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
-        let diagonal = collected(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
+        let diagonal = computed(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         Ok(Operator {
             rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
@@ -204,7 +213,9 @@ impl<T: Real> Operator<T> {
         };
         let masked = self.coupling.as_ref().map_or(0, |_| self.rows.mx * self.rows.my);
         let memory = |n| zeros(n, "the product's workspace");
-        let bins = zeros(self.rows.my * transform.bins(), "the product's workspace")?;
+        let mut bins = Vec::new();
+        let nan = Complex::new(T::nan(), T::nan());
+        unwritten(&mut bins, self.rows.my * transform.bins(), nan, "the product's workspace")?;
         Ok(Workspace {
             product: Product { bins, pieces: (0..self.rows.threads.pieces()).map(piece).collect() },
             masked: [memory(masked)?, memory(masked)?],

@@ -15,14 +15,14 @@ use super::fft::{Complex, Real, RowTransform};
 use super::rows::{Product, Rows};
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
-use crate::memory::{collected, zeros};
+use crate::memory::{computed, keep, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
 const MATRICES: &str = "the row tables' transforms";
 
 /// The matrices, with the normalisation `1/px` folded in.
-pub(super) struct PerRow<T> {
+pub(super) struct PerRow<T: Real> {
     my: usize,
     /// 1: real, 2: and imaginary.
     planes: usize,
@@ -73,7 +73,7 @@ impl<T: Real> PerRow<T> {
 
     /// The same in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
-        let values = collected(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
+        let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
         Ok(PerRow { my: self.my, planes: self.planes, values })
     }
 
@@ -112,6 +112,12 @@ impl<T: Real> PerRow<T> {
         for ((value, re), im) in column.iter_mut().zip(&*re).zip(&*im) {
             *value = Complex::new(*re, *im);
         }
+    }
+}
+
+impl<T: Real> Drop for PerRow<T> {
+    fn drop(&mut self) {
+        keep([&mut self.values]);
     }
 }
 

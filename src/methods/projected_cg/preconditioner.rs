@@ -10,7 +10,7 @@
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::collected;
+use crate::memory::computed;
 use crate::operator::fft::Real;
 use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
@@ -45,7 +45,7 @@ impl<T: Real> Preconditioner<T> {
             let Some(inverse) = Operator::scaled_inverse(&influence, factor, grid, period, threads)? else {
                 return Ok(None);
             };
-            parts.push(Part { inverse, weights: collected(weights.into_iter().map(T::of), "the preconditioner")? });
+            parts.push(Part { inverse, weights: computed(weights.into_iter().map(T::of), "the preconditioner")? });
         }
         let mixed = if parts[0].weights.is_empty() { 0 } else { grid.len() };
         let memory = || zeros(mixed, "the preconditioner");

@@ -7,6 +7,7 @@
 
 use crate::contact::{Freshness, State};
 use crate::error::Result;
+use crate::memory::keep;
 use crate::operator::zeros;
 use crate::scene::Load;
 
@@ -72,5 +73,11 @@ impl Predictor {
             }
         }
         Ok(displacement)
+    }
+}
+
+impl Drop for Predictor {
+    fn drop(&mut self) {
+        keep([&mut self.p, &mut self.u]);
     }
 }

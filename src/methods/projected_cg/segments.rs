@@ -4,11 +4,12 @@
 //! Sums are taken per block of rows and added in the order of the blocks, which do not depend on the number of threads: nor do the
 //! bits of the sums.
 
+use std::mem::take;
 use std::ops::Range;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::operator::reserve;
+use crate::memory::{keep, reserve};
 use crate::threads::Threads;
 
 /// Blocks of rows at most.
@@ -89,7 +90,7 @@ impl Segments {
         for (b, block) in contact.chunks(self.block).enumerate() {
             let first = self.runs.len();
             self.first[b] = first as u32;
-            if std::mem::take(&mut self.changed[b]) {
+            if take(&mut self.changed[b]) {
                 for (iy, row) in block.chunks_exact(self.mx).enumerate() {
                     find_in_row(row, (b * self.block + iy * self.mx) as u32, &mut self.runs);
                 }
@@ -145,6 +146,12 @@ impl Segments {
             total.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
         }
         total
+    }
+}
+
+impl Drop for Segments {
+    fn drop(&mut self) {
+        keep([&mut self.runs, &mut self.runs_before]);
     }
 }
 

@@ -6,6 +6,7 @@ use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::keep;
 use crate::operator::fft::Real;
 use crate::operator::{reserve, zeros, Operator, Workspace};
 use crate::progress::Goal;
@@ -101,5 +102,13 @@ impl<T: Real> Iteration<T> {
         for (u, q) in state.u.iter_mut().zip(&self.q) {
             *u = q.to_double();
         }
+    }
+}
+
+impl<T: Real> Drop for Iteration<T> {
+    fn drop(&mut self) {
+        keep([&mut self.t, &mut self.q, &mut self.z]);
+        keep([&mut self.debts]);
+        keep([&mut self.limits.known]);
     }
 }
