@@ -43,11 +43,21 @@ impl Coating {
         Coating { layers: [Some(CoatingLayer { thickness, shear_modulus, poisson_ratio }), None] }
     }
 
-    /// One body with its coating, if that is one: not of no thickness, and not of the substrate's material.
+    /// The coating of a body, if that is one: not of no thickness, and not of the substrate's material.
+    pub fn in_effect(&self, b: usize, scene: &Plain<'_>) -> Option<CoatingLayer> {
+        let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
+        let is_none = |layer: &CoatingLayer| {
+            layer.thickness <= NOTHING * f64::min(scene.grid.dx, scene.grid.dy)
+                || (layer.shear_modulus == modulus && layer.poisson_ratio == ratio)
+        };
+        self.layers[b].filter(|layer| !is_none(layer))
+    }
+
+    /// One body with its coating.
     fn body(&self, b: usize, scene: &Plain<'_>) -> Result<CoatedBody> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
         let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
-        let Some(layer) = self.layers[b] else { return Ok(plain) };
+        let Some(layer) = self.in_effect(b, scene) else { return Ok(plain) };
         let CoatingLayer { thickness, shear_modulus, poisson_ratio } = layer;
         let mu = shear_modulus / modulus;
         if !(mu >= RATIOS.0 && mu <= RATIOS.1) {
@@ -55,10 +65,6 @@ impl Coating {
                 "{} is {shear_modulus}, that of the body {modulus}; their ratio must lie in {:e}..{:e}",
                 NAMES[b][1], RATIOS.0, RATIOS.1
             ));
-        }
-        let is_none = thickness <= NOTHING * f64::min(scene.grid.dx, scene.grid.dy);
-        if is_none || (shear_modulus == modulus && poisson_ratio == ratio) {
-            return Ok(plain);
         }
         let compliance = (1.0 - poisson_ratio) / (2.0 * PI * shear_modulus);
         Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })

@@ -169,7 +169,9 @@ impl Load {
                 1 | 2 => scene.bodies.poisson_ratio[self.body as usize - 1],
                 other => return Err(Refusal::invalid(format!("body is {other}; it must be 1 or 2"))),
             };
-            let coated = scene.coating.is_some_and(|coating| coating.layers[self.body as usize - 1].is_some());
+            let plain = scene.plain();
+            let coated =
+                scene.coating.is_some_and(|coating| coating.in_effect(self.body as usize - 1, &plain).is_some());
             let refused = [
                 ("coating", coated),
                 ("influence", scene.influence.is_some()),

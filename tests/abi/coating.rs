@@ -38,19 +38,24 @@ fn a_coating_is_refused_by_name() {
 fn pairs_that_are_not_solved_are_refused_by_name() {
     let layer = coating(0.1, 1e3, 0.3);
     type Spoil = fn(&mut Call);
-    let spoils: [(Spoil, &str); 3] = [
+    let spoils: [(Spoil, &str); 5] = [
         (|c| _ = c.use_table(), "influence"),
         (|c| _ = c.use_row_tables(), "row_tables"),
         (|c| c.use_period(1, 0), "a period in one direction"),
+        // Of bodies that stay alike, and of bodies that become unlike by the coating of one.
+        (|c| (_ = c.use_friction(), c.scene.known.coating[1] = c.scene.known.coating[0]).1, "friction"),
+        (|c| _ = c.use_friction(), "friction"),
     ];
     for (spoil, words) in spoils {
         let mut call = Call::new();
-        spoil(&mut call);
         call.scene.known.coating[0] = &layer;
         call.scene.known.shear_modulus = [2e3; 2];
+        spoil(&mut call);
+        let before = call.outputs();
         let (got, message) = call.run(Through::Solve, null_mut());
         assert!(got == CONTACT_NORMAL_UNSUPPORTED && message.contains(words), "{got} {message}");
         assert!(message.contains("coating"), "{message}");
+        assert!(call.outputs() == before, "{words}: refused, but written");
     }
 }
 

@@ -181,7 +181,67 @@ fn refusals_name_the_argument_and_write_nothing() {
 }
 
 #[test]
-fn null_pointers_are_refused_and_tables_are_not_half_spaces() {
+fn bodies_that_are_no_half_spaces_are_refused_by_name() {
+    let table = vec![1.0; 4 * N * N];
+    let mut influence = initialised(contact_normal_influence_init);
+    (influence.cx, influence.cy, influence.coefficients) = (MX as i32, 3, table.as_ptr());
+    let mut row_tables = initialised(contact_normal_row_tables_init);
+    (row_tables.cx, row_tables.rows, row_tables.coefficients) = (MX as i32, 3, table.as_ptr());
+    let periods = [(1, 0), (0, 1), (1, 1)].map(|(x, y)| contact_normal_period {
+        x,
+        y,
+        ..initialised(contact_normal_period_init)
+    });
+    let layer = |thickness, shear_modulus| {
+        let of = initialised(contact_normal_coating_init);
+        contact_normal_coating { thickness, shear_modulus, poisson_ratio: 0.3, ..of }
+    };
+    let (coating, none, same) = (layer(0.1, 2.0), layer(0.0, 2.0), layer(0.1, 1.0));
+    let points = [0.25, 0.25, 1.0];
+    let ask = |change: &dyn Fn(&mut contact_normal_scene)| {
+        let mut call = Call::new();
+        call.scene.shear_modulus = [1.0; 2];
+        change(&mut call.scene);
+        let found = call.run();
+        assert!(found.0 == CONTACT_NORMAL_OK || call.written() == 0, "{}", found.1);
+        let (p, mut stress) = (call.pressure.as_ptr(), [SENTINEL; 6]);
+        // SAFETY: arrays as long as the call says.
+        let status = unsafe {
+            let (points, to) = (points.as_ptr(), stress.as_mut_ptr());
+            contact_normal_stress_at_points(&call.scene, 1, p, null(), null(), points, 1, null(), to)
+        };
+        let at_points = (status, last_error(status));
+        assert!(status == CONTACT_NORMAL_OK || stress == [SENTINEL; 6]);
+        (found, at_points)
+    };
+    type Change<'a> = &'a dyn Fn(&mut contact_normal_scene);
+    let refused: [(Change<'_>, &str); 5] = [
+        (&|scene| scene.influence = &influence, "influence"),
+        (&|scene| scene.row_tables = &row_tables, "row_tables"),
+        (&|scene| scene.period = &periods[0], "period"),
+        (&|scene| scene.period = &periods[1], "period"),
+        (&|scene| scene.coating[0] = &coating, "coating"),
+    ];
+    for (change, name) in refused {
+        let (on_grid, at_points) = ask(change);
+        for (status, message) in [on_grid, at_points] {
+            assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains(name), "{name}: {status} {message}");
+        }
+    }
+    // Two periods are solved on the grid. A layer of no thickness, or of the material below, is none; the other body may have one.
+    let (on_grid, (status, message)) = ask(&|scene| scene.period = &periods[2]);
+    assert_eq!(on_grid.0, CONTACT_NORMAL_OK);
+    assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains("period"), "{message}");
+    let solved: [Change<'_>; 3] =
+        [&|scene| scene.coating[0] = &none, &|scene| scene.coating[0] = &same, &|scene| scene.coating[1] = &coating];
+    for change in solved {
+        let ((on_grid, message), (at_points, _)) = ask(change);
+        assert_eq!((on_grid, at_points), (CONTACT_NORMAL_OK, CONTACT_NORMAL_OK), "{message}");
+    }
+}
+
+#[test]
+fn null_pointers_are_refused() {
     let mut call = Call::new();
     let (scene, outputs, p) = (&raw const call.scene, &raw mut call.outputs, call.pressure.as_ptr());
     let ask = |scene, depths: *const f64, outputs| {
@@ -197,12 +257,6 @@ fn null_pointers_are_refused_and_tables_are_not_half_spaces() {
     ] {
         assert!(got.0 == CONTACT_NORMAL_NULL_POINTER && got.1.contains(name), "{got:?}");
     }
-    let table = vec![1.0; 4 * N];
-    let mut influence = initialised(contact_normal_influence_init);
-    (influence.cx, influence.cy, influence.coefficients) = (MX as i32, 3, table.as_ptr());
-    call.scene.influence = &influence;
-    let (status, message) = call.run();
-    assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains("influence"), "{status} {message}");
 }
 
 /// Counts what it is told, and cancels at the second depth.

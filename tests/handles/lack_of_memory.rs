@@ -1,6 +1,6 @@
 //! After a lack of memory, at whichever allocation it comes, a handle holds the result before, or none, and its next call works.
 
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use super::call::initialised;
 use super::{alone, limited_memory, Handle};
@@ -21,6 +21,8 @@ struct Ball {
     patch: Vec<i32>,
     patches: contact_normal_patches,
     limit: contact_normal_pressure_limit,
+    coating: contact_normal_coating,
+    period: contact_normal_period,
 }
 
 impl Ball {
@@ -34,6 +36,8 @@ impl Ball {
             patch: (0..N).map(|i| i32::from(i % M < M / 2)).collect(),
             patches: initialised(contact_normal_patches_init),
             limit: initialised(contact_normal_pressure_limit_init),
+            coating: initialised(contact_normal_coating_init),
+            period: initialised(contact_normal_period_init),
         });
         let scene = &mut ball.scene;
         (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 1.0 / M as f64, 1.0 / M as f64);
@@ -43,7 +47,35 @@ impl Ball {
         (ball.patches.count, ball.patches.patch) = (2, ball.patch.as_ptr());
         ball.patches.factors = FACTORS.as_ptr();
         ball.limit.limit = 0.2;
+        let coating = &mut ball.coating;
+        // Stiff, and thicker than elements are wide: near and far coefficients, means of both bases.
+        (coating.thickness, coating.shear_modulus, coating.poisson_ratio) = (0.4, 3.0, 0.2);
+        (ball.period.x, ball.period.y) = (1, 1);
         ball
+    }
+
+    /// Names one effect alone, or none.
+    fn name(&mut self, effect: &str) {
+        let (layer, patches, limit) = (&raw const self.layer, &raw const self.patches, &raw const self.limit);
+        let (coating, period) = (&raw const self.coating, &raw const self.period);
+        let scene = &mut self.scene;
+        (scene.layer, scene.patches, scene.pressure_limit) = (null(), null(), null());
+        (scene.coating, scene.period) = ([null(); 2], null());
+        match effect {
+            "none" => {}
+            "layer" => scene.layer = layer,
+            "patches" => scene.patches = patches,
+            "pressure_limit" => scene.pressure_limit = limit,
+            "coating" => scene.coating[0] = coating,
+            "coating with a period" => (scene.coating[0], scene.period) = (coating, period),
+            "period" => scene.period = period,
+            _ => panic!("{effect}"),
+        }
+        (scene.load, scene.force) = match effect.contains("period") {
+            // A prescribed approach has no mean plane to be relative to.
+            true => (CONTACT_NORMAL_PRESCRIBED_FORCE, 0.02),
+            false => (CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.0),
+        };
     }
 
     /// Solves with the handle: status and pressures.
@@ -60,7 +92,7 @@ impl Ball {
     fn new_handle(&self) -> Handle {
         let mut handle = null_mut();
         // SAFETY: structs with their arrays.
-        let status = unsafe { contact_normal_solver_new(&self.scene, std::ptr::null(), &mut handle) };
+        let status = unsafe { contact_normal_solver_new(&self.scene, null(), &mut handle) };
         assert_eq!(status, CONTACT_NORMAL_OK);
         Handle(handle)
     }
@@ -105,22 +137,39 @@ fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
 fn after_a_lack_of_memory_the_handle_works() {
     let _alone = alone();
     let mut ball = Ball::new();
-    let (layer, patches) = (&raw const ball.layer, &raw const ball.patches);
-    let limit = &raw const ball.limit;
-    for effect in ["none", "pressure_limit", "layer", "patches"] {
-        let scene = &mut ball.scene;
-        (scene.layer, scene.patches, scene.pressure_limit) = (std::ptr::null(), std::ptr::null(), std::ptr::null());
-        match effect {
-            "layer" => scene.layer = layer,
-            "patches" => scene.patches = patches,
-            "pressure_limit" => scene.pressure_limit = limit,
-            _ => {}
-        }
+    for effect in ["none", "pressure_limit", "layer", "patches", "coating"] {
+        ball.name(effect);
         let methods = if effect == "none" { &[0, 1, 2, 3][..] } else { &[0, 1] };
         for &method in methods {
             for first in [None, Some(1 - method.min(1))] {
                 fails_everywhere(&ball, first, method, &format!("{effect}, method {method} after {first:?}"));
             }
         }
+    }
+}
+
+/// A set-up that lacks memory makes no handle; the next one is as if nothing had happened.
+#[test]
+fn a_set_up_without_memory_makes_no_handle() {
+    let _alone = alone();
+    let mut ball = Ball::new();
+    for effect in ["none", "layer", "patches", "period", "coating", "coating with a period"] {
+        ball.name(effect);
+        let expected = ball.solve(&ball.new_handle(), 0);
+        assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
+        let mut failures = 0;
+        for allowed in 0.. {
+            let mut handle = null_mut();
+            // SAFETY: structs with their arrays.
+            let new = || unsafe { contact_normal_solver_new(&ball.scene, null(), &mut handle) };
+            let status = limited_memory::with(4 * N, allowed, new);
+            if status == CONTACT_NORMAL_OK {
+                assert!(ball.solve(&Handle(handle), 0) == expected, "{effect} after {failures} failures");
+                break;
+            }
+            assert_eq!((status, handle), (CONTACT_NORMAL_OUT_OF_MEMORY, null_mut()), "{effect}, {allowed} allocations");
+            failures += 1;
+        }
+        assert!(failures > 0, "{effect}: nothing was allocated");
     }
 }

@@ -78,6 +78,30 @@ fn products_are_direct_sums() {
     }
 }
 
+/// The hard grids and ratios: a long strip of elements, one element, nu = 1/2, depths from nothing to a million elements. By FFT as by
+/// the direct sum, at some of the elements.
+#[test]
+fn hard_cases_are_direct_sums() {
+    for (mx, my, dx, dy, nu) in [(4099, 7, 1.0, 1.0, 0.5), (7, 4099, 0.3, 1.0, 0.0), (1, 1, 2.0, 0.5, 0.5)] {
+        let (body, unit) = (body(mx, my, dx, dy, nu), f64::max(dx, dy));
+        let [p, qx, qy] = [1, 2, 3].map(|seed| noise(seed, mx * my));
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+        let depths = [0.0, 1e-12 * unit, 0.5 * unit, 30.0 * unit, 1e6 * unit];
+        for (depth, z) in all_depths(&body, &loads, &depths, &TENSOR, 1).iter().zip(depths) {
+            let chosen: Vec<usize> = (0..4).map(|k| k * (mx * my - 1) / 3).collect();
+            let centre = |i: usize| [((i % mx) as f64 + 0.5) * dx, ((i / mx) as f64 + 0.5) * dy, z];
+            let points: Vec<_> = chosen.iter().map(|&i| centre(i)).collect();
+            for (&i, exact) in chosen.iter().zip(at(&body, &loads, &points)) {
+                for (c, (found, exact)) in tensor(depth, i).into_iter().zip(exact).enumerate() {
+                    // Loads of 1, as above; far away kernels by Gauss points and by means differ by 1e-12 of what is left there.
+                    let error = (found - exact).abs();
+                    assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}, component {c}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn at_the_surface_stresses_are_the_loads() {
     let body = body(33, 20, 0.2, 0.3, 0.28);
