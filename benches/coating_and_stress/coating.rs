@@ -37,27 +37,41 @@ pub fn report() {
         }]);
         println!("| {mu} | {:.1} | {:.1} | {:.1} |", 1e3 * with, 1e3 * without, with / without);
     }
-    println!("\nA ball on a coated body, 256 x 256 elements, force given, tolerance 1e-6, one thread\n");
-    println!("| G1/G2 | t in elements | products | work units | ms | plain: products | work units | ms |\n|---|---:|---:|---:|---:|---:|---:|---:|");
+    solves();
+    println!();
+}
+
+/// E* of the bodies without a coating, and h = r^2/(2 R).
+const E_STAR: f64 = 1.0 / (1.0 - NU);
+const RADIUS: f64 = 1000.0;
+
+/// A coated ball beside one without a coating whose contact area is as large, as products are on windows around it.
+fn solves() {
+    println!("\nA ball on a coated body, 256 x 256 elements, force given, tolerance 1e-6, one thread; beside the plain ball of the same area\n");
+    println!(
+        "| G1/G2 | t in elements | area | products | work units | ms | plain: area | products | work units | ms |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     let m = 256;
     let place = |k: usize| k as f64 - 127.5;
-    let h: Vec<f64> = (0..m * m).map(|i| 5e-4 * (place(i % m).powi(2) + place(i / m).powi(2))).collect();
+    let h: Vec<f64> = (0..m * m).map(|i| (place(i % m).powi(2) + place(i / m).powi(2)) / (2.0 * RADIUS)).collect();
+    let report = |scene: &Scene<'_>| solve(scene, &Options::default()).unwrap().2;
     for (mu, t) in
         [(0.1, 2.0), (0.1, 20.0), (0.5, 2.0), (0.5, 20.0), (2.0, 2.0), (2.0, 20.0), (10.0, 20.0), (100.0, 20.0)]
     {
-        let (coated, plain) = (scene(m, &h, Some((mu, t))), scene(m, &h, None));
-        let report = |scene: &Scene<'_>| solve(scene, &Options::default()).unwrap().2;
-        let (one, other) = (report(&coated), report(&plain));
+        let coated = scene(m, &h, Some((mu, t)));
+        let one = report(&coated);
+        // Hertz: F = 4/3 E* a^3/R.
+        let a = (one.measures.contact_area / std::f64::consts::PI).sqrt();
+        let plain = Scene { load: Load::Force(4.0 / 3.0 * E_STAR * a.powi(3) / RADIUS), ..scene(m, &h, None) };
+        let other = report(&plain);
         let [with, without] = medians([&mut || _ = report(&coated), &mut || _ = report(&plain)]);
-        println!(
-            "| {mu} | {t} | {} | {:.1} | {:.1} | {} | {:.1} | {:.1} |",
-            one.count.matrix_products,
-            one.count.work_units,
-            1e3 * with,
-            other.count.matrix_products,
-            other.count.work_units,
-            1e3 * without
-        );
+        print!("| {mu} | {t} ");
+        for (report, seconds) in [(one, with), (other, without)] {
+            let area = report.measures.contact_area;
+            let (products, work) = (report.count.matrix_products, report.count.work_units);
+            print!("| {area} | {products} | {work:.2} | {:.1} ", 1e3 * seconds);
+        }
+        println!("|");
     }
-    println!();
 }

@@ -16,9 +16,17 @@ pub const HALO: usize = 4;
 /// Elements that a mean takes in one direction.
 pub const ROWS: usize = 2 * HALO + 1;
 
+/// From this distance on, in longer sides, the differences to the fourth do: the sixth is 2e-12 of 1/r^3.
+const FAR: f64 = 128.0;
+/// Neighbours on either side that a mean takes there.
+const FEW: usize = 2;
+
+/// `1/24, -17/5760, ..`
+const SERIES: [f64; HALO] = [1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0];
+
 /// The weights of an element and of its neighbours at distance 1 to 4, to the eighth difference.
 const MEAN: [f64; HALO + 1] = {
-    let (a, b, c, d) = (1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0);
+    let [a, b, c, d] = SERIES;
     [
         1.0 - 2.0 * a + 6.0 * b - 20.0 * c + 70.0 * d,
         a - 4.0 * b + 15.0 * c - 56.0 * d,
@@ -26,6 +34,12 @@ const MEAN: [f64; HALO + 1] = {
         c - 8.0 * d,
         d,
     ]
+};
+
+/// The same to the fourth difference.
+const FAR_MEAN: [f64; FEW + 1] = {
+    let [a, b, ..] = SERIES;
+    [1.0 - 2.0 * a + 6.0 * b, a - 4.0 * b, b]
 };
 
 /// Means along a row: `out[k]` is that of `points[k + HALO]`.
@@ -54,27 +68,54 @@ fn combine([a, b, c, d, e, f, g, h, i]: [&[f64]; ROWS], out: &mut [f64]) {
     }
 }
 
-/// Means of an even function at offsets `0.., 0..` less than `columns` and `rows`: `fill(ky, row)` gives its values at `(0.., |ky|)`;
-/// `each(ky, means)` is given the means row by row.
+/// `combine` to the fourth difference.
+fn combine_few([a, b, c, d, e]: [&[f64]; 2 * FEW + 1], out: &mut [f64]) {
+    let n = out.len();
+    let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
+    for (k, out) in out.iter_mut().enumerate() {
+        *out = FAR_MEAN[0] * c[k] + FAR_MEAN[1] * (b[k] + d[k]) + FAR_MEAN[2] * (a[k] + e[k]);
+    }
+}
+
+/// Means of an even function at offsets `0.., 0..` less than `columns` and `rows`, in the row ky from `first(ky)` on, which grows with ky:
+/// `fill(ky, from, row)` gives its values at `(from.., ky)`; `each(ky, means)` is given the means row by row. Rows are `row_distance`
+/// apart, in longer sides.
 pub fn means(
     (columns, rows): (usize, usize),
-    fill: impl Fn(usize, &mut [f64]),
+    row_distance: f64,
+    first: impl Fn(usize) -> usize,
+    fill: impl Fn(usize, usize, &mut [f64]),
     mut each: impl FnMut(usize, &[f64]),
 ) -> Result<()> {
     let what = "means over elements";
     let mut points = zeros(columns + 2 * HALO, what)?;
     let mut last = zeros(ROWS * columns, what)?;
     let mut out = zeros(columns, what)?;
+    let is_far = |ky: usize| ky as f64 * row_distance >= FAR;
     for row in 0..rows + 2 * HALO {
-        fill(row.abs_diff(HALO), &mut points[HALO..]);
-        for k in 1..=HALO {
-            points[HALO - k] = points[HALO + k];
+        let ky = row.abs_diff(HALO);
+        // What the rows around ask for, and their neighbours.
+        let start = first(ky.saturating_sub(HALO));
+        let from = start.saturating_sub(HALO);
+        fill(ky, from, &mut points[HALO + from..]);
+        if from == 0 {
+            (1..=HALO).for_each(|k| points[HALO - k] = points[HALO + k]);
         }
         let slot = row % ROWS;
-        in_x(&points, &mut last[slot * columns..(slot + 1) * columns]);
+        let of_row = &mut last[slot * columns + start..(slot + 1) * columns];
+        match is_far(ky) {
+            true => combine_few(std::array::from_fn(|k| &points[start + HALO - FEW + k..]), of_row),
+            false => in_x(&points[start..], of_row),
+        }
         if row >= 2 * HALO {
-            in_y(&last, row - HALO, &mut out);
-            each(row - 2 * HALO, &out);
+            let (ky, middle) = (row - 2 * HALO, row - HALO);
+            let start = first(ky);
+            let rows = |distance: usize, k: usize| &last[(middle - distance + k) % ROWS * columns + start..];
+            match is_far(ky) {
+                true => combine_few(std::array::from_fn(|k| rows(FEW, k)), &mut out[start..]),
+                false => combine(std::array::from_fn(|k| rows(HALO, k)), &mut out[start..]),
+            }
+            each(ky, &out);
         }
     }
     Ok(())

@@ -60,13 +60,16 @@ impl Transfer {
             return 1.0 + self.less_one_plain(s);
         }
         let Transfer { lambda, kappa, .. } = *self;
-        let th = (-2.0 * s).exp();
+        let fade = Fade::new(s);
+        let Fade { th, less } = fade;
         let n = if kappa >= 0.0 && lambda > 0.0 {
-            self.less_both - lambda * kappa * (-4.0 * s).exp_m1() + 4.0 * s * kappa * th
+            // expm1(-4 s) = less (2 + less)
+            self.less_both - lambda * kappa * less * (2.0 + less) + 4.0 * s * kappa * th
         } else {
-            self.less_both + 2.0 * th * (lambda * kappa * sinh_less(2.0 * s) + 2.0 * s * kappa * self.more_lambda)
+            let odd = if s <= 0.5 { th * sinh_less(2.0 * s) } else { -0.5 * less * (2.0 + less) - 2.0 * s * th };
+            self.less_both + 2.0 * (lambda * kappa * odd + 2.0 * s * kappa * self.more_lambda * th)
         };
-        n / self.denominator(s, th)
+        n / self.denominator(s, fade)
     }
 
     /// `B(s) - 1`, without cancellation where B is near 1 for large s.
@@ -80,20 +83,25 @@ impl Transfer {
 
     fn less_one_plain(&self, s: f64) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
-        let th = (-2.0 * s).exp();
+        let fade = Fade::new(s);
         let grows = (1.0 + 2.0 * s).powi(2);
-        th * (lambda + kappa * grows - 2.0 * lambda * kappa * th) / self.denominator(s, th)
+        fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.denominator(s, fade)
     }
 
-    fn denominator(&self, s: f64, th: f64) -> f64 {
+    fn denominator(&self, s: f64, Fade { th, less }: Fade) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
         if kappa < 0.0 || s > PLAIN {
             return 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
         }
-        let e = -(-2.0 * s).exp_m1();
-        self.less_lambda * self.less_kappa
-            + (self.less_lambda * kappa * th + lambda * self.less_kappa) * e
-            + 4.0 * kappa * th * sinh_less(s) * (s.sinh() + s)
+        // th (sinh^2 s - s^2) = th (sinh s - s) (sinh s - s + 2 s)
+        let even = if s <= 1.0 {
+            let odd = sinh_less(s);
+            th * odd * (odd + 2.0 * s)
+        } else {
+            0.25 * less * less - s * s * th
+        };
+        self.less_lambda * self.less_kappa - (self.less_lambda * kappa * th + lambda * self.less_kappa) * less
+            + 4.0 * kappa * even
     }
 
     /// The Taylor coefficients of B at 0, by dividing the series of N and D, which are written with `1 - lambda` and `1 - kappa`
@@ -124,11 +132,26 @@ impl Transfer {
     }
 }
 
-/// `sinh x - x`, x >= 0.
-fn sinh_less(x: f64) -> f64 {
-    if x > 1.0 {
-        return x.sinh() - x;
+/// `th = exp(-2 s)` and `th - 1`, both with all their digits.
+#[derive(Clone, Copy)]
+struct Fade {
+    th: f64,
+    less: f64,
+}
+
+impl Fade {
+    fn new(s: f64) -> Fade {
+        if s < 1.0 {
+            let less = (-2.0 * s).exp_m1();
+            return Fade { th: 1.0 + less, less };
+        }
+        let th = (-2.0 * s).exp();
+        Fade { th, less: th - 1.0 }
     }
+}
+
+/// `sinh x - x`, for x of 0 to 1.
+fn sinh_less(x: f64) -> f64 {
     // x^3/3! (1 + x^2/(4 5) (1 + x^2/(6 7) (...)))
     let series = (2..=9).rev().fold(1.0, |sum, k| 1.0 + x * x / f64::from(2 * k * (2 * k + 1)) * sum);
     x * x * x / 6.0 * series

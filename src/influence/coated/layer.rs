@@ -1,0 +1,165 @@
+//! The correction of one layer on a grid: the integral of F over each element.
+//!
+//! The integral over an element, by the larger of its distance and t, in longer sides of an element:
+//!
+//! * beyond [`FAR`] from the values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
+//! * before, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
+//!
+//! ```text
+//! S(x, y) = t^2 (T(x, y) + T(y, x)),    T(a, b) = integral from 0 to asinh(b/a) of M(a cosh(u)/t)/cosh(u) du
+//! ```
+//!
+//! which is smooth for any ratio of element and thickness.
+
+use super::quadrature::gauss_legendre;
+use super::{first_beyond, first_of_half, Base, Radial, COATED};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::{means, HalfSpace, Kernel};
+use crate::memory::zeros;
+
+/// Beyond this the stencil serves.
+const FAR: f64 = 32.0;
+/// Diagonals of an element up to which corner differences serve.
+const CORNERS: f64 = 2.5;
+/// Points a side of tensor Gauss, below these distances.
+const POINTS: [(f64, usize); 2] = [(12.0, 7), (FAR, 4)];
+
+/// The correction of one layer on a grid.
+pub struct Layer<'a> {
+    pub radial: &'a Radial,
+    pub t: f64,
+    pub grid: Grid,
+    /// The integral of 1/r.
+    pub half_space: &'a HalfSpace,
+}
+
+impl Layer<'_> {
+    /// Adds `(c/t) integral of F`, with the base that suits each offset; from [`first_of_half`] on in each row.
+    pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
+        let Grid { mx, my, dx, dy } = self.grid;
+        let (far, row_distance) = (FAR * dx.max(dy), dy / dx.max(dy));
+        let first = |ky: usize| first_of_half(&self.grid, ky);
+        let scale = c * dx * dy / self.t;
+        let fill = |base: Base| {
+            move |ky: usize, first: usize, row: &mut [f64]| {
+                let y = ky as f64 * dy / self.t;
+                let skipped = usize::from(ky == 0 && base == Base::Substrate);
+                // No mean is asked for near 0.
+                row[..skipped].fill(0.0);
+                let x = (first + skipped) as f64 * dx / self.t;
+                self.radial.fill_f((x, dx / self.t, y), base, &mut row[skipped..]);
+            }
+        };
+        let mut add_row = |ky: usize, means: &[f64], from: usize, to: usize| {
+            let row = table[ky * mx..(ky + 1) * mx].iter_mut().zip(means);
+            row.take(to).skip(from.max(first(ky))).for_each(|(value, mean)| *value += scale * mean);
+        };
+        let last = ((mx - 1) as f64 * dx).hypot((my - 1) as f64 * dy);
+        if self.t >= far {
+            // Offsets nearer than t lie in this box.
+            let count = |d: f64, m: usize| ((self.t / d) as usize).saturating_add(1).min(m);
+            means::means((count(dx, mx), count(dy, my)), row_distance, first, fill(Base::Layer), |ky, means| {
+                add_row(ky, means, 0, first_beyond(self.t, &self.grid, ky));
+            })?;
+        }
+        if last >= self.t {
+            means::means((mx, my), row_distance, first, fill(Base::Substrate), |ky, means| {
+                add_row(ky, means, first_beyond(self.t.max(far), &self.grid, ky), mx);
+            })?;
+        }
+        if self.t < far {
+            self.add_near(c, table)?;
+        }
+        Ok(())
+    }
+
+    /// The offsets that are not far.
+    fn add_near(&self, c: f64, table: &mut [f64]) -> Result<()> {
+        let Grid { mx, my, dx, dy } = self.grid;
+        let h = dx.max(dy);
+        let count = |d: f64, distance: f64, m: usize| ((distance / d) as usize).saturating_add(2).min(m);
+        let by_corners = CORNERS * dx.hypot(dy);
+        let base = if h < self.t { Base::Layer } else { Base::Substrate };
+        let corners = Corners::new(self, base, (count(dx, by_corners, mx), count(dy, by_corners, my)))?;
+        let rules = POINTS.map(|(_, n)| gauss_legendre(n));
+        for ky in 0..count(dy, FAR * h, my) {
+            let first_of_substrate = first_beyond(self.t, &self.grid, ky);
+            for kx in first_of_half(&self.grid, ky)..first_beyond(FAR * h, &self.grid, ky) {
+                let (x, y) = (kx as f64 * dx, ky as f64 * dy);
+                let r = x.hypot(y);
+                let here = if kx >= first_of_substrate { Base::Substrate } else { Base::Layer };
+                let value = &mut table[ky * mx + kx];
+                if r > by_corners {
+                    let rule = &rules[usize::from(r.max(self.t) > POINTS[0].0 * h)];
+                    *value += c * self.gauss(rule, (x, y), here);
+                    continue;
+                }
+                // The half-space has the base that is usual here.
+                let less = 1.0 - self.radial.transfer.substrate;
+                let other = match (base, here) {
+                    (Base::Layer, Base::Substrate) => less,
+                    (Base::Substrate, Base::Layer) => -less,
+                    _ => 0.0,
+                };
+                let half_space = if other == 0.0 { 0.0 } else { other * self.half_space.at(kx as i64, ky as i64) };
+                *value += c * (corners.difference(kx, ky) + half_space);
+            }
+        }
+        Ok(())
+    }
+
+    /// `(1/t) integral of F` by tensor Gauss.
+    pub fn gauss(&self, rule: &[(f64, f64)], (x, y): (f64, f64), base: Base) -> f64 {
+        let Grid { dx, dy, .. } = self.grid;
+        let mut sum = 0.0;
+        let square = |value: f64| value * value;
+        for (sx, wx) in rule {
+            let x2 = square((x + (sx - 0.5) * dx) / self.t);
+            for (sy, wy) in rule {
+                let y2 = square((y + (sy - 0.5) * dy) / self.t);
+                sum += wx * wy * self.radial.f_at_square(x2 + y2, base);
+            }
+        }
+        sum * dx * dy / self.t
+    }
+}
+
+/// S/t at the corners of the elements next to the loaded one.
+struct Corners {
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl Corners {
+    fn new(layer: &Layer<'_>, base: Base, (columns, rows): (usize, usize)) -> Result<Corners> {
+        let rule = gauss_legendre(40);
+        let (dx, dy) = (layer.grid.dx / layer.t, layer.grid.dy / layer.t);
+        let side = |a: f64, b: f64| {
+            let end = (b / a).asinh();
+            let at = |(u, w): &(f64, f64)| {
+                let cosh = (end * u).cosh();
+                w * layer.radial.m(a * cosh, base) / cosh
+            };
+            end * rule.iter().map(at).sum::<f64>()
+        };
+        let mut values = zeros((columns + 1) * (rows + 1), COATED)?;
+        for (i, value) in values.iter_mut().enumerate() {
+            // Corners at half-integer offsets, from 1/2 on; those at -1/2 are their opposites.
+            let (x, y) = ((i % (columns + 1)) as f64 + 0.5, (i / (columns + 1)) as f64 + 0.5);
+            *value = layer.t * (side(x * dx, y * dy) + side(y * dy, x * dx));
+        }
+        Ok(Corners { columns: columns + 1, values })
+    }
+
+    /// The integral over the element at an offset.
+    fn difference(&self, kx: usize, ky: usize) -> f64 {
+        let corner = |kx: i64, ky: i64| {
+            let place = |k: i64| if k < 0 { (0, -1.0) } else { (k as usize, 1.0) };
+            let ((x, sx), (y, sy)) = (place(kx), place(ky));
+            sx * sy * self.values[y * self.columns + x]
+        };
+        let (kx, ky) = (kx as i64, ky as i64);
+        corner(kx, ky) - corner(kx - 1, ky) - corner(kx, ky - 1) + corner(kx - 1, ky - 1)
+    }
+}
