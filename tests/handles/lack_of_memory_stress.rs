@@ -3,6 +3,7 @@
 use std::ptr::null;
 
 use super::call::initialised;
+use super::lack_of_memory::release;
 use super::{alone, limited_memory};
 use contact_normal::ffi::*;
 
@@ -44,6 +45,7 @@ fn stresses_without_memory_are_refused_and_the_next_call_works() {
         assert_eq!(stresses(&scene, &load, &mut expected), CONTACT_NORMAL_OK, "{what}");
         let mut failures = 0;
         for allowed in 0.. {
+            release();
             let status = limited_memory::with(4 * N, allowed, || stresses(&scene, &load, &mut found));
             if status == CONTACT_NORMAL_OK {
                 break;
@@ -78,6 +80,7 @@ fn stresses_at_points_without_memory_are_refused() {
             contact_normal_stress_at_points(&scene, 1, p, null(), null(), points.as_ptr().cast(), N as i32, null(), to)
         }
     };
+    release();
     assert_eq!(limited_memory::with(8 * N, 0, || ask(&mut stress)), CONTACT_NORMAL_OUT_OF_MEMORY);
     assert!(stress.iter().flatten().all(|value| *value == SENTINEL));
     assert_eq!(ask(&mut stress), CONTACT_NORMAL_OK);
