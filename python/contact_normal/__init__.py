@@ -11,6 +11,8 @@ Arrays are (my, mx), C order: x runs along a row. Constants have the names of in
 from ._arguments import SolveOptions
 from ._callbacks import Progress, set_log
 from ._constants import *  # noqa: F403
+from ._creep_force_table import creep_force_table
+from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
 from ._library import VERSION, ContactNormalError
 from ._prices import Price, cost_of_accuracy
@@ -25,6 +27,7 @@ __version__ = VERSION
 __all__ = [
     "AccurateResult",
     "ContactNormalError",
+    "CreepForceTable",
     "FrictionBatch",
     "HertzSolution",
     "Ledger",
@@ -36,6 +39,7 @@ __all__ = [
     "SubsurfaceStress",
     "VERSION",
     "cost_of_accuracy",
+    "creep_force_table",
     "friction_batch",
     "hertz",
     "influence_half_space",

@@ -1,0 +1,160 @@
+"""One plane of a table of creep forces: all creepages of one ellipse (or surface) and one spin. This is what worker processes run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._constants import OK
+from ._friction_batch import FrictionBatch, friction_batch
+from ._solve import solve
+
+if TYPE_CHECKING:
+    from ._arguments import Doubles
+
+AXES = ("axis_ratio", "poisson_ratio", "phi", "eta", "xi")
+_MOTION = "STEADY_ROLLING"
+# Along each side of an element the pressures of an ellipse are averaged over so many places.
+_PLACES = 4
+# What a surface must have, beside a load, and may have.
+_NEEDED = ("h", "dx", "dy", "shear_modulus", "poisson_ratio", "coefficient")
+_MAY = ("rolling_direction", "spin_centre", "spin_offset")
+_KNOWN = (*_NEEDED, *_MAY, "force", "approach")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a table is computed from: the same on every machine that computes a part of it.
+
+    `surface` is None for ellipses; else what `prepared` has made of it.
+    """
+
+    axis_ratio: tuple[float, ...]
+    poisson_ratio: tuple[float, ...]
+    phi: tuple[float, ...]
+    eta: tuple[float, ...]
+    xi: tuple[float, ...]
+    elements: int
+    tolerance: float
+    surface: dict[str, dict[str, Any]] | None = field(default=None, compare=False)
+
+    @property
+    def shape(self) -> tuple[int, int, int, int, int]:
+        """Entries along axis_ratio, poisson_ratio, phi, eta, xi."""
+        ratio, nu, phi, eta, xi = (len(getattr(self, name)) for name in AXES)
+        return ratio, nu, phi, eta, xi
+
+    @property
+    def planes(self) -> int:
+        """How many planes there are."""
+        return len(self.axis_ratio) * len(self.poisson_ratio) * len(self.phi)
+
+    @property
+    def coarse_elements(self) -> int:
+        """Along each side of the grid that the errors are estimated from."""
+        return (self.elements + 1) // 2
+
+
+def ellipse(elements: int, axis_ratio: float) -> tuple[Doubles, float, float]:
+    """Pressures on an ellipse with sqrt(a b) = 1 and a force of 1, means over each element, and the element sizes."""
+    a, b = np.sqrt(axis_ratio), 1.0 / np.sqrt(axis_ratio)
+    places = (np.arange(elements * _PLACES) + 0.5) * 2.0 / (elements * _PLACES) - 1.0
+    fine = np.sqrt(np.maximum(0.0, 1.0 - places[None, :] ** 2 - places[:, None] ** 2))
+    pressure: Doubles = fine.reshape(elements, _PLACES, elements, _PLACES).mean(axis=(1, 3))
+    dx, dy = 2.0 * a / elements, 2.0 * b / elements
+    return pressure / (pressure.sum() * dx * dy), dx, dy
+
+
+def halved(h: Doubles) -> Doubles:
+    """A surface on elements twice as large: the mean of those of its four that have a surface."""
+    padded = np.pad(h, [(0, m % 2) for m in h.shape], constant_values=np.inf)
+    my, mx = padded.shape
+    parts = padded.reshape(my // 2, 2, mx // 2, 2)
+    finite = np.isfinite(parts)
+    count = finite.sum(axis=(1, 3))
+    sums = np.where(finite, parts, 0.0).sum(axis=(1, 3))
+    coarse: Doubles = np.where(count > 0, sums / np.maximum(count, 1), np.inf)
+    return coarse
+
+
+def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str, Any]]:
+    """What `friction_batch` needs of a surface on its own and on a coarser grid: the normal problems are solved here, for all planes."""
+    unknown, missing = sorted(set(surface) - set(_KNOWN)), [name for name in _NEEDED if name not in surface]
+    if unknown or missing or ("force" in surface) == ("approach" in surface):
+        raise ValueError(f"surface has {', '.join(surface)}; it must have {', '.join(_NEEDED)}, either force or approach, "
+                         "and may have rolling_direction, spin_centre, spin_offset")
+    h = np.asarray(surface["h"], dtype=float)
+    (my, mx), (x, y) = h.shape, surface.get("spin_centre", (0.0, 0.0))
+    dx, dy, mu = surface["dx"], surface["dy"], np.asarray(surface["coefficient"], dtype=float)
+    # Padding moves the middle of the grid.
+    centre = x - 0.5 * (mx % 2) * dx, y - 0.5 * (my % 2) * dy
+    fine = {**surface, "h": h, "coefficient": mu}
+    coarse = {**fine, "h": halved(h), "dx": 2.0 * dx, "dy": 2.0 * dy, "spin_centre": centre,
+              "coefficient": halved(mu) if mu.ndim else mu}
+    return {"fine": _pressed(fine, tolerance), "coarse": _pressed(coarse, tolerance)}
+
+
+def _pressed(surface: Mapping[str, Any], tolerance: float) -> dict[str, Any]:
+    """The arguments of `friction_batch` with the pressures of a surface."""
+    given = {name: surface[name] for name in ("dx", "dy", "shear_modulus", "poisson_ratio")}
+    load = {name: surface[name] for name in ("force", "approach") if name in surface}
+    result = solve(surface["h"], **given, **load, tolerance=min(tolerance, 1e-6))
+    if result.status != OK:
+        raise ValueError(f"the normal problem of the surface is not solved: {result.message}")
+    friction = {name: surface[name] for name in ("coefficient", *_MAY) if name in surface}
+    return {"h": None, "pressure": result.pressure, **given, "friction": {**friction, "motion": _MOTION}}
+
+
+def _grids(plan: Plan, ratio: int, nu: int) -> list[dict[str, Any]]:
+    """The arguments of `friction_batch` on the fine and on the coarse grid."""
+    if plan.surface is not None:
+        return [plan.surface["fine"], plan.surface["coarse"]]
+    grids = []
+    for elements in (plan.elements, plan.coarse_elements):
+        pressure, dx, dy = ellipse(elements, plan.axis_ratio[ratio])
+        grids.append({"h": None, "pressure": pressure, "dx": dx, "dy": dy, "shear_modulus": 1.0,
+                      "poisson_ratio": plan.poisson_ratio[nu], "friction": {"coefficient": 1.0, "motion": _MOTION}})
+    return grids
+
+
+def _scales(grid: dict[str, Any]) -> tuple[float, float]:
+    """mu N, and the radius of a circle as large as the contact area."""
+    area = grid["dx"] * grid["dy"]
+    force = float((grid["friction"]["coefficient"] * np.maximum(grid["pressure"], 0.0)).sum() * area)
+    return force, float(np.sqrt((grid["pressure"] > 0).sum() * area / np.pi))
+
+
+def plane(plan: Plan, index: int) -> dict[str, Any]:
+    """Solves plane `index` of a table, on one thread: arrays (eta, xi) by name.
+
+    "force_x", "force_y", "moment", "residual", "products" and "status" are those of the fine grid; "difference" is by how much forces and
+    moment would change on infinitely fine elements if they converged with first order, relative to mu N and to mu N times the radius of
+    the contact area: the root of the sum of squares.
+    """
+    ratios, nus, phis, rows, columns = plan.shape
+    ratio, nu, spin = np.unravel_index(index, (ratios, nus, phis))
+    eta, xi = (np.asarray(axis) for axis in (plan.eta, plan.xi))
+    entries = np.empty((rows, columns, 3))
+    entries[..., 0], entries[..., 1], entries[..., 2] = xi[None, :], eta[:, None], plan.phi[spin]
+    # There and back: neighbours in the list are neighbours in the plane.
+    entries[1::2] = entries[1::2, ::-1]
+    grids = _grids(plan, int(ratio), int(nu))
+    fine, coarse = (_solved(grid, entries.reshape(-1, 3), plan.tolerance) for grid in grids)
+    force, radius = _scales(grids[0])
+    growth = grids[1]["dx"] / grids[0]["dx"] - 1.0
+    changes = np.column_stack([fine.force - coarse.force, (fine.moment - coarse.moment) / radius]) / (force * growth)
+    found = {"force_x": fine.force[:, 0], "force_y": fine.force[:, 1], "moment": fine.moment, "residual": fine.residual,
+             "products": fine.products + coarse.products * (grids[1]["pressure"].size / grids[0]["pressure"].size),
+             "status": np.where(fine.status != 0, fine.status, coarse.status), "difference": np.sqrt((changes**2).sum(axis=1))}
+    arrays = {name: values.reshape(rows, columns) for name, values in found.items()}
+    for values in arrays.values():
+        values[1::2] = values[1::2, ::-1].copy()
+    return arrays
+
+
+def _solved(grid: dict[str, Any], entries: Doubles, tolerance: float) -> FrictionBatch:
+    given = dict(grid)
+    return friction_batch(given.pop("h"), given.pop("dx"), given.pop("dy"), entries, tolerance=tolerance, threads=1, **given)

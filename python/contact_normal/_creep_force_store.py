@@ -1,0 +1,107 @@
+"""What of a table is done: planes in a folder beside it, each written whole or not at all, and the table itself as NetCDF."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import json
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._creep_force_plane import AXES, Plan
+from ._library import VERSION
+
+
+def key(plan: Plan) -> str:
+    """The same for the same plan: axes, elements, tolerance, surface."""
+    axes = {name: getattr(plan, name) for name in (*AXES, "elements", "tolerance")}
+    digest = hashlib.sha256(json.dumps(axes, sort_keys=True).encode())
+    for grid in () if plan.surface is None else (plan.surface["fine"], plan.surface["coarse"]):
+        for name in ("pressure", "dx", "dy", "shear_modulus", "poisson_ratio"):
+            digest.update(np.ascontiguousarray(grid[name], dtype=float).tobytes())
+        for name, value in sorted(grid["friction"].items()):
+            digest.update(name.encode())
+            digest.update(value.encode() if isinstance(value, str) else np.ascontiguousarray(value, dtype=float).tobytes())
+    return digest.hexdigest()
+
+
+def xarray() -> Any:
+    """xarray with what it writes NetCDF by."""
+    try:
+        importlib.import_module("netCDF4")
+        return importlib.import_module("xarray")
+    except ImportError as error:
+        raise ImportError(f"{error}; tables in files need xarray and netCDF4: pip install 'contact-normal[tables]'") from error
+
+
+class Journal:
+    """The planes of a table that are done, in the folder `<path>.parts`.
+
+    Parameters
+    ----------
+    path : path
+        Of the table.
+    plan : Plan
+        Of the table. A folder of another one is refused.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], plan: Plan) -> None:
+        self._path, self._key = Path(path), key(plan)
+        self._folder = self._path.with_name(self._path.name + ".parts")
+        self._folder.mkdir(parents=True, exist_ok=True)
+        told = self._folder / "plan"
+        if not told.exists():
+            _replace(told, self._key.encode())
+        elif told.read_text() != self._key:
+            raise ValueError(f"{self._folder} has the parts of another table; choose another path, or remove the folder")
+
+    def _file(self, index: int) -> Path:
+        return self._folder / f"{index:06d}.npz"
+
+    def done(self) -> dict[int, dict[str, Any]]:
+        """The planes that are there."""
+        found = {}
+        for file in sorted(self._folder.glob("[0-9]*.npz")):
+            with np.load(file) as arrays:
+                found[int(file.stem)] = dict(arrays)
+        return found
+
+    def write(self, index: int, arrays: Mapping[str, Any]) -> None:
+        """Adds a plane."""
+        file = self._file(index)
+        unfinished = file.with_suffix(".unfinished")
+        with open(unfinished, "wb") as out:
+            np.savez(out, **arrays)
+            out.flush()
+            os.fsync(out.fileno())
+        os.replace(unfinished, file)
+
+    def finish(self) -> None:
+        """The table is written: the parts are not needed any more."""
+        shutil.rmtree(self._folder)
+
+
+def _replace(file: Path, content: bytes) -> None:
+    unfinished = file.with_suffix(".unfinished")
+    unfinished.write_bytes(content)
+    os.replace(unfinished, file)
+
+
+def write(path: str | os.PathLike[str], dataset: Any) -> None:
+    """Writes NetCDF, whole or not at all."""
+    target = Path(path)
+    unfinished = target.with_name(target.name + ".unfinished")
+    coding = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars if dataset[name].ndim}
+    dataset.assign_attrs(made_by=f"contact-normal {VERSION}").to_netcdf(unfinished, engine="netcdf4", encoding=coding)
+    os.replace(unfinished, target)
+
+
+def read(path: str | os.PathLike[str]) -> Any:
+    """The dataset of a file, in memory."""
+    with xarray().open_dataset(path, engine="netcdf4") as dataset:
+        return dataset.load()

@@ -1,0 +1,228 @@
+"""Computes tables of creep forces: here, in processes, or on a cluster; what was begun goes on where it was ended."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import importlib
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import numpy as np
+
+from . import _creep_force_store as store
+from ._arguments import integer
+from ._creep_force_plane import AXES, Plan, plane, prepared
+from ._creep_forces import CreepForceTable
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+def creep_force_table(
+    path: str | os.PathLike[str] | None = None,
+    *,
+    xi: npt.ArrayLike,
+    eta: npt.ArrayLike,
+    phi: npt.ArrayLike,
+    axis_ratio: npt.ArrayLike = 1.0,
+    poisson_ratio: npt.ArrayLike = 0.28,
+    surface: Mapping[str, Any] | None = None,
+    elements: int = 35,
+    tolerance: float = 1e-4,
+    workers: int = 1,
+    client: Any = None,
+    progress: Callable[[int, int], Any] | bool | None = None,
+) -> CreepForceTable:
+    """Computes a table of creep forces in steady rolling: of Hertz ellipses, or of a surface.
+
+    Of ellipses with semi-axes a in the direction of rolling and b across, of like bodies with shear modulus G, all is relative, with
+    c = sqrt(a b):
+
+        xi  = (G c^2/(mu N)) times the longitudinal creepage        force_x = Fx/(mu N)
+        eta = (G c^2/(mu N)) times the lateral creepage             force_y = Fy/(mu N)
+        phi = (G c^3/(mu N)) times the spin                         moment  = Mz/(mu N c)
+
+    so that nothing else matters than a/b and the Poisson ratio, and Kalker's linear theory reads force_x = -C11 xi,
+    force_y = -C22 eta - C23 phi, moment = C23 eta - C33 phi. Of a surface creepages, spin, forces and moments are as they are.
+
+    Only what differs is computed. For ellipses xi and phi are >= 0: (-xi, eta, phi) has (-force_x, force_y, moment), and (xi, -eta, -phi)
+    has (force_x, -force_y, -moment). For a surface of like bodies phi >= 0 is enough: with the signs of all three those of
+    forces and moment change.
+
+    `error` is the sum of three parts, relative to mu N. The first is by how much the entry would change on infinitely fine elements,
+    from a grid with twice as large elements, for forces converge with first order. The second is 1/8 of the largest such change among all entries
+    of the same ellipse, for where the first passes through 0 the next order remains. The third is the residual.
+
+    Parameters
+    ----------
+    path : path, optional
+        A NetCDF file. Parts stand in the folder `<path>.parts` as long as it is not complete: the same call goes on from them, and reads
+        the file once it is there. Needs xarray and netCDF4 (`pip install 'contact-normal[tables]'`). None: nothing is written.
+    xi, eta, phi : array_like
+        Axes of the table, increasing.
+    axis_ratio, poisson_ratio : array_like
+        a/b, increasing, and Poisson ratios; not for a surface.
+    surface : mapping, optional
+        "h" (my, mx), "dx", "dy", "force" or "approach", "shear_modulus", "poisson_ratio" as for `solve`, and "coefficient" of friction;
+        also "rolling_direction", "spin_centre" and "spin_offset".
+    elements : int
+        Along each side of the rectangle around an ellipse.
+    tolerance : float
+        Of the residual of each entry.
+    workers : int
+        Processes, 1: this one, 0: one for each core. With more than 1 the calling script needs `if __name__ == "__main__":`.
+    client : distributed.Client, optional
+        A Dask cluster to compute on, in the place of processes here.
+    progress : callable or bool, optional
+        Called as progress(entries done, all entries); what it raises ends the call, and its parts stay. True: draws a bar on stderr.
+
+    Returns
+    -------
+    CreepForceTable
+
+    Raises
+    ------
+    ValueError
+        If an axis is not increasing or has the wrong sign, or `path` has another table.
+    ContactNormalError
+        If the library refuses a call.
+
+    Examples
+    --------
+    >>> import numpy as np, contact_normal
+    >>> table = contact_normal.creep_force_table(xi=np.linspace(0.0, 1.0, 5), eta=[0.0], phi=[0.0], elements=17)
+    >>> force_x, _, _, error = table.forces([-0.6, 0.1], 0.0, 0.0)
+    >>> bool(force_x[0] > 0.9 and force_x[1] < 0), error.shape
+    (True, (2,))
+    """
+    plan = _plan(xi, eta, phi, axis_ratio, poisson_ratio, surface, elements, tolerance)
+    journal = None
+    if path is not None:
+        store.xarray()
+        if Path(path).exists():
+            table = CreepForceTable.read(path)
+            if table._key != store.key(plan):
+                raise ValueError(f"{path} has another table; choose another path, or remove it")
+            return table
+        journal = store.Journal(path, plan)
+    planes = _planes(plan, journal, integer("workers", workers), client, progress)
+    table = _assembled(plan, planes)
+    if path is not None and journal is not None:
+        table.write(path)
+        journal.finish()
+    return table
+
+
+def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surface: Any, elements: int, tolerance: float) -> Plan:
+    """The plan of a table, after a check."""
+    axes: dict[str, tuple[float, ...]] = {}
+    if surface is not None:
+        axis_ratio, poisson_ratio = 1.0, 0.0
+    for name, values in zip(AXES, (axis_ratio, poisson_ratio, phi, eta, xi)):
+        axis = np.atleast_1d(np.asarray(values, dtype=float))
+        if axis.ndim != 1 or not axis.size or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all():
+            raise ValueError(f"{name} is {values!r}; it must be increasing and finite")
+        if surface is None and name in ("xi", "phi") and axis[0] < 0:
+            raise ValueError(f"{name} begins with {axis[0]}; it must not be negative: symmetry gives those of negative {name}")
+        if name == "axis_ratio" and axis[0] <= 0:
+            raise ValueError(f"axis_ratio begins with {axis[0]}; it must be positive")
+        axes[name] = tuple(float(value) for value in axis)
+    if integer("elements", elements) < 4:
+        raise ValueError(f"elements is {elements}; it must be at least 4")
+    parts = None if surface is None else prepared(surface, tolerance)
+    return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=float(tolerance), surface=parts)
+
+
+def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
+    """All planes, those that were done before and new ones."""
+    done = journal.done() if journal else {}
+    missing = [index for index in range(plan.planes) if index not in done]
+    each = len(plan.eta) * len(plan.xi)
+    bar = Bar(each * plan.planes) if progress is True else None
+    told = bar.draw if bar else progress
+    try:
+        for index, arrays in _computed(plan, missing, workers, client):
+            if journal:
+                journal.write(index, arrays)
+            done[index] = arrays
+            if told:
+                told(each * len(done), each * plan.planes)
+    finally:
+        if bar:
+            bar.close()
+    return done
+
+
+def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iterator[tuple[int, Any]]:
+    """The planes that are missing, in the order in which they are done."""
+    if client is None and workers == 1:
+        yield from ((index, plane(plan, index)) for index in missing)
+        return
+    executor = client.get_executor() if client is not None else concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count())
+    try:
+        jobs = {executor.submit(plane, plan, index): index for index in missing}
+        for job in concurrent.futures.as_completed(jobs):
+            yield jobs[job], job.result()
+    finally:
+        executor.shutdown(wait=client is None, cancel_futures=True)
+
+
+def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForceTable:
+    """The table of all planes, with the errors."""
+    values = {name: np.stack([planes[index][name] for index in range(plan.planes)]).reshape(plan.shape) for name in planes[0]}
+    difference = values.pop("difference")
+    largest = np.nanmax(np.where(np.isnan(difference), 0.0, difference), axis=(2, 3, 4), keepdims=True)
+    values["error"] = difference + largest / 8.0 + values["residual"]
+    axes = {name: np.asarray(getattr(plan, name)) for name in AXES}
+    of_surface = plan.surface is not None
+    mirrored = not of_surface or plan.phi[0] >= 0
+    if plan.surface is not None and not _are_alike(plan.surface["fine"]):
+        mirrored = False
+    return CreepForceTable(axes, values, plan.elements, plan.tolerance, of_surface, mirrored, store.key(plan))
+
+
+def _are_alike(grid: Mapping[str, Any]) -> bool:
+    """Whether the bodies are: pressures then displace nothing sideways."""
+    shear, poisson = (np.broadcast_to(np.asarray(grid[name], dtype=float), (2,)) for name in ("shear_modulus", "poisson_ratio"))
+    return bool((1.0 - 2.0 * poisson[0]) / shear[0] == (1.0 - 2.0 * poisson[1]) / shear[1])
+
+
+class Bar:
+    """Draws how many entries of a table are done: with tqdm if that is installed, else on stderr by itself.
+
+    Parameters
+    ----------
+    total : int
+        Entries of the table.
+    """
+
+    WIDTH = 30
+
+    def __init__(self, total: int, file: TextIO | None = None) -> None:
+        self._file, self._began, self._before = file or sys.stderr, time.monotonic(), 0
+        try:
+            self._tqdm: Any = importlib.import_module("tqdm").tqdm(total=total, unit="entries", unit_scale=True, file=self._file)
+        except ImportError:
+            self._tqdm = None
+
+    def draw(self, done: int, total: int) -> None:
+        """Draws the state."""
+        if self._tqdm is not None:
+            self._tqdm.update(done - self._before)
+            self._before = done
+            return
+        filled = self.WIDTH * done // max(total, 1)
+        seconds = time.monotonic() - self._began
+        self._file.write(f"\r[{'#' * filled}{'.' * (self.WIDTH - filled)}] {done} of {total} entries, {seconds:.0f} s   ")
+        self._file.flush()
+
+    def close(self) -> None:
+        """Leaves the bar as it is and goes to the next line."""
+        if self._tqdm is not None:
+            self._tqdm.close()
+        else:
+            self._file.write("\n")

@@ -1,0 +1,179 @@
+"""Tables of creep forces: what they hold, and how they are read between their entries."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _creep_force_store as store
+from ._creep_force_plane import AXES
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ._arguments import Doubles
+
+VALUES = ("force_x", "force_y", "moment", "error", "residual", "products", "status")
+
+
+class CreepForceTable:
+    """Forces and spin moments over creepages and spin, with an estimate of the error of each.
+
+    Attributes
+    ----------
+    axis_ratio, poisson_ratio, phi, eta, xi : ndarray
+        The axes. Of a surface the first two have one value, which means nothing.
+    force_x, force_y, moment : ndarray, (axis_ratio, poisson_ratio, phi, eta, xi)
+        Of ellipses relative to mu N and to mu N c, as `creep_force_table` has them; of a surface as they are.
+    error : ndarray, of that shape
+        Estimated error of the forces relative to mu N, and of the moment relative to mu N times the radius of the contact area.
+    residual, products : ndarray, of that shape
+        The residual that each entry's tractions leave, and its products of two components.
+    status : ndarray of int, of that shape
+        0 (OK), or what `friction_batch` says; < 0: NaN.
+    of_surface : bool
+        Whether it is the table of a surface.
+    elements : int
+        Elements along each side of the grid; of a surface 0.
+    """
+
+    def __init__(self, axes: Mapping[str, Doubles], values: Mapping[str, Any], elements: int, tolerance: float, of_surface: bool,
+                 mirrored: bool, plan_key: str) -> None:
+        self.axis_ratio, self.poisson_ratio, self.phi, self.eta, self.xi = (np.asarray(axes[name], dtype=float) for name in AXES)
+        self.force_x, self.force_y, self.moment, self.error, self.residual, self.products, self.status = (values[name] for name in VALUES)
+        self.elements, self.tolerance, self.of_surface = elements, tolerance, of_surface
+        self._mirrored, self._key = mirrored, plan_key
+
+    def __repr__(self) -> str:
+        shape = " x ".join(str(m) for m in self.error.shape)
+        return f"<CreepForceTable: {shape} entries, largest error {np.nanmax(self.error):.2g}>"
+
+    def to_xarray(self) -> Any:
+        """The table as an `xarray.Dataset` with the names of the attributes."""
+        dataset = store.xarray().Dataset(
+            {name: (AXES, getattr(self, name)) for name in VALUES}, {name: getattr(self, name) for name in AXES},
+            {"elements": self.elements, "tolerance": self.tolerance, "of_surface": int(self.of_surface),
+             "mirrored": int(self._mirrored), "plan": self._key})
+        if not self.of_surface:
+            dataset.attrs["units"] = ("c = sqrt(a b); xi, eta: G c^2/(mu N) times the creepages; phi: G c^3/(mu N) times the spin; "
+                                      "force: over mu N; moment: over mu N c")
+        return dataset
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table as NetCDF, whole or not at all. Needs xarray and netCDF4."""
+        store.write(path, self.to_xarray())
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> CreepForceTable:
+        """A table that `write` or `creep_force_table` has written."""
+        dataset = store.read(path)
+        if not set(VALUES) <= set(dataset.data_vars):
+            raise ValueError(f"{path} is no table of creep forces")
+        told = dataset.attrs
+        return CreepForceTable({name: dataset[name].values for name in AXES}, {name: dataset[name].values for name in VALUES},
+                               int(told["elements"]), float(told["tolerance"]), bool(told["of_surface"]), bool(told["mirrored"]),
+                               str(told["plan"]))
+
+    def forces(self, xi: npt.ArrayLike, eta: npt.ArrayLike, phi: npt.ArrayLike, *, axis_ratio: npt.ArrayLike = 1.0,
+               poisson_ratio: npt.ArrayLike | None = None, hold: bool = False) -> tuple[Doubles, Doubles, Doubles, Doubles]:
+        """Forces, moment and error between the entries, linear in each axis (in the logarithm of the axis ratio).
+
+        Symmetries give what is not in the table: with the signs of all of xi, eta, phi those of force and moment change. For ellipses
+        the signs of eta and phi alone change those of force_y and moment, so that (-xi, eta, phi) has (-force_x, force_y, moment).
+
+        Parameters
+        ----------
+        xi, eta, phi : array_like
+            In the units of the table; arrays are taken together as by numpy.
+        axis_ratio, poisson_ratio : array_like
+            Of an ellipse; the Poisson ratio may be left out where the table has one only. Not used for a surface.
+        hold : bool
+            Beyond the ends of an axis: the value at its end. Otherwise that is an error.
+
+        Returns
+        -------
+        force_x, force_y, moment, error : ndarray
+
+        Raises
+        ------
+        ValueError
+            If a value is outside the table, without `hold`.
+        """
+        if poisson_ratio is None:
+            if len(self.poisson_ratio) > 1:
+                raise TypeError("poisson_ratio is needed: this table has several")
+            poisson_ratio = self.poisson_ratio[0]
+        if self.of_surface:
+            axis_ratio, poisson_ratio = self.axis_ratio[0], self.poisson_ratio[0]
+        given = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (axis_ratio, poisson_ratio, phi, eta, xi)))
+        ratio, nu, spin, lateral, longitudinal = (np.array(value) for value in given)
+        sign, mirror = np.ones(spin.shape), np.ones(spin.shape)
+        if not self.of_surface:
+            # All signs first, so that xi >= 0; then those of eta and phi.
+            sign = np.where(longitudinal < 0, -1.0, 1.0)
+            mirror = np.where(sign * spin < 0, -1.0, 1.0)
+        elif self._mirrored:
+            sign = np.where(spin < 0, -1.0, 1.0)
+        places = ratio, nu, sign * mirror * spin, sign * mirror * lateral, sign * longitudinal
+        corners = [self._between(name, place, hold) for name, place in zip(AXES, places)]
+        force_x, force_y, moment, error = (_interpolated(getattr(self, name), corners) for name in ("force_x", "force_y", "moment", "error"))
+        return sign * force_x, sign * mirror * force_y, sign * mirror * moment, error
+
+    def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
+        """The entry of an axis before each value, and the part of the way to the next one."""
+        axis = getattr(self, name)
+        if len(axis) == 1 and not self.of_surface and not hold and not np.allclose(values, axis[0], rtol=1e-12, atol=0.0):
+            raise ValueError(f"{name} has values outside the table, which has {axis[0]} only")
+        if len(axis) == 1:
+            return np.zeros(values.shape, dtype=np.int64), np.zeros(values.shape)
+        if not hold and not bool(((values >= axis[0]) & (values <= axis[-1])).all()):
+            raise ValueError(f"{name} has values outside the table, which goes from {axis[0]} to {axis[-1]}")
+        held = np.clip(values, axis[0], axis[-1])
+        if name == "axis_ratio":
+            axis, held = np.log(axis), np.log(held)
+        before = np.clip(np.searchsorted(axis, held, side="right") - 1, 0, len(axis) - 2)
+        part: Doubles = (held - axis[before]) / (axis[before + 1] - axis[before])
+        return before, part
+
+    def wheel_rail(self, creepage: tuple[npt.ArrayLike, npt.ArrayLike], spin: npt.ArrayLike, *, semi_axes: tuple[float, float],
+                   normal_force: float, coefficient: float, shear_modulus: float, poisson_ratio: float | None = None,
+                   hold: bool = False) -> tuple[Doubles, Doubles, Doubles]:
+        """Forces in x and y and the spin moment of an ellipse, in the caller's units.
+
+        Parameters
+        ----------
+        creepage, spin
+            As they are: no units, and one over a length.
+        semi_axes : (float, float)
+            In the direction of rolling, and across.
+        normal_force, coefficient, shear_modulus, poisson_ratio, hold
+            Of the contact; bodies are alike.
+
+        Returns
+        -------
+        force_x, force_y, moment : ndarray
+        """
+        if self.of_surface:
+            raise TypeError("this is the table of a surface: use `forces`")
+        a, b = semi_axes
+        c, bound = np.sqrt(a * b), coefficient * normal_force
+        unit = shear_modulus * c * c / bound
+        x, y, moment, _ = self.forces(unit * np.asarray(creepage[0]), unit * np.asarray(creepage[1]), unit * c * np.asarray(spin),
+                                      axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
+        return bound * x, bound * y, bound * c * moment
+
+
+def _interpolated(values: Doubles, corners: Sequence[tuple[Any, Any]]) -> Doubles:
+    """Sums over the corners of each cell that have a weight."""
+    total: Doubles = np.zeros(corners[0][0].shape)
+    for corner in np.ndindex(*(2,) * len(corners)):
+        weight, index = np.ones(total.shape), []
+        for (before, part), size, after in zip(corners, values.shape, corner):
+            weight = weight * (part if after else 1.0 - part)
+            index.append(np.minimum(before + after, size - 1))
+        # An entry that failed does no harm where it has no weight.
+        total += np.where(weight > 0, weight * values[tuple(index)], 0.0)
+    return total
