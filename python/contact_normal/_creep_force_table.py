@@ -6,6 +6,7 @@ import concurrent.futures
 import importlib
 import os
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -162,13 +163,31 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
-    executor = client.get_executor() if client is not None else concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count())
+    if client is not None:
+        executor = client.get_executor()
+    else:
+        executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent)
+    jobs: dict[Any, int] = {}
     try:
-        jobs = {executor.submit(plane, plan, index): index for index in missing}
+        jobs.update((executor.submit(plane, plan, index), index) for index in missing)
         for job in concurrent.futures.as_completed(jobs):
             yield jobs[job], job.result()
     finally:
-        executor.shutdown(wait=client is None, cancel_futures=True)
+        for job in jobs:
+            job.cancel()
+        executor.shutdown(wait=client is None)
+
+
+def _leave_with_parent() -> None:
+    """Ends this process soon after its parent was killed: otherwise it would wait for work for ever."""
+
+    def watch(started_by: int) -> None:
+        while os.getppid() == started_by:
+            time.sleep(0.5)
+        os._exit(1)
+
+    # That of a fork server is not the one who asks for the work, but it ends with it.
+    threading.Thread(target=watch, args=(os.getppid(),), daemon=True).start()
 
 
 def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForceTable:
