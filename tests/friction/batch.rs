@@ -52,6 +52,8 @@ fn frictions() -> Vec<Friction<'static>> {
         with(Motion::Shift, free),
         with(Motion::Shift, [Prescribed::Force(0.0), Prescribed::Creepage(0.0)]),
         with(Motion::TransientRolling, free),
+        with(Motion::SteadyRolling, free),
+        with(Motion::SteadyRolling, [Prescribed::Force(0.0), Prescribed::Force(0.0)]),
     ]
 }
 
