@@ -1,8 +1,10 @@
 """The yardstick of tables: 25 a/b x 16 xi x 16 eta x 32 phi = 204800 ellipses of 35 x 35 elements, each with its error estimate.
 
     python benches/creep_force_table.py [--sample 0.01] [--workers 2] [--elements 35] [--path table.nc]
+    python benches/creep_force_table.py --errors
 
-With `--sample` a part of the planes, spread over the whole table, is solved and the time of the whole is extrapolated. Needs numpy and the
+With `--sample` a part of the planes, spread over the whole table, is solved and the time of the whole is extrapolated. `--errors`
+compares the estimated errors of 1782 entries with those to finer grids. Needs numpy and the
 library (`CONTACT_NORMAL_LIBRARY`, or an installed package).
 """
 
@@ -42,13 +44,33 @@ def sample(part, workers, elements):
     return time.monotonic() - began, count / plan.planes, found
 
 
+def errors(workers, elements):
+    """By how much the estimated errors exceed those to the limit of two finer grids."""
+    axes = {"xi": [0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.2], "phi": [0.0, 0.1, 0.2, 0.4, 0.8, 1.5],
+            "eta": [-0.6, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.6], "axis_ratio": [0.25, 1.0, 3.3]}
+    table, fine, finest = (cn.creep_force_table(elements=m, workers=workers, **axes) for m in (elements, 2 * elements, 3 * elements))
+    forces, moments = [], []
+    for name, into in (("force_x", forces), ("force_y", forces), ("moment", moments)):
+        two, three = getattr(fine, name), getattr(finest, name)
+        limit = three + 2.0 * (three - two)  # first order: 3 h and 2 h
+        into.append(getattr(table, name) - limit)
+    for what, off in (("force", np.hypot(*forces)), ("moment", np.abs(moments[0]))):
+        part = off / table.error
+        print(f"{what}: error {off.mean():.4f} in the mean, {off.max():.4f} at most; estimated {table.error.mean():.4f} and {table.error.max():.4f}; "
+              f"error over estimate: median {np.median(part):.2f}, 98 % {np.quantile(part, 0.98):.2f}, largest {part.max():.2f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sample", type=float, default=1.0)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--elements", type=int, default=35)
     parser.add_argument("--path")
+    parser.add_argument("--errors", action="store_true")
     given = parser.parse_args()
+    if given.errors:
+        errors(given.workers, given.elements)
+        return
     entries = int(np.prod([len(axis) for axis in AXES.values()]))
     if given.sample < 1.0:
         seconds, part, found = sample(given.sample, given.workers, given.elements)
