@@ -210,10 +210,11 @@ pub fn solve(
     forces: Forces,
     goal: Goal<'_>,
 ) -> Result<End> {
-    let Goal { tolerance, limit, watch } = goal;
+    let Goal { tolerance, limit, certified, watch } = goal;
+    let par = |k: usize, v: f64| std::env::var(format!("P{k}")).map_or(v, |s| s.parse().unwrap());
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
-    let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
+    let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { par(0, INNER_ROLLING) } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
         let slip = problem.rms_slip();
@@ -222,7 +223,7 @@ pub fn solve(
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst = sight.residual.max(sight.excess).max(missing);
         if worst < tolerance {
-            if state.is_exact {
+            if state.is_exact || !certified {
                 return Ok(End::Converged);
             }
             problem.refresh(state);
@@ -248,7 +249,8 @@ pub fn solve(
             return Ok(End::Limit);
         }
         iterations += 1;
-        step(problem, state, tangent, forces, inner);
+        let enough = inner.max(par(1, 0.5) * tolerance / worst).min(par(2, 0.5));
+        step(problem, state, tangent, forces, enough);
         if !watch(worst) {
             return Ok(End::Cancelled);
         }

@@ -435,7 +435,8 @@ fn one(
     let only_newton = forces.any() || problem.operators.rolling.is_some();
     for newton in [newton_first || only_newton, true, only_newton] {
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
-        let goal = Goal { tolerance, limit, watch };
+        let certified = part == 1.0;
+        let goal = Goal { tolerance, limit, certified, watch };
         end = if newton {
             newton::solve(problem, state, &mut memory.tangent, forces, goal)?
         } else {
@@ -446,7 +447,7 @@ fn one(
         }
         log::info!("tangential problem: no further progress, Newton's method goes on");
     }
-    if end != End::Converged && !state.is_exact {
+    if end != End::Converged && !state.is_exact && part == 1.0 {
         problem.refresh(state);
     }
     work.products += part * problem.take_products() as f64;
