@@ -21,6 +21,8 @@ use crate::error::{Error, Result};
 /// The inner residual relative to that of the step.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.2;
+/// The last step need not be solved further than to this part of the tolerance.
+const ENOUGH: f64 = 0.5;
 /// It and rho are cut by this when steps bring nothing, down to the least.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
@@ -211,10 +213,9 @@ pub fn solve(
     goal: Goal<'_>,
 ) -> Result<End> {
     let Goal { tolerance, limit, certified, watch } = goal;
-    let par = |k: usize, v: f64| std::env::var(format!("P{k}")).map_or(v, |s| s.parse().unwrap());
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
-    let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { par(0, INNER_ROLLING) } else { INNER });
+    let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
         let slip = problem.rms_slip();
@@ -249,7 +250,7 @@ pub fn solve(
             return Ok(End::Limit);
         }
         iterations += 1;
-        let enough = inner.max(par(1, 0.5) * tolerance / worst).min(par(2, 0.5));
+        let enough = inner.max((ENOUGH * tolerance / worst).min(ENOUGH));
         step(problem, state, tangent, forces, enough);
         if !watch(worst) {
             return Ok(End::Cancelled);

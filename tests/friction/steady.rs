@@ -7,6 +7,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
+use super::scenes::Ellipse;
 use super::steady_scenes::{ellipse, Rolling, KNOWN, NU, RATIOS, SIZES};
 use super::support::{residual, run, solver};
 
@@ -105,6 +106,7 @@ fn steady_rolling_in_any_direction_and_by_any_step_meets_the_conditions() {
 
 #[test]
 fn cases_of_other_programs_are_met() {
+    let mut products = Vec::new();
     for (b, known) in RATIOS.into_iter().zip(KNOWN) {
         for (k, (found, _, tight)) in known.into_iter().enumerate() {
             let case = Rolling::new(b, k, SIZES[1]);
@@ -120,8 +122,24 @@ fn cases_of_other_programs_are_met() {
             if k % 4 == 0 {
                 check(&case.grid, &case.bound, &case.friction, (&report, &solution));
             }
-            // The certificate's products are not in the known ones; a part more until part 2.
-            assert!(report.products <= 1.6 * f64::from(tight[1]) + 2.0, "{b} {}: {}", case.name, report.products);
+            // One more: the certificate is not in the known ones. Most of those of pure spin are on the coarsest grid.
+            let most = if case.name.starts_with("spin") { 1.7 } else { 1.35 };
+            assert!(report.products <= most * f64::from(tight[1]) + 1.0, "{b} {}: {}", case.name, report.products);
+            products.push(report.products);
+        }
+    }
+    products.sort_by(f64::total_cmp);
+    assert!(products[products.len() / 2] <= 25.0, "{products:?}");
+}
+
+#[test]
+fn random_cases_of_steady_rolling_meet_the_conditions() {
+    for seed in 0..30 {
+        for forces in [false, true] {
+            let case = Ellipse::random_rolling(seed, 24, forces);
+            let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &case.friction, 1e-6);
+            let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &[], (&report, &solution));
+            assert!(left <= 1.001e-6, "{seed} {forces}: {left}");
         }
     }
 }
