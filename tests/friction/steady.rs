@@ -165,3 +165,32 @@ fn steps_of_transient_rolling_lead_to_steady_rolling() {
     assert!(apart(&warm, &expected) <= 1e-6, "{}", apart(&warm, &expected));
     assert!(warm_report.products <= 12.0, "{}", warm_report.products);
 }
+
+#[test]
+fn unlike_cylinders_roll_as_contact_says() {
+    // Bentall and Johnson (1967): aluminium on steel, CONTACT's example bentall, which prints creepages, stick and contact counts.
+    let grid = Grid::new(216, 1, 0.001, 1000.0).unwrap();
+    let h: Vec<f64> = (0..216).map(|i| 0.02 * ((i as f64 - 107.5) * 0.001).powi(2)).collect();
+    let bodies = Bodies { shear_modulus: [23000.0, 82000.0], poisson_ratio: [0.31, 0.28] };
+    for (mu, part, creepage, sticks, in_contact) in [
+        (10.0, 0.0, 3.591e-4, 200, 200),
+        (0.05, 0.0, 4.294e-4, 125, 200),
+        (0.05, 0.75, 2.108e-4, 36, 200),
+        (0.05, -0.75, 5.392e-4, 106, 201),
+    ] {
+        let friction = Friction {
+            motion: Motion::SteadyRolling,
+            rolling_direction: PI,
+            prescribed: [Prescribed::Force(part * mu * 16201.9), Prescribed::Creepage(0.0)],
+            ..Friction::new(mu)
+        };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(16201.9)) };
+        let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+        let found = report.friction.unwrap();
+        assert_eq!(stop, Stop::Converged);
+        // The digits printed.
+        assert!((found.creepage[0] - creepage).abs() <= 5e-8, "{mu} {part}: {:?}", found.creepage);
+        assert_eq!((found.certificate.stick_count, report.measures.contact_count), (sticks, in_contact), "{mu} {part}");
+        assert!((found.force[0] - part * mu * 16201.9).abs() <= 1e-6 * mu * 16201.9);
+    }
+}
