@@ -31,8 +31,9 @@ const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
-/// Creepages of more than so many times that at which all slips run away: the force cannot be had.
-const RUNAWAY: f64 = 1e3;
+/// Whatever the spin, a creepage far above it carries the force to mu N. Creepages of more than so many times that at which all slips,
+/// and the spin's slip, run away: the force differs from mu N by less than a tolerance.
+const RUNAWAY: f64 = 1e4;
 /// Eigenvalues of the border below this part of the largest are none.
 const SINGULAR: f64 = 1e-8;
 
@@ -215,6 +216,7 @@ pub fn solve(
     let Goal { tolerance, limit, certified, watch } = goal;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
+    let spinning = problem.rms(|i| problem.rigid[i]);
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
@@ -230,9 +232,9 @@ pub fn solve(
             problem.refresh(state);
             continue;
         }
-        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * saturating {
+        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
             return Err(Error::Infeasible(format!(
-                "the tangential forces cannot be had with this spin: the creepages run away beyond {:?}",
+                "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {:?}",
                 problem.offset
             )));
         }

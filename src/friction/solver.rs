@@ -332,7 +332,10 @@ impl Solver {
                 let area = level.problem.grid.element_area() / self.grid.element_area();
                 let forces = forces.times(1.0 / area);
                 if l + 1 == self.levels_count() && forces.any() {
-                    self.approach(l, forces, part, work)?;
+                    let end = self.approach(l, forces, part, work)?;
+                    if end == End::Cancelled {
+                        return Ok(end);
+                    }
                 }
                 let level = &mut self.levels[l];
                 let coarse = if level.problem.operators.rolling.is_some() { COARSE_ROLLING } else { COARSE };
@@ -355,7 +358,7 @@ impl Solver {
     }
 
     /// Forces that are given are brought on in parts, on the coarsest grid.
-    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<()> {
+    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<End> {
         let mut before = 1.0;
         for load in PARTS.into_iter().chain([1.0]) {
             let level = &mut self.levels[l];
@@ -364,10 +367,13 @@ impl Solver {
             level.problem.rigid.iter_mut().for_each(scale);
             before = load;
             if load < 1.0 {
-                one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
+                let end = one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
+                if end == End::Cancelled {
+                    return Ok(end);
+                }
             }
         }
-        Ok(())
+        Ok(End::Converged)
     }
 
     /// The result on the whole grid, and what is to be said of it.

@@ -52,7 +52,7 @@ fn a_cylinder_rolls_as_carter_says() {
     }
 }
 
-fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
+pub fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
         prescribed: creepage.map(Prescribed::Creepage),
