@@ -5,11 +5,12 @@ use contact_normal::friction::End;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
-use super::{steady, tangential, wheel_on_rail};
+use super::{scenes, steady, tangential, wheel_on_rail};
 
 pub fn all(quick: bool) -> Result<(), Error> {
     wheel(if quick { &[1, 2] } else { &[1, 2, 4, 8] })?;
-    ellipses(if quick { &[32, 64] } else { &steady::SIZES })
+    ellipses(if quick { &[32, 64] } else { &steady::SIZES })?;
+    random(if quick { 50 } else { 500 })
 }
 
 fn wheel(grids: &[usize]) -> Result<(), Error> {
@@ -91,5 +92,27 @@ fn ellipses(sizes: &[usize]) -> Result<(), Error> {
     }
     let medians = all.iter().map(|products| products[products.len() / 2]).collect::<Vec<_>>();
     println!("medians to 1e-6, creepages and forces: {medians:.1?}; {above} cases of more than 1.1 times as before");
+    Ok(())
+}
+
+fn random(count: u64) -> Result<(), Error> {
+    println!("steady rolling, random ellipses, 64 x 64: products to 1e-6: median, 90 %, most, failures");
+    for forces in [false, true] {
+        let (mut products, mut failures) = (Vec::new(), 0);
+        for seed in 0..count {
+            let case = scenes::Ellipse::random_rolling(seed, 64, forces);
+            match tangential(case.grid, case.nu, &case.bound, &case.friction, 1e-6) {
+                Ok((End::Converged, report, _)) => products.push(report.products),
+                other => {
+                    failures += 1;
+                    println!("seed {seed}: {:?} {:?}", other.map(|(end, report, _)| (end, report)), case.friction);
+                }
+            }
+        }
+        products.sort_by(f64::total_cmp);
+        let at = |part: f64| products[(part * (products.len() - 1) as f64) as usize];
+        let what = if forces { "forces" } else { "creepages" };
+        println!("{what}: {:.1} {:.1} {:.1} {failures} of {count}", at(0.5), at(0.9), at(1.0));
+    }
     Ok(())
 }

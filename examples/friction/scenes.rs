@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use contact_normal::friction::{Solution, STICK};
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Friction, Prescribed};
+use contact_normal::scene::{Friction, Motion, Prescribed};
 use contact_normal::solver::Measures;
 
 /// Hertz' pressures of a ball with radius of contact 1 and `mu p_0 = 1`, `G = 1`, pushed sideways until the stick area has the radius c
@@ -109,5 +109,17 @@ impl Ellipse {
         let prescribed = [of(angle.cos()), of(angle.sin())];
         let friction = Friction { prescribed, spin: if forces { 0.0 } else { spin }, ..Friction::new(1.0) };
         Ellipse { grid, nu, bound, friction }
+    }
+
+    /// The same, in steady rolling; with forces spin, too.
+    pub fn random_rolling(seed: u64, m: usize, forces: bool) -> Ellipse {
+        let mut case = Ellipse::random(seed, m, forces);
+        case.friction.motion = Motion::SteadyRolling;
+        if forces {
+            // From none to as much as leaves 99 % of mu N: golden ratio, as if random.
+            let part = (0.618 * seed as f64).fract();
+            case.friction.spin = if seed % 3 == 0 { 0.1 * part } else { 0.0 };
+        }
+        case
     }
 }

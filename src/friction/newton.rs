@@ -21,6 +21,8 @@ use crate::error::{Error, Result};
 /// The inner residual relative to that of the step.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.2;
+/// The last step need not be solved further than to this part of the tolerance.
+const ENOUGH: f64 = 0.5;
 /// It and rho are cut by this when steps bring nothing, down to the least.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
@@ -29,8 +31,9 @@ const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
-/// Creepages of more than so many times that at which all slips run away: the force cannot be had.
-const RUNAWAY: f64 = 1e3;
+/// Whatever the spin, a creepage far above it carries the force to mu N. Creepages of more than so many times that at which all slips,
+/// and the spin's slip, run away: the force differs from mu N by less than a tolerance.
+const RUNAWAY: f64 = 1e4;
 /// Eigenvalues of the border below this part of the largest are none.
 const SINGULAR: f64 = 1e-8;
 
@@ -210,9 +213,10 @@ pub fn solve(
     forces: Forces,
     goal: Goal<'_>,
 ) -> Result<End> {
-    let Goal { tolerance, limit, watch } = goal;
+    let Goal { tolerance, limit, certified, watch } = goal;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
+    let spinning = problem.rms(|i| problem.rigid[i]);
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
@@ -222,15 +226,15 @@ pub fn solve(
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst = sight.residual.max(sight.excess).max(missing);
         if worst < tolerance {
-            if state.is_exact {
+            if state.is_exact || !certified {
                 return Ok(End::Converged);
             }
             problem.refresh(state);
             continue;
         }
-        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * saturating {
+        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
             return Err(Error::Infeasible(format!(
-                "the tangential forces cannot be had with this spin: the creepages run away beyond {:?}",
+                "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {:?}",
                 problem.offset
             )));
         }
@@ -248,7 +252,8 @@ pub fn solve(
             return Ok(End::Limit);
         }
         iterations += 1;
-        step(problem, state, tangent, forces, inner);
+        let enough = inner.max((ENOUGH * tolerance / worst).min(ENOUGH));
+        step(problem, state, tangent, forces, enough);
         if !watch(worst) {
             return Ok(End::Cancelled);
         }

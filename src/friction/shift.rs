@@ -56,6 +56,8 @@ pub struct Goal<'a> {
     pub tolerance: f64,
     /// Iterations at most.
     pub limit: u64,
+    /// Whether it has to hold by a fresh product.
+    pub certified: bool,
     /// Told the residual of each iteration; says whether to go on.
     pub watch: &'a mut dyn FnMut(f64) -> bool,
 }
@@ -86,7 +88,7 @@ struct Steps {
 
 /// Iterates from what the state holds.
 pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> End {
-    let Goal { tolerance, limit, watch } = goal;
+    let Goal { tolerance, limit, watch, .. } = goal;
     let a0 = problem.operators.self_influence;
     let cap = 0.3 / (a0 * (problem.count().max(1) as f64).sqrt());
     let slip = problem.rms_slip();

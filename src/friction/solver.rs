@@ -332,7 +332,10 @@ impl Solver {
                 let area = level.problem.grid.element_area() / self.grid.element_area();
                 let forces = forces.times(1.0 / area);
                 if l + 1 == self.levels_count() && forces.any() {
-                    self.approach(l, forces, part, work)?;
+                    let end = self.approach(l, forces, part, work)?;
+                    if end == End::Cancelled {
+                        return Ok(end);
+                    }
                 }
                 let level = &mut self.levels[l];
                 let coarse = if level.problem.operators.rolling.is_some() { COARSE_ROLLING } else { COARSE };
@@ -355,7 +358,7 @@ impl Solver {
     }
 
     /// Forces that are given are brought on in parts, on the coarsest grid.
-    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<()> {
+    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<End> {
         let mut before = 1.0;
         for load in PARTS.into_iter().chain([1.0]) {
             let level = &mut self.levels[l];
@@ -364,10 +367,13 @@ impl Solver {
             level.problem.rigid.iter_mut().for_each(scale);
             before = load;
             if load < 1.0 {
-                one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
+                let end = one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
+                if end == End::Cancelled {
+                    return Ok(end);
+                }
             }
         }
-        Ok(())
+        Ok(End::Converged)
     }
 
     /// The result on the whole grid, and what is to be said of it.
@@ -435,7 +441,8 @@ fn one(
     let only_newton = forces.any() || problem.operators.rolling.is_some();
     for newton in [newton_first || only_newton, true, only_newton] {
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
-        let goal = Goal { tolerance, limit, watch };
+        let certified = part == 1.0;
+        let goal = Goal { tolerance, limit, certified, watch };
         end = if newton {
             newton::solve(problem, state, &mut memory.tangent, forces, goal)?
         } else {
@@ -446,7 +453,7 @@ fn one(
         }
         log::info!("tangential problem: no further progress, Newton's method goes on");
     }
-    if end != End::Converged && !state.is_exact {
+    if end != End::Converged && !state.is_exact && part == 1.0 {
         problem.refresh(state);
     }
     work.products += part * problem.take_products() as f64;

@@ -5,11 +5,13 @@ mod cattaneo;
 mod coefficients;
 mod conditions;
 mod effects;
+mod linear_theory;
 mod rolling;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]
 mod scenes;
 mod steady;
+mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
 mod support;

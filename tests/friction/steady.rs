@@ -7,6 +7,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Stop};
 
+use super::scenes::Ellipse;
 use super::steady_scenes::{ellipse, Rolling, KNOWN, NU, RATIOS, SIZES};
 use super::support::{residual, run, solver};
 
@@ -51,7 +52,7 @@ fn a_cylinder_rolls_as_carter_says() {
     }
 }
 
-fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
+pub fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
         prescribed: creepage.map(Prescribed::Creepage),
@@ -105,6 +106,7 @@ fn steady_rolling_in_any_direction_and_by_any_step_meets_the_conditions() {
 
 #[test]
 fn cases_of_other_programs_are_met() {
+    let mut products = Vec::new();
     for (b, known) in RATIOS.into_iter().zip(KNOWN) {
         for (k, (found, _, tight)) in known.into_iter().enumerate() {
             let case = Rolling::new(b, k, SIZES[1]);
@@ -120,8 +122,24 @@ fn cases_of_other_programs_are_met() {
             if k % 4 == 0 {
                 check(&case.grid, &case.bound, &case.friction, (&report, &solution));
             }
-            // The certificate's products are not in the known ones; a part more until part 2.
-            assert!(report.products <= 1.6 * f64::from(tight[1]) + 2.0, "{b} {}: {}", case.name, report.products);
+            // One more: the certificate is not in the known ones. Most of those of pure spin are on the coarsest grid.
+            let most = if case.name.starts_with("spin") { 1.7 } else { 1.35 };
+            assert!(report.products <= most * f64::from(tight[1]) + 1.0, "{b} {}: {}", case.name, report.products);
+            products.push(report.products);
+        }
+    }
+    products.sort_by(f64::total_cmp);
+    assert!(products[products.len() / 2] <= 25.0, "{products:?}");
+}
+
+#[test]
+fn random_cases_of_steady_rolling_meet_the_conditions() {
+    for seed in 0..30 {
+        for forces in [false, true] {
+            let case = Ellipse::random_rolling(seed, 24, forces);
+            let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &case.friction, 1e-6);
+            let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &[], (&report, &solution));
+            assert!(left <= 1.001e-6, "{seed} {forces}: {left}");
         }
     }
 }
@@ -146,4 +164,33 @@ fn steps_of_transient_rolling_lead_to_steady_rolling() {
     let (warm_report, warm) = run(&mut stepping, &g, &Friction { previous: Previous::Kept, ..steady }, 1e-8);
     assert!(apart(&warm, &expected) <= 1e-6, "{}", apart(&warm, &expected));
     assert!(warm_report.products <= 12.0, "{}", warm_report.products);
+}
+
+#[test]
+fn unlike_cylinders_roll_as_contact_says() {
+    // Bentall and Johnson (1967): aluminium on steel, CONTACT's example bentall, which prints creepages, stick and contact counts.
+    let grid = Grid::new(216, 1, 0.001, 1000.0).unwrap();
+    let h: Vec<f64> = (0..216).map(|i| 0.02 * ((i as f64 - 107.5) * 0.001).powi(2)).collect();
+    let bodies = Bodies { shear_modulus: [23000.0, 82000.0], poisson_ratio: [0.31, 0.28] };
+    for (mu, part, creepage, sticks, in_contact) in [
+        (10.0, 0.0, 3.591e-4, 200, 200),
+        (0.05, 0.0, 4.294e-4, 125, 200),
+        (0.05, 0.75, 2.108e-4, 36, 200),
+        (0.05, -0.75, 5.392e-4, 106, 201),
+    ] {
+        let friction = Friction {
+            motion: Motion::SteadyRolling,
+            rolling_direction: PI,
+            prescribed: [Prescribed::Force(part * mu * 16201.9), Prescribed::Creepage(0.0)],
+            ..Friction::new(mu)
+        };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(16201.9)) };
+        let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+        let found = report.friction.unwrap();
+        assert_eq!(stop, Stop::Converged);
+        // The digits printed.
+        assert!((found.creepage[0] - creepage).abs() <= 5e-8, "{mu} {part}: {:?}", found.creepage);
+        assert_eq!((found.certificate.stick_count, report.measures.contact_count), (sticks, in_contact), "{mu} {part}");
+        assert!((found.force[0] - part * mu * 16201.9).abs() <= 1e-6 * mu * 16201.9);
+    }
 }

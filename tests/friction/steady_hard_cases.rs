@@ -1,0 +1,156 @@
+//! Steady rolling where it is hard: extreme creepages and forces, gaps, one row, many patches; cancelled anywhere.
+
+use contact_normal::friction::{End, Request};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+
+use super::conditions::disc;
+use super::steady::rolling;
+use super::steady_scenes::{ellipse, NU};
+use super::support::{residual, run, solver};
+
+fn with_forces(parts: [f64; 2], spin: f64, g: &[f64], grid: &Grid) -> Friction<'static> {
+    let carried = g.iter().sum::<f64>() * grid.element_area();
+    Friction { prescribed: parts.map(|part| Prescribed::Force(part * carried)), ..rolling([0.0; 2], spin) }
+}
+
+#[test]
+fn any_force_below_mu_n_is_reached_whatever_the_spin() {
+    let (grid, g) = ellipse(1.0, 28);
+    let carried = g.iter().sum::<f64>() * grid.element_area();
+    for spin in [0.0, 1.5, 20.0] {
+        for part in [0.0, 0.9, 0.99, 0.999, 0.99999] {
+            let friction = with_forces([-0.8 * part, 0.6 * part], spin, &g, &grid);
+            let found = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
+            let left = residual((&grid, NU), &g, &friction, &[], (&found.0, &found.1));
+            assert!(left <= 1.001e-6 || (part, spin) == (0.0, 0.0), "{spin} {part}: {left}");
+            let apart = (found.0.force[0] + 0.8 * part * carried).hypot(found.0.force[1] - 0.6 * part * carried);
+            assert!(apart <= 1e-6 * carried, "{spin} {part}: {:?}", found.0.force);
+        }
+        let all = with_forces([-1.0, 0.0], spin, &g, &grid);
+        let request =
+            Request { pressure: &g, friction: &all, tolerance: 1e-6, limit: 100, sideways: None, again: false };
+        let refused = solver(&grid, NU).solve(&request, &mut |_, _| true).unwrap_err();
+        assert!(refused.to_string().contains("it must be less than"), "{refused}");
+    }
+}
+
+#[test]
+fn hard_cases_of_steady_rolling_have_their_answers() {
+    let rough = |x: usize, y: usize| ((13 * x + 7 * y) % 17) < 9 || (x / 4 + y / 5) % 2 == 0;
+    let shapes: [(&str, (Grid, Vec<f64>)); 8] = [
+        ("a ball", disc(24, |_, _| true)),
+        ("one element", disc(24, |x, y| (x, y) == (9, 9))),
+        ("two far apart", disc(40, |x, y| (x, y) == (8, 8) || (x, y) == (31, 30))),
+        ("a row", disc(24, |_, y| y == 10)),
+        ("a column", disc(24, |x, _| x == 10)),
+        ("gaps inside rows", disc(24, |x, y| (x + 2 * y) % 3 != 0)),
+        ("many patches", disc(30, |x, y| x % 5 != 0 && y % 4 != 0)),
+        ("rough", disc(30, rough)),
+    ];
+    for (name, (grid, g)) in &shapes {
+        let in_contact = g.iter().filter(|g| **g > 0.0).count();
+        for (what, friction) in [
+            ("partial slip", rolling([-0.3, 0.2], 0.2)),
+            ("creepages of 1e-12", rolling([1e-12, 0.0], 0.0)),
+            ("creepages of 1e3", rolling([-1e3, 1e3], 0.0)),
+            ("spin alone", rolling([0.0; 2], 0.7)),
+            ("spin of 1e-12", rolling([0.0; 2], 1e-12)),
+            ("spin of 1e3", rolling([0.0; 2], 1e3)),
+            ("against the spin", rolling([0.5, -0.5], -1.0)),
+            (
+                "hardly any friction",
+                Friction {
+                    coefficient: contact_normal::scene::Coefficient::Uniform(1e-9),
+                    ..rolling([-0.3, 0.2], 0.1)
+                },
+            ),
+            (
+                "mu 1e9",
+                Friction { coefficient: contact_normal::scene::Coefficient::Uniform(1e9), ..rolling([-0.3, 0.2], 0.1) },
+            ),
+            ("forces", with_forces([0.6, -0.3], 0.1, g, grid)),
+            ("small forces", with_forces([1e-4, 0.0], 0.0, g, grid)),
+            (
+                "one force",
+                Friction {
+                    prescribed: [Prescribed::Creepage(0.1), with_forces([0.0, 0.5], 0.0, g, grid).prescribed[1]],
+                    ..rolling([0.0; 2], 0.2)
+                },
+            ),
+        ] {
+            let directions =
+                if *name == "a ball" { &[0.0, 180.0_f64, 90.0, 270.0, 37.0][..] } else { &[0.0, 37.0][..] };
+            for &direction in directions {
+                let friction = Friction { rolling_direction: direction.to_radians(), ..friction };
+                let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
+                let left = residual((grid, NU), g, &friction, &[], (&report, &solution));
+                assert!(left <= 1.001e-6, "{name}, {what}, {direction}: {left}");
+                assert_eq!(
+                    report.certificate.stick_count + report.certificate.slip_count,
+                    in_contact,
+                    "{name}, {what}"
+                );
+                match what {
+                    "mu 1e9" => assert_eq!(report.certificate.slip_count, 0, "{name}"),
+                    "creepages of 1e3" | "hardly any friction" => {
+                        assert_eq!(report.certificate.stick_count, 0, "{name}, {what}");
+                    }
+                    _ => {}
+                }
+            }
+        }
+        // Free rolling: nothing moves.
+        for friction in [rolling([0.0; 2], 0.0), with_forces([0.0; 2], 0.0, g, grid)] {
+            let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
+            assert!(solution.traction.iter().all(|q| *q == [0.0; 2]) && report.creepage == [0.0; 2], "{name}");
+        }
+    }
+}
+
+#[test]
+fn any_start_leads_to_the_same_solution() {
+    let (grid, g) = disc(24, |_, _| true);
+    let friction = rolling([-0.4, 0.1], 0.3);
+    let (_, expected) = run(&mut solver(&grid, NU), &g, &friction, 1e-9);
+    let n = grid.len();
+    let wild = |k: usize| (0..n).map(|i| 1e3 * ((7919 * i * k) as f64 % 13.0 - 6.0)).collect::<Vec<f64>>();
+    let opposite = |k: usize| expected.traction.iter().map(|q| -q[k]).collect::<Vec<f64>>();
+    for [x, y] in [[wild(1), wild(3)], [opposite(0), opposite(1)], [vec![1e300; n], vec![-1e-300; n]]] {
+        let from = Friction { previous: Previous::Given([&x, &y]), ..friction };
+        let (_, found) = run(&mut solver(&grid, NU), &g, &from, 1e-9);
+        let apart = found.traction.iter().zip(&expected.traction).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+        // Both to a residual of 1e-9, which is the error of q (docs/friction.md), in the largest of some elements.
+        assert!(apart.fold(0.0, f64::max) <= 1e-7);
+    }
+}
+
+#[test]
+fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
+    let (grid, g) = ellipse(1.0, 40);
+    for friction in [rolling([-0.4, 0.1], 0.3), with_forces([0.6, 0.2], 0.3, &g, &grid)] {
+        assert_eq!(friction.motion, Motion::SteadyRolling);
+        let request =
+            Request { pressure: &g, friction: &friction, tolerance: 1e-8, limit: 1000, sideways: None, again: false };
+        let mut calls = 0;
+        for cancel in 0.. {
+            let mut solver = solver(&grid, NU);
+            calls = 0;
+            let (end, report) = solver
+                .solve(&request, &mut |_, _| {
+                    calls += 1;
+                    calls <= cancel
+                })
+                .unwrap();
+            let solution = solver.solution().unwrap();
+            assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g), "{cancel}");
+            let left = residual((&grid, NU), &g, &friction, &[], (&report, solution));
+            assert!((left - report.certificate.residual).abs() <= 1e-9 * (1.0 + left), "{cancel}: {left} {report:?}");
+            if end == End::Converged {
+                break;
+            }
+            assert_eq!((end, calls), (End::Cancelled, cancel + 1));
+        }
+        assert!(calls > 10);
+    }
+}
