@@ -9,7 +9,7 @@
 //! E r = r in C;   DECAY times the interpolated coarse value outside, on each of LEVELS grids, from the coarsest
 //! ```
 //!
-//! On rough surfaces, whose C is many small spots, it saves a third of the iterations (docs/friction.md).
+//! On rough surfaces, whose C is many small spots, it saves up to a third of the products (docs/friction.md).
 
 use super::problem::{add, plus};
 use super::Vector;

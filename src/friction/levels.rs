@@ -4,7 +4,7 @@
 //! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C,
 //!                                                                              in steady rolling times 2: a step is 2 dq long
 //! start of the next grid: q per area in C, interpolated between the centres of those in C, and back into the disc;
-//!                         where all that it is interpolated from slip, g times the direction of q/g
+//!                         where all that it is interpolated from slip, g times the direction of q/g; in steady rolling g times q/g
 //! ```
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
@@ -119,6 +119,8 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
         let in_contact = from.children(&to, k).filter(|&child| fine.problem.bound[child] > 0.0).count();
         *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
     }
+    // Behind the leading edge tractions of steady rolling begin as their bound does.
+    let is_rolling = fine.problem.operators.rolling.is_some();
     let (x, y) = (places(to.mx, from.mx), places(to.my, from.my));
     for i in 0..to.len() {
         let g = fine.problem.bound[i];
@@ -146,6 +148,8 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
             [0.0; 2]
         } else if all_slip && length > 0.0 {
             onto_disc(direction.map(|v| g * v / length), g)
+        } else if is_rolling {
+            onto_disc(direction.map(|v| g * v / weights), g)
         } else {
             onto_disc(traction.map(|v| v / weights), g)
         };
