@@ -3,18 +3,20 @@
 //! ```text
 //! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C,
 //!                                                                              in steady rolling times 2: a step is 2 dq long
-//! start of the next grid: q/g, interpolated between the centres of those in C, times g;
-//!                         a unit vector where all that it is interpolated from slip
+//! start of the next grid: q per area in C, interpolated between the centres of those in C, and back into the disc;
+//!                         where all that it is interpolated from slip, g times the direction of q/g; in steady rolling g times q/g
 //! ```
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
 
 use super::certificate::ON_THE_CIRCLE;
+use super::extension::neighbours;
 use super::problem::{add, onto_disc, plus, square, Operators, Problem, State};
 use super::shift::Memory;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::memory::zeros;
 use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
@@ -71,12 +73,17 @@ pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads)
     Ok(levels)
 }
 
+/// Elements of a grid that make one of the next coarser.
+fn children(fine: &Grid, coarse: &Grid) -> usize {
+    (1 + usize::from(coarse.dx > fine.dx)) * (1 + usize::from(coarse.dy > fine.dy))
+}
+
 /// g, w and what goes with them on the next coarser grid; q = 0.
 pub fn restrict(fine: &Problem, coarse: &mut Level) {
     let Level { problem, state, .. } = coarse;
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
-    let all = (1 + usize::from(to.dx > from.dx)) * (1 + usize::from(to.dy > from.dy));
+    let all = children(&from, &to);
     for i in 0..to.len() {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
@@ -104,16 +111,24 @@ fn step_ratio(coarse: &Problem, fine: &Problem) -> f64 {
 }
 
 /// q on the next finer grid, from the coarser one.
-pub fn interpolate(coarse: &Level, fine: &mut Level) {
+pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
     let (from, to) = (coarse.problem.grid, fine.problem.grid);
-    let (x, y) = (neighbours(to.mx, from.mx), neighbours(to.my, from.my));
+    // Elements of a coarse one by those of them in C: q carries on C what it carried on the whole.
+    let mut shares: Vec<f64> = zeros(from.len(), "the start from a coarser grid")?;
+    for (k, share) in shares.iter_mut().enumerate() {
+        let in_contact = from.children(&to, k).filter(|&child| fine.problem.bound[child] > 0.0).count();
+        *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
+    }
+    // Behind the leading edge tractions of steady rolling begin as their bound does.
+    let is_rolling = fine.problem.operators.rolling.is_some();
+    let (x, y) = (places(to.mx, from.mx), places(to.my, from.my));
     for i in 0..to.len() {
         let g = fine.problem.bound[i];
         fine.state.q[i] = [0.0; 2];
         if !(g > 0.0) {
             continue;
         }
-        let (mut sum, mut weights, mut all_slip) = ([0.0; 2], 0.0, true);
+        let (mut direction, mut traction, mut weights, mut all_slip) = ([0.0; 2], [0.0; 2], 0.0, true);
         for (column, in_x) in x[i % to.mx] {
             for (row, in_y) in y[i / to.mx] {
                 let k = row * from.mx + column;
@@ -121,34 +136,32 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) {
                 if !(bound > 0.0) || weight == 0.0 {
                     continue;
                 }
-                let part = coarse.state.q[k].map(|q| q / bound);
-                all_slip &= square(part) >= ON_THE_CIRCLE * ON_THE_CIRCLE;
-                sum = plus(sum, weight, part);
+                let (q, share) = (coarse.state.q[k], shares[k]);
+                all_slip &= square(q).sqrt() >= ON_THE_CIRCLE * bound;
+                direction = plus(direction, weight / bound, q);
+                traction = plus(traction, weight * share, q);
                 weights += weight;
             }
         }
-        let part = if weights > 0.0 { sum.map(|sum| sum / weights) } else { [0.0; 2] };
-        let length = square(part).sqrt();
-        let part = if all_slip && length > 0.0 { part.map(|part| part / length) } else { part };
-        fine.state.q[i] = onto_disc([g * part[0], g * part[1]], g);
+        let length = square(direction).sqrt();
+        fine.state.q[i] = if weights == 0.0 {
+            [0.0; 2]
+        } else if all_slip && length > 0.0 {
+            onto_disc(direction.map(|v| g * v / length), g)
+        } else if is_rolling {
+            onto_disc(direction.map(|v| g * v / weights), g)
+        } else {
+            onto_disc(traction.map(|v| v / weights), g)
+        };
     }
     let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
     fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
     fine.state.is_exact = false;
+    Ok(())
 }
 
 /// Of each fine place the two coarse ones between which its centre lies, with their weights.
-fn neighbours(fine: usize, coarse: usize) -> Vec<[(usize, f64); 2]> {
-    if fine == coarse {
-        return (0..fine).map(|i| [(i, 1.0), (i, 0.0)]).collect();
-    }
-    let of = |i: usize| {
-        let own = i / 2;
-        let other = if i % 2 == 0 { own.checked_sub(1) } else { Some(own + 1).filter(|k| *k < coarse) };
-        match other {
-            Some(other) => [(own, 0.75), (other, 0.25)],
-            None => [(own, 1.0), (own, 0.0)],
-        }
-    };
+fn places(fine: usize, coarse: usize) -> Vec<[(usize, f64); 2]> {
+    let of = |i: usize| if fine == coarse { [(i, 1.0), (i, 0.0)] } else { neighbours(i, coarse) };
     (0..fine).map(of).collect()
 }

@@ -5,6 +5,7 @@
 //! | [`coefficients`] | influence of tangential tractions |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
+//! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift` | projected conjugate gradients on discs, for motions that are given |
 //! | `newton`, `fgmres` | semismooth Newton, for forces that are given and where the gradients stall |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
@@ -14,6 +15,7 @@ mod certificate;
 pub mod coefficients;
 pub mod cross;
 pub mod dense;
+mod extension;
 mod fgmres;
 mod levels;
 mod march;

@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use super::coefficients::Tangential;
+use super::extension::Extension;
 use super::march::{March, Rolling};
 use super::toeplitz::{unit_of, Toeplitz, Workspace};
 use super::Vector;
@@ -142,6 +143,8 @@ pub struct Problem {
     pub scale: Scale,
     /// A.
     pub operators: Operators,
+    /// Residuals beside C.
+    pub extension: Extension,
     /// Of each row with elements of C, the run from the first to behind the last of them.
     runs: Vec<Range<usize>>,
     /// Elements of C.
@@ -187,6 +190,7 @@ impl Problem {
             offset: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             operators,
+            extension: Extension::new(grid.mx, grid.my)?,
             runs: Vec::new(),
             count: 0,
             rms_bound: 0.0,
@@ -195,6 +199,7 @@ impl Problem {
 
     /// To be called when `bound` has changed.
     pub fn bound_changed(&mut self) {
+        self.extension.contact_changed(&self.bound);
         let mx = self.grid.mx;
         self.runs.clear();
         (self.count, self.rms_bound) = (0, 0.0);

@@ -21,7 +21,10 @@ use crate::memory::zeros;
 const PATIENCE: u32 = 10;
 
 /// A debt above this part of a step is paid at once.
-const MOST_DEBT: f64 = 0.1;
+const MOST_DEBT: f64 = 0.2;
+
+/// The length at which a step is held back is at least this: on rough surfaces steps are short.
+const LEAST_HELD_BACK: f64 = 0.2;
 
 /// Memory of the iteration.
 #[derive(Default)]
@@ -137,6 +140,8 @@ fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &m
         beta = (beta / steps.energy).max(0.0);
     }
     let f = steps.held_back;
+    // Outside C there are still continued residuals.
+    given.fill([0.0; 2]);
     for i in problem.contact() {
         let t = tangent.project(i, plus(z[i], beta, direction[i]));
         let moved = moved(tangent, problem.bound[i], i, state.q[i], t, f);
@@ -183,7 +188,7 @@ fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &m
             debt[i] = [0.0; 2];
         }
     }
-    steps.held_back = length.clamp(0.3, 1.0);
+    steps.held_back = length.clamp(LEAST_HELD_BACK, 1.0);
 }
 
 /// Where element i goes from q by `a t`.

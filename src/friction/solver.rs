@@ -17,8 +17,7 @@ use crate::threads::Threads;
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
 /// Coarser grids are solved to this residual: what they leave wrong costs more on the finest.
-const COARSE: f64 = 3e-4;
-const COARSE_ROLLING: f64 = 1e-3;
+const COARSE: f64 = 1e-3;
 /// Iterations at most on each of them.
 const COARSE_LIMIT: u64 = 60;
 /// With forces given, the coarsest grid is solved with these parts of the load first, to this residual.
@@ -338,13 +337,12 @@ impl Solver {
                     }
                 }
                 let level = &mut self.levels[l];
-                let coarse = if level.problem.operators.rolling.is_some() { COARSE_ROLLING } else { COARSE };
-                let end = one(level, forces, forces.any(), (tolerance.max(coarse), COARSE_LIMIT), part, work)?;
+                let end = one(level, forces, forces.any(), (tolerance.max(COARSE), COARSE_LIMIT), part, work)?;
                 if end == End::Cancelled {
                     return Ok(end);
                 }
                 let (fine, coarse) = self.levels.split_at_mut(l);
-                interpolate(&coarse[0], &mut fine[l - 1]);
+                interpolate(&coarse[0], &mut fine[l - 1])?;
                 let Level { problem, state, .. } = &mut fine[l - 1];
                 problem.refresh(state);
             }

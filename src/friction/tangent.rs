@@ -15,8 +15,8 @@ use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// In steady rolling D weighs so much beside the self-influence.
-const OF_ROLLING: f64 = 0.5;
+/// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
+const MIXED: f64 = 0.5;
 
 /// What an element does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,19 +103,20 @@ impl Tangent {
         }
     }
 
-    /// `z = P(E M E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/a0)`, for r of which P r = r: the circulant inverse of A and, where the
-    /// curvature D dominates, its own inverse.
-    /// In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
+    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r: the circulant inverse M of A with
+    /// residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D dominates, its own
+    /// inverse. In steady rolling, `B = A d`, with x of `d x = E X' M X E r` in the place of the first term (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
-        let stiffness = if problem.operators.rolling.is_some() { OF_ROLLING / a0 } else { 1.0 / a0 };
-        let mixing = |i: usize| 1.0 / (1.0 + stiffness * self.curvature[i]);
+        let mixing = |i: usize| 1.0 / (1.0 + MIXED * self.curvature[i] / a0);
         mixed.fill([0.0; 2]);
         for i in problem.contact() {
             let e = mixing(i);
             mixed[i] = [e * r[i][0], e * r[i][1]];
         }
+        problem.extension.fill(mixed);
         problem.operators.precondition(mixed, unit, z);
+        problem.extension.fold(z);
         for i in problem.contact() {
             let e = mixing(i);
             z[i] = self.project(i, [e * z[i][0], e * z[i][1]]);

@@ -152,7 +152,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 fn an_entry_starts_from_its_neighbour() {
     let (p, h) = (pressure(), vec![0.0; M * M]);
     let friction = frictions()[0];
-    let entries: Vec<Entry> = (0..RUN).map(|i| Entry { amount: [1e-3 + 1e-5 * i as f64, 2e-4], spin: 0.0 }).collect();
+    let entries: Vec<Entry> = (0..RUN).map(|i| Entry { amount: [1e-3 + 1e-7 * i as f64, 2e-4], spin: 0.0 }).collect();
     let (_, found) = batch(&scene(&h, friction), Some(&p), &entries, &options(1), None);
     let products: Vec<f64> = found.iter().map(|(ended, _)| report(ended).products).collect();
     let warm = products[1..].iter().sum::<f64>() / (RUN - 1) as f64;
