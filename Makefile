@@ -75,10 +75,19 @@ SOAK ?= 100000
 soak:
 	$(CARGO) run --release --locked --example soak -- $(SOAK)
 
-# What a solve costs, in products, beside what it may cost. BENCH="--large" goes up to 4096 x 4096; see benches/performance.
+# What a solve costs, in products, beside what it may cost and beside an older version, which is built once. BENCH="--large" goes up to
+# 4096 x 4096; see benches/performance.
 BENCH ?=
-bench:
-	$(CARGO) bench --locked --bench performance -- $(BENCH)
+OLD := 9fd3772
+OLD_LIBRARY := build/old-$(OLD)/target/release/libcontact_normal.so
+bench: all $(OLD_LIBRARY)
+	CONTACT_NORMAL_OLD="$(CURDIR)/$(OLD_LIBRARY)" CONTACT_NORMAL_NEW="$(CURDIR)/target/release/libcontact_normal.so" \
+		$(CARGO) bench --locked --bench performance -- $(BENCH)
+
+$(OLD_LIBRARY):
+	@mkdir -p build/old-$(OLD)
+	git archive $(OLD) | tar -x -C build/old-$(OLD)
+	cd build/old-$(OLD) && CARGO_TARGET_DIR=target $(CARGO) build --release --locked --lib
 
 # The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick".
 PEERS ?=

@@ -13,8 +13,8 @@ use std::sync::Mutex;
 
 use crate::error::{Error, Result};
 
-/// Bytes that are kept in the process, at most: those of a solve on 1024 x 1024 elements.
-const MOST_KEPT: usize = 128 << 20;
+/// Bytes that are kept in the process, at most: more than a solve on 1024 x 1024 elements takes.
+const MOST_KEPT: usize = 192 << 20;
 /// Smaller blocks the allocator keeps by itself.
 const LEAST_KEPT: usize = 1 << 15;
 
@@ -40,9 +40,9 @@ pub(crate) fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) ->
     Ok(v)
 }
 
-/// Makes v n values long that are all written before they are read: it may hold anything, where it can `unwritten`, which shows if they
+/// Makes v n values long that are all written before they are read: it may hold anything, where it can a `mark`, which shows if they
 /// are not.
-pub(crate) fn unwritten<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, unwritten: A, what: &str) -> Result<()> {
+pub(crate) fn unwritten<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, mark: A, what: &str) -> Result<()> {
     if v.capacity() < n {
         match find(n) {
             Some(kept) => keep_one(replace(v, kept)),
@@ -52,8 +52,15 @@ pub(crate) fn unwritten<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, unwr
             }
         }
     }
-    v.resize(n, unwritten);
+    v.resize(n, mark);
     Ok(())
+}
+
+/// A new array of n values that are all written before they are read.
+pub(crate) fn blank<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
+    let mut v = Vec::new();
+    unwritten(&mut v, n, mark, what)?;
+    Ok(v)
 }
 
 /// Room for n values: what is put there later allocates nothing.

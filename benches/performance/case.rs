@@ -100,6 +100,15 @@ pub fn wheel_rail(name: &str, refinement: usize) -> Case {
     }
 }
 
+/// "ellipse", "rough", or the name of a wheel-rail contact and its refinement.
+pub fn by_name(name: &str, m: usize) -> Case {
+    match name {
+        "ellipse" => ellipse(m),
+        "rough" => rough(m),
+        _ => wheel_rail(name, m),
+    }
+}
+
 fn read(path: &str) -> String {
     std::fs::read_to_string(format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))).expect("the data file")
 }

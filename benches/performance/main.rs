@@ -3,13 +3,14 @@
 //! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
 //!
 //! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
-//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps force accuracy growth norm memory batch dense methods.
+//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps versus force accuracy growth norm memory batch dense methods.
 
 mod case;
 mod dense;
 mod measure;
 mod methods;
 mod targets;
+mod versus;
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -18,6 +19,12 @@ fn main() {
         return targets::cold_row(&case::ellipse(16), 1, |product| 25.0 * product + 50e-6, 25.0);
     }
     arguments.retain(|argument| argument != "--bench");
+    if let [first, library, name, m, load, threads] = &arguments[..] {
+        if first == versus::CALL {
+            let number = |text: &String| text.parse().expect("a number");
+            return versus::call(library, name, number(m), load, number(threads));
+        }
+    }
     if let [first, name, m, rest @ ..] = &arguments[..] {
         let size = || m.parse().expect("a size");
         match (first.as_str(), rest) {
@@ -55,6 +62,9 @@ fn main() {
         }
         if wanted("steps") {
             targets::time_steps(threads);
+        }
+        if wanted("versus") {
+            versus::versus(threads, sizes);
         }
     }
     measure::by_processor(processor);

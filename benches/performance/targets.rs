@@ -5,7 +5,7 @@ use std::process::Command;
 use contact_normal::scene::{Load, Scene};
 use contact_normal::solver::{InitialGuess, Method, Options, Problem, Solver, Stop};
 
-use crate::case::{ellipse, rough, wheel_rail, Case};
+use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
 use crate::measure::{cold, in_turns, median, seconds, shown, size, Product};
 
 /// What the small grids may cost on top of their products.
@@ -297,14 +297,6 @@ pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
         } else {
             cold(&case.scene(), &options(1));
         }
-    }
-}
-
-fn by_name(name: &str, m: usize) -> Case {
-    match name {
-        "ellipse" => ellipse(m),
-        "rough" => rough(m),
-        _ => wheel_rail(name, m),
     }
 }
 

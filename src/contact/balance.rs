@@ -33,10 +33,10 @@ impl State {
         }
         self.project(set);
         let Load::Force(force) = self.load else { return Some(1.0) };
-        if !self.at_limit.contains(&true) {
+        if !self.has_limited() {
             let factor = self.balance_force();
             self.project(set);
-            if !self.at_limit.contains(&true) {
+            if !self.has_limited() {
                 return factor;
             }
         }

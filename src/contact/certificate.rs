@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use super::{AdmissibleSet, State};
+use crate::grid::Grid;
+use crate::threads::Threads;
 
 /// The measures of a solution. Status OK means that they hold to the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,6 +22,11 @@ pub struct Certificate {
 /// The round-off of `h - approach` where h is the approach: a sum and a mean of equal numbers. Distances below it are those of bodies that
 /// fit exactly; larger ones, though round-off of a huge offset they may be, are not taken for none.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+
+/// Blocks of rows, the sums of which are added in order.
+const BLOCKS: usize = 64;
+/// Parts of each sum of a row: an addition does not wait for the one before.
+const LANES: usize = 4;
 
 /// What one pass over a state whose u is A p tells.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,19 +54,42 @@ pub struct Survey {
 impl Survey {
     /// Surveys a state.
     pub fn of(state: &State) -> Survey {
-        let mut survey = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
-        let mx = state.grid.mx;
-        let at_limit = state.at_limit.contains(&true);
-        for start in (0..state.grid.len()).step_by(mx) {
-            survey.add_rows(state, start..start + mx);
-        }
+        Survey::by(state, &Threads::One)
+    }
+
+    /// The same by several threads: block of rows by block, so that they make no difference.
+    pub fn by(state: &State, threads: &Threads) -> Survey {
+        let Grid { mx, my, .. } = state.grid;
+        let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
+        let mut blocks = [nothing; BLOCKS];
+        let rows = my.div_ceil(BLOCKS);
+        let blocks = &mut blocks[..my.div_ceil(rows)];
+        threads.for_a_pass(mx * my).for_each(blocks, |b, block| {
+            (b * rows..((b + 1) * rows).min(my)).for_each(|y| block.add_rows(state, y * mx..(y + 1) * mx));
+        });
+        let mut survey = blocks.iter().fold(nothing, Survey::joined);
         let mut touching = survey.distance;
-        if at_limit {
+        if state.has_limited() {
             touching += survey.add_limited(state);
         }
         survey.scale = (touching / survey.contact_count.max(1) as f64).sqrt();
         survey.finish(state);
         survey
+    }
+
+    /// Of two parts of a grid, before norms are made of sums.
+    fn joined(self, other: &Survey) -> Survey {
+        Survey {
+            residual: self.residual + other.residual,
+            distance: self.distance + other.distance,
+            scale: 0.0,
+            violation: self.violation.max(other.violation),
+            contact_count: self.contact_count + other.contact_count,
+            pressures: self.pressures + other.pressures,
+            squares: self.squares + other.squares,
+            range: (self.range.0.min(other.range.0), self.range.1.max(other.range.1)),
+            work: (self.work.0 + other.work.0, self.work.1 + other.work.1),
+        }
     }
 
     /// Norms from sums. What is a difference of terms that are equal but for round-off is 0.
@@ -113,26 +143,33 @@ impl Survey {
         touching
     }
 
+    /// The columns of a row from the first to the last that is in contact or has a pressure.
     fn add_row(&mut self, approach: f64, h: &[f64], u: &[f64], p: &[f64], contact: &[bool]) {
-        let (mut rr, mut hh, mut count) = (0.0, 0.0, 0);
-        let (mut pressures, mut squares, mut gaps, mut energy) = (0.0, 0.0, 0.0, 0.0);
-        for i in 0..h.len() {
-            self.range = (self.range.0.min(p[i]), self.range.1.max(p[i]));
-            if !contact[i] && p[i] == 0.0 {
-                continue;
-            }
+        let counts = |i: &usize| contact[*i] || p[*i] != 0.0;
+        let Some(first) = (0..h.len()).find(counts) else { return };
+        let end = (first..h.len()).rev().find(counts).map_or(first, |last| last + 1);
+        if first > 0 || end < h.len() {
+            self.range = (self.range.0.min(0.0), self.range.1.max(0.0));
+        }
+        let (mut sums, mut count) = ([[0.0; LANES]; 6], 0);
+        let mut add = |i: usize, lane: usize| {
+            let (p, inside) = (p[i], contact[i]);
             let distance = h[i] - approach;
             let e = distance + u[i];
-            if contact[i] {
-                rr += e * e;
-                hh += distance * distance;
-                count += 1;
+            self.range = (self.range.0.min(p), self.range.1.max(p));
+            count += usize::from(inside);
+            // Distances of elements without a surface are infinite.
+            let zero_or = |counts: bool, value: f64| if counts { value } else { 0.0 };
+            let (rr, hh) = (zero_or(inside, e * e), zero_or(inside, distance * distance));
+            let (gap, energy) = (zero_or(p != 0.0, p * e.abs()), zero_or(p != 0.0, p * u[i].abs()));
+            for (sum, term) in sums.iter_mut().zip([rr, hh, p, p * p, gap, energy]) {
+                sum[lane] += term;
             }
-            pressures += p[i];
-            squares += p[i] * p[i];
-            gaps += p[i] * e.abs();
-            energy += p[i] * u[i].abs();
-        }
+        };
+        let whole = end - (end - first) % LANES;
+        (first..whole).step_by(LANES).for_each(|i| (0..LANES).for_each(|lane| add(i + lane, lane)));
+        (whole..end).for_each(|i| add(i, i - whole));
+        let [rr, hh, pressures, squares, gaps, energy] = sums.map(|lanes| lanes.iter().sum::<f64>());
         self.residual += rr;
         self.distance += hh;
         self.contact_count += count;

@@ -10,14 +10,22 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
         return 0;
     }
     let mut changed = 0;
-    for i in 0..state.p.len() {
-        if state.contact[i] && set.leaves(i, state.p[i]) {
-            if S::LIMITED && state.p[i] > 0.0 {
-                (state.at_limit[i], state.reached_limit) = (true, true);
+    for start in (0..state.p.len()).step_by(state.grid.mx) {
+        // Few rows have an element that leaves, and this the compiler can vectorise.
+        let row = start..start + state.grid.mx;
+        let elements = state.p[row.clone()].iter().zip(&state.contact[row.clone()]).zip(row.clone());
+        if !elements.fold(false, |some, ((p, inside), i)| some | (inside & set.leaves(i, *p))) {
+            continue;
+        }
+        for i in row {
+            if state.contact[i] && set.leaves(i, state.p[i]) {
+                if S::LIMITED && state.p[i] > 0.0 {
+                    (state.at_limit[i], state.reached_limit) = (true, true);
+                }
+                state.p[i] = set.project(i, state.p[i]);
+                state.contact[i] = false;
+                changed += 1;
             }
-            state.p[i] = set.project(i, state.p[i]);
-            state.contact[i] = false;
-            changed += 1;
         }
     }
     changed

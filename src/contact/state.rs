@@ -2,8 +2,7 @@
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{keep, reserve};
-use crate::operator::zeros;
+use crate::memory::{blank, keep, reserve, zeros};
 use crate::scene::Load;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
@@ -47,7 +46,7 @@ pub struct State {
 }
 
 impl State {
-    /// No pressures, no contact. `estimate` is the approach to start from when the force is prescribed.
+    /// Of the undeformed distance h; pressures and displacements are not known yet. `estimate` is the approach to start from when the force is prescribed.
     pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
         let n = grid.len();
         let approach = match load {
@@ -57,9 +56,9 @@ impl State {
         Ok(State {
             grid,
             h,
-            p: zeros(n, "pressures")?,
-            u: zeros(n, "displacements")?,
-            u_is: Freshness::Exact,
+            p: blank(n, f64::NAN, "pressures")?,
+            u: blank(n, f64::NAN, "displacements")?,
+            u_is: Freshness::Stale,
             contact: zeros(n, "contact")?,
             at_limit: Vec::new(),
             reached_limit: false,
@@ -72,6 +71,11 @@ impl State {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.p.len() * (3 * size_of::<f64>() + size_of::<bool>())
+    }
+
+    /// Whether an element is at its limit.
+    pub fn has_limited(&self) -> bool {
+        self.reached_limit && self.at_limit.contains(&true)
     }
 
     /// Elements in contact.
@@ -144,12 +148,18 @@ impl State {
             }
             if count > 0.0 {
                 self.approach = sum / count;
-            } else if self.at_limit.contains(&true) {
+            } else if self.has_limited() {
                 // Nothing is in elastic contact: the least approach that holds all elements at their limit.
                 let held = (0..self.h.len()).filter(|&i| self.at_limit[i]).map(|i| self.h[i] + self.u[i]);
                 self.approach = held.fold(f64::NEG_INFINITY, f64::max);
             }
         }
+    }
+
+    /// What was found before is nothing to start from.
+    pub fn forget(&mut self) {
+        self.at_limit.fill(false);
+        self.u_is = Freshness::Stale;
     }
 
     /// p = 0: nothing is in contact, and u = 0 is A p.

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::methods::{Change, Habits, Step};
-use crate::operator::{dense, zeros};
+use crate::operator::zeros;
 use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 
@@ -30,9 +30,11 @@ const LARGEST_GRID: usize = 32 * 32;
 /// Coefficients, and memory for as many elements as there have been so far.
 pub struct Direct {
     grid: Grid,
-    /// Coefficients at offsets >= 0, `[my][mx]`.
+    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest.
     table: Vec<f64>,
     elements: Vec<usize>,
+    /// The same as runs in rows: the first element of each, and how many they are.
+    runs: Vec<(usize, usize)>,
     matrix: Vec<f64>,
     /// One right-hand side, or two: h and 1.
     right: Vec<f64>,
@@ -46,15 +48,18 @@ impl Direct {
         if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);
         }
-        let mut table = zeros(grid.len(), "influence coefficients")?;
-        for (row, ky) in table.chunks_exact_mut(grid.mx).zip(0..) {
-            influence.fill_row(0, ky, row);
+        let width = 2 * grid.mx - 1;
+        let mut table = zeros(grid.my * width, "influence coefficients")?;
+        for (row, ky) in table.chunks_exact_mut(width).zip(0..) {
+            influence.fill_row(0, ky, &mut row[grid.mx - 1..]);
+            (1..grid.mx).for_each(|kx| row[grid.mx - 1 - kx] = row[grid.mx - 1 + kx]);
         }
         let scratch = factor::cholesky_in_place_scratch::<f64>(MOST_IN_CONTACT, Par::Seq, Default::default());
         Ok(Some(Direct {
             grid: *grid,
             table,
-            elements: Vec::with_capacity(MOST_IN_CONTACT),
+            elements: Vec::with_capacity(MOST_IN_CONTACT + 1),
+            runs: Vec::with_capacity(MOST_IN_CONTACT + 1),
             matrix: Vec::with_capacity(MOST_IN_CONTACT * MOST_IN_CONTACT),
             right: Vec::with_capacity(2 * MOST_IN_CONTACT),
             scratch: MemBuffer::new(scratch),
@@ -66,11 +71,30 @@ impl Direct {
         (self.table.len() + self.matrix.capacity()) * size_of::<f64>()
     }
 
+    /// The matrix of the elements, column by column: of each run a piece of a row of the table.
+    fn fill_matrix(&mut self) {
+        let Direct { grid: Grid { mx, .. }, table, elements, runs, matrix, .. } = self;
+        runs.clear();
+        for &i in &*elements {
+            match runs.last_mut() {
+                Some((first, count)) if *first + *count == i && i % *mx > 0 => *count += 1,
+                _ => runs.push((i, 1)),
+            }
+        }
+        matrix.clear();
+        for j in elements {
+            let (x, y) = (*j % *mx, *j / *mx);
+            for &(first, count) in &*runs {
+                let start = (first / *mx).abs_diff(y) * (2 * *mx - 1) + *mx - 1 + first % *mx - x;
+                matrix.extend_from_slice(&table[start..start + count]);
+            }
+        }
+    }
+
     /// The first of the right-hand sides becomes p. False if it cannot.
     fn solve(&mut self, state: &mut State) -> bool {
-        let (mx, n) = (self.grid.mx, self.elements.len());
-        let coefficient = |x: i64, y: i64| self.table[y.unsigned_abs() as usize * mx + x.unsigned_abs() as usize];
-        dense::fill_matrix(&self.grid, &self.elements, coefficient, &mut self.matrix);
+        let n = self.elements.len();
+        self.fill_matrix();
         self.right.clear();
         self.right.extend(self.elements.iter().map(|&i| match state.load {
             Load::Approach(approach) => approach - state.h[i],
@@ -125,7 +149,7 @@ impl<S: AdmissibleSet> Step<S> for Direct {
         loop {
             self.elements.clear();
             self.elements.extend((0..self.grid.len()).filter(|&i| state.contact[i]).take(MOST_IN_CONTACT + 1));
-            let held = S::FIXED || S::LIMITED && state.at_limit.contains(&true);
+            let held = S::FIXED || S::LIMITED && state.has_limited();
             if held || self.elements.len() > MOST_IN_CONTACT || self.elements.is_empty() || !self.solve(state) {
                 return Ok(gives_up);
             }

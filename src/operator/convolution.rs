@@ -23,7 +23,7 @@ use crate::threads::Threads;
 const COEFFICIENTS: &str = "the influence coefficients";
 const SPECTRUM: &str = "the operator's spectrum";
 
-/// Pairs of columns that are gathered at a time in a set-up: eight double precision numbers are a cache line.
+/// Columns of complex numbers, or pairs of real ones, that are gathered at a time in a set-up: a cache line.
 const PAIRS: usize = 4;
 
 /// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
@@ -264,14 +264,16 @@ impl<T: Real> Convolution<T> {
         };
         unwritten(&mut spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
         let scale = factor / (px as f64 * py as f64);
-        threads.for_each_row(&mut spectrum, py, pieces, |kx, out, piece| {
-            let column = &mut piece.column[..py];
-            column.fill(Complex::default());
-            for i in 0..2 * my - 1 {
-                column[(i + py - (my - 1)) % py] = in_x[i * nb + kx];
+        threads.for_each_row(&mut spectrum, PAIRS * py, pieces, |block, out, piece| {
+            let (first, count) = (PAIRS * block, out.len() / py);
+            let block = &mut piece.column[..count * py];
+            block.fill(Complex::default());
+            for (i, row) in in_x.chunks_exact(nb).enumerate() {
+                let ky = (i + py - (my - 1)) % py;
+                block[ky..].iter_mut().step_by(py).zip(&row[first..]).for_each(|(value, bin)| *value = *bin);
             }
-            columns.forward(column, &mut piece.columns);
-            for (value, bin) in out.iter_mut().zip(&*column) {
+            columns.forward(block, &mut piece.columns);
+            for (value, bin) in out.iter_mut().zip(&*block) {
                 *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
             }
         });

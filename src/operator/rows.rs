@@ -64,7 +64,8 @@ impl<T: Real> Rows<T> {
 
 /// The run of rows outside of which `p` is zero.
 fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
-    let loaded = |row: &[T]| row.iter().any(|&value| value != T::zero());
+    // All of a row, which the compiler can vectorise.
+    let loaded = |row: &[T]| row.iter().fold(false, |any, &value| any | (value != T::zero()));
     let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
     let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);
     first..last + 1

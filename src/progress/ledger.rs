@@ -25,9 +25,8 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Measures a state whose u is A p; without the corrected area.
-    pub fn of(state: &State) -> Measures {
-        let survey = Survey::of(state);
+    /// Measures a state that was surveyed; without the corrected area.
+    pub fn of(state: &State, survey: &Survey) -> Measures {
         Measures {
             certificate: survey.certificate(),
             approach: state.approach,

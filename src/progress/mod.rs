@@ -8,7 +8,7 @@ use std::time::Instant;
 pub use criterion::{Criterion, Goal, Stop, UPDATE_RESIDUAL};
 pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
 
-use crate::contact::{Outline, State};
+use crate::contact::{Outline, State, Survey};
 use crate::grid::Grid;
 
 /// What a progress callback is told after each cycle.
@@ -79,6 +79,8 @@ pub struct Monitor<'a> {
     pub count: Counters,
     /// What was known on each grid.
     pub ledger: Ledger,
+    /// Of the state that is an answer, where it was surveyed last.
+    pub survey: Option<Survey>,
 }
 
 impl<'a> Monitor<'a> {
@@ -86,7 +88,7 @@ impl<'a> Monitor<'a> {
     pub fn new(callback: Option<ProgressCallback<'a>>, mut rows: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
         rows.clear();
         let ledger = Ledger { rows, estimates, ..Ledger::default() };
-        Monitor { began: Instant::now(), callback, cancelled: false, count: Counters::default(), ledger }
+        Monitor { began: Instant::now(), callback, cancelled: false, count: Counters::default(), ledger, survey: None }
     }
 
     /// Of work that nobody watches.
@@ -161,7 +163,8 @@ impl<'a> Monitor<'a> {
 
     /// Writes the ledger row of the current grid: what is known of `state`, whose u is A p.
     pub fn close_grid(&mut self, state: &State) {
-        let mut measures = Measures::of(state);
+        let survey = self.survey.take().unwrap_or_else(|| Survey::of(state));
+        let mut measures = Measures::of(state, &survey);
         if self.ledger.estimates {
             self.ledger.outline = Outline::of(state);
             measures.corrected_area = self.ledger.outline.corrected_area(state, measures.contact_count);

@@ -24,7 +24,10 @@ impl Plain<'_> {
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));
         }
-        match h.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
+        // Of all of them first, which the compiler can vectorise.
+        let is_none = |v: &f64| v.is_nan() | (*v == f64::NEG_INFINITY);
+        let any = h.iter().fold(false, |any, v| any | is_none(v));
+        match any.then(|| h.iter().position(is_none)).flatten() {
             Some(i) => Err(Error::NotFinite(format!(
                 "undeformed_distance of {} is {}; it must be a number, or +infinity where there is no surface",
                 self.grid.element(i),

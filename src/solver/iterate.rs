@@ -48,7 +48,7 @@ pub fn iterate<S: AdmissibleSet>(
         if habits.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
             entered = admit(task.state, set);
             let before = survey.violation;
-            survey = Survey { violation: before, ..Survey::of(task.state) };
+            survey = Survey { violation: before, ..task.survey() };
         }
         let changes = change.changes + (left + entered) as u64;
         if habits.step_is_cycle {
@@ -61,6 +61,7 @@ pub fn iterate<S: AdmissibleSet>(
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
+                task.monitor.survey = Some(survey).filter(|_| entered == 0);
                 return Ok(Stop::Converged);
             }
         }
@@ -100,11 +101,11 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     } else {
         task.state.fit_approach();
     }
-    let mut survey = Survey::of(task.state);
+    let mut survey = task.survey();
     let ends = task.monitor.is_cancelled() || task.monitor.count.cycles >= task.goal.max_cycles;
     if task.state.u_is == Freshness::Near && (ends || task.goal.holds(&survey, change.update, task.set)) {
         task.refresh();
-        survey = Survey::of(task.state);
+        survey = task.survey();
     }
     task.count_products();
     survey

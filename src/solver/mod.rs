@@ -40,7 +40,7 @@ use crate::error::{invalid, Result};
 use crate::friction;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
-use crate::memory::{reserve, zeros};
+use crate::memory::{blank, reserve, zeros};
 use crate::progress::Monitor;
 use crate::scene::{Load, PressureLimit, Scene};
 use crate::threads::Threads;
@@ -135,7 +135,7 @@ impl Solver {
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
         problem.given = set_up.given;
-        let h = zeros(grid.len(), "undeformed distances")?;
+        let h = blank(grid.len(), f64::NAN, "undeformed distances")?;
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
             state: State::new(grid, h, Load::Approach(0.0), 0.0)?,
@@ -206,9 +206,11 @@ impl Solver {
         };
         let mut outcome = self.run(scene, set, options, guess, monitor);
         // An element that e hardly holds at its limit is there by the rounding of an equal pressure.
-        let survey = Survey::of(&self.state);
-        let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * survey.scale;
-        let on_the_way = self.state.reached_limit && !(0..n).any(|i| self.state.at_limit[i] && held(i));
+        let on_the_way = self.state.reached_limit && {
+            let scale = Survey::of(&self.state).scale;
+            let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
+            !(0..n).any(|i| self.state.at_limit[i] && held(i))
+        };
         let converged = matches!(outcome, Ok((Stop::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.

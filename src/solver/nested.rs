@@ -5,11 +5,12 @@ use super::iterate::iterate;
 use super::task::Task;
 use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
-use crate::memory::zeros;
+use crate::memory::blank;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
 use crate::progress::{Goal, Monitor, Stop};
 use crate::scene::Load;
+use crate::threads::Threads;
 
 /// Cycles at most on the coarser grids: they only prepare the next finer one. On the coarsest NORM takes the place of cycles.
 const COARSE_CYCLES: u64 = 30;
@@ -33,7 +34,7 @@ impl FullMultigrid {
             let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
             let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
-            let h = zeros(level.grid.len(), "undeformed distances")?;
+            let h = blank(level.grid.len(), f64::NAN, "undeformed distances")?;
             coarser.push((own, State::new(level.grid, h, Load::Approach(0.0), 0.0)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
@@ -89,7 +90,7 @@ impl FullMultigrid {
         for l in 0..self.coarser.len() {
             let (finer, coarser) = self.coarser.split_at_mut(l);
             let (from, to) = (finer.last().map_or(fine, |(_, state)| state), &mut coarser[0].1);
-            transfer::restrict_distance(&from.grid, &to.grid, &from.h, highest, &mut to.h);
+            transfer::restrict_distance(&from.grid, &to.grid, &from.h, highest, &mut to.h, &Threads::One);
             (to.load, to.approach) = (from.load, from.approach);
             to.unload();
         }

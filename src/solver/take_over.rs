@@ -21,7 +21,10 @@ pub fn take_over<S: AdmissibleSet>(
     monitor: &mut Monitor<'_>,
 ) -> Result<Start> {
     let from = take_pressures(state, options, guess, solved);
-    state.h.copy_from_slice(scene.undeformed_distance);
+    let (given, mx) = (scene.undeformed_distance, state.grid.mx);
+    problem.threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
+        row.copy_from_slice(&given[y * mx..][..row.len()]);
+    });
     state.load = scene.load;
     state.round_off = problem.round_off();
     state.reached_limit = false;
@@ -29,7 +32,7 @@ pub fn take_over<S: AdmissibleSet>(
         state.approach = approach;
     }
     if from == Start::Nothing {
-        state.unload();
+        state.forget();
         // What the solve before found is nothing to start from.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
@@ -39,7 +42,7 @@ pub fn take_over<S: AdmissibleSet>(
     clean(state, set);
     // Pressures of zero are no guess.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
-        state.unload();
+        state.forget();
         return Ok(Start::Nothing);
     }
     balance(problem, state, set);
@@ -50,7 +53,7 @@ pub fn take_over<S: AdmissibleSet>(
         return Ok(from);
     }
     if !S::FIXED {
-        state.unload();
+        state.forget();
         return Ok(Start::Nothing);
     }
     state.p.fill(0.0);

@@ -1,6 +1,6 @@
 //! What is to be solved on one grid.
 
-use crate::contact::{AdmissibleSet, Problem, State};
+use crate::contact::{AdmissibleSet, Problem, State, Survey};
 use crate::progress::{Goal, Monitor};
 
 /// What is to be solved on one grid.
@@ -16,6 +16,11 @@ impl<S: AdmissibleSet> Task<'_, '_, S> {
     /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
     pub fn refresh(&mut self) {
         self.problem.refresh(self.state, self.set);
+    }
+
+    /// A survey of the state, by the threads of the solve.
+    pub fn survey(&self) -> Survey {
+        Survey::by(self.state, &self.problem.threads)
     }
 
     /// Counts the products on this grid since the last call.

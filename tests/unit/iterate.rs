@@ -19,7 +19,9 @@ fn scene(load: Load, wave: f64) -> (Problem, State) {
     let h = (0..grid.len()).map(h).collect();
     let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
     let problem = Problem::new(grid, influence, &Threads::One).expect("a problem");
-    (problem, State::new(grid, h, load, 0.0).expect("a state"))
+    let mut state = State::new(grid, h, load, 0.0).expect("a state");
+    state.unload();
+    (problem, state)
 }
 
 fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Stop {

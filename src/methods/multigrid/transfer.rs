@@ -4,38 +4,40 @@
 //! count or where one direction is left alone.
 
 use crate::grid::{children, Grid};
+use crate::threads::Threads;
 
 /// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
-pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64, to: &mut [f64]) {
+pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + Sync + Send, to: &mut [f64]) {
     let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
-    collect(fine, coarse, to, add, |(sum, count)| sum / count);
+    collect(fine, coarse, to, &Threads::One, add, |(sum, count)| sum / count);
 }
 
 /// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has. Distances above
 /// `highest` count as that.
-pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64]) {
+pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64], threads: &Threads) {
     let add = |(sum, count): (f64, f64), child: usize| match h[child] {
         f64::INFINITY => (sum, count),
         h => (sum + h.min(highest), count + 1.0),
     };
-    collect(fine, coarse, to, add, |(sum, count)| if count > 0.0 { sum / count } else { f64::INFINITY });
+    collect(fine, coarse, to, threads, add, |(sum, count)| if count > 0.0 { sum / count } else { f64::INFINITY });
 }
 
 /// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
 pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
     let add = |(inside, count): (usize, usize), child: usize| (inside + usize::from(contact[child]), count + 1);
-    collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
+    collect(fine, coarse, to, &Threads::One, add, |(inside, count)| 2 * inside >= count);
 }
 
 /// Every coarse element gets what `result` makes of what `add` has collected from its children.
-fn collect<A: Default, B>(
+fn collect<A: Default, B: Send>(
     fine: &Grid,
     coarse: &Grid,
     to: &mut [B],
-    add: impl Fn(A, usize) -> A,
-    result: impl Fn(A) -> B,
+    threads: &Threads,
+    add: impl Fn(A, usize) -> A + Sync + Send,
+    result: impl Fn(A) -> B + Sync + Send,
 ) {
-    for (y, row) in to.chunks_exact_mut(coarse.mx).enumerate() {
+    threads.for_a_pass(fine.len()).for_each_plain_row(to, coarse.mx, |y, row| {
         for (x, to) in row.iter_mut().enumerate() {
             let mut all = A::default();
             for y in children(fine.my, coarse.my, y) {
@@ -45,25 +47,37 @@ fn collect<A: Default, B>(
             }
             *to = result(all);
         }
-    }
+    });
 }
 
 /// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
 pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], combine: impl Fn(&mut f64, f64)) {
-    let of = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
     for (y, row) in to.chunks_exact_mut(fine.mx).enumerate() {
-        let from = &from[y / of(fine.my, coarse.my) * coarse.mx..][..coarse.mx];
-        for (children, value) in row.chunks_mut(of(fine.mx, coarse.mx)).zip(from) {
-            children.iter_mut().for_each(|child| combine(child, *value));
-        }
+        interpolate_row(fine, coarse, from, y, row, &combine);
+    }
+}
+
+/// The same in row y of the fine grid.
+pub fn interpolate_row(
+    fine: &Grid,
+    coarse: &Grid,
+    from: &[f64],
+    y: usize,
+    row: &mut [f64],
+    combine: impl Fn(&mut f64, f64),
+) {
+    let of = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
+    let from = &from[y / of(fine.my, coarse.my) * coarse.mx..][..coarse.mx];
+    for (children, value) in row.chunks_mut(of(fine.mx, coarse.mx)).zip(from) {
+        children.iter_mut().for_each(|child| combine(child, *value));
     }
 }
 
 /// Linear interpolation between the centres of the coarse elements, constant beyond the outermost and beside values that are not known
 /// (`+infinity`, outside a window).
-pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64]) {
+pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], threads: &Threads) {
     let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
-    for (y, row) in to.chunks_exact_mut(fine.mx).enumerate() {
+    threads.for_a_pass(fine.len()).for_each_plain_row(to, fine.mx, |y, row| {
         // The coarse row that holds this one, and its neighbour on the same side.
         let (near, far) = match (coarse.my == fine.my, y % 2) {
             (true, _) => (y, y),
@@ -74,7 +88,7 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
         let at = |x: usize| mix(near[x], far[x]);
         if coarse.mx == fine.mx {
             row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
-            continue;
+            return;
         }
         let (mut before, mut here) = (at(0), at(0));
         for (x, children) in row.chunks_mut(2).enumerate() {
@@ -85,5 +99,5 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
             }
             (before, here) = (here, after);
         }
-    }
+    });
 }

@@ -139,7 +139,7 @@ impl Norm {
 
 /// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
 fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
-    let held = S::LIMITED && state.at_limit.contains(&true);
+    let held = S::LIMITED && state.has_limited();
     for i in 0..state.p.len() {
         state.p[i] = if held && state.at_limit[i] { set.limit(i) } else { 0.0 };
         state.u[i] = 0.0;
@@ -153,7 +153,7 @@ fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, s
 /// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
 /// is for the next exchange.
 fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
-    let beside_limits = S::LIMITED && state.at_limit.contains(&true);
+    let beside_limits = S::LIMITED && state.has_limited();
     match state.load {
         Load::Force(force) if beside_limits && state.contact.contains(&true) => {
             let missing = force / state.grid.element_area() - state.p.iter().sum::<f64>();

@@ -14,9 +14,10 @@ use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, 
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::blank;
 use crate::methods::multigrid::{coarsen, transfer};
+use crate::operator::reserve;
 use crate::operator::Precision;
-use crate::operator::{reserve, zeros};
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::threads::Threads;
 
@@ -44,6 +45,7 @@ pub struct CoarseGrids {
     pub(super) finest: usize,
     /// The coarsest last.
     pub(super) grids: Vec<Coarse>,
+    threads: Threads,
 }
 
 impl CoarseGrids {
@@ -54,7 +56,7 @@ impl CoarseGrids {
         while let Some(coarse) = coarsen(&fine, COARSEST) {
             influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
-            let h = zeros(fine.len(), "undeformed distances")?;
+            let h = blank(fine.len(), f64::NAN, "undeformed distances")?;
             let load = crate::scene::Load::Approach(0.0);
             grids.push(Coarse {
                 level: Level::new(fine, influence.clone(), precision, threads),
@@ -62,7 +64,7 @@ impl CoarseGrids {
                 limits: Vec::new(),
             });
         }
-        Ok(CoarseGrids { finest: grid.len(), grids })
+        Ok(CoarseGrids { finest: grid.len(), grids, threads: threads.clone() })
     }
 
     /// Bytes held.
@@ -97,9 +99,10 @@ impl CoarseGrids {
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
         coarsest.state.carry_force(S::within(&coarsest.limits));
-        let mut displacement = Freshness::Stale;
+        let (mut displacement, threads) = (Freshness::Stale, self.threads.clone());
         for l in (0..count).rev() {
-            if !monitor.is_cancelled() {
+            let known = !monitor.is_cancelled();
+            if known {
                 monitor.enter_grid();
                 self.iterate::<S>(l, displacement, goal, monitor)?;
                 monitor.close_grid(&self.grids[l].state);
@@ -108,8 +111,8 @@ impl CoarseGrids {
             let finer_influence = if l > 0 { self.grids[l - 1].level.self_influence() } else { self_influence };
             let (to, from) = self.pair(l, fine);
             to.reached_limit |= from.state.reached_limit;
-            if residual_norm(&from.state) <= norm_of_distance(&from.state) {
-                prolong(&from.state, to, highest);
+            if known && residual_norm(&from.state) <= norm_of_distance(&from.state) {
+                prolong(&from.state, to, highest, &threads);
             } else {
                 to.p.fill(0.0);
                 to.start(finer_influence);
@@ -133,10 +136,10 @@ impl CoarseGrids {
 
     /// The distances, the load and the limits of all coarser grids. Returns the distance above which elements are out of reach.
     fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, self_influence: f64) -> Result<f64> {
-        let highest = fine.out_of_reach(self_influence);
+        let (highest, threads) = (fine.out_of_reach(self_influence), self.threads.clone());
         for l in 0..self.grids.len() {
             let (from, to) = self.pair(l, fine);
-            transfer::restrict_distance(&from.grid, &to.state.grid, &from.h, highest, &mut to.state.h);
+            transfer::restrict_distance(&from.grid, &to.state.grid, &from.h, highest, &mut to.state.h, &threads);
             to.state.reached_limit = false;
             to.state.at_limit.clear();
             if to.level.influence().is_mean_free() {
@@ -175,7 +178,7 @@ impl CoarseGrids {
     ) -> Result<End> {
         let max_cycles = match l + 1 == self.grids.len() {
             true => COARSEST_ITERATIONS,
-            false if self.grids[l].state.at_limit.contains(&true) => LIMITED_ITERATIONS,
+            false if self.grids[l].state.has_limited() => LIMITED_ITERATIONS,
             false => COARSE_ITERATIONS,
         };
         let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance, max_cycles };
@@ -233,15 +236,18 @@ fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
 
 /// The pressures of the coarser grid, piecewise constant (what smoother interpolation would add the preconditioner kills), its
 /// contact area, and its displacements, linearly interpolated. Elements above `highest` are out of reach.
-fn prolong(coarse: &State, fine: &mut State, highest: f64) {
+fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
     let (from, to) = (coarse.grid, fine.grid);
-    transfer::interpolate(&to, &from, &coarse.p, &mut fine.p, |to, value| *to = value);
-    transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u);
+    transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u, threads);
     fine.approach = coarse.approach;
-    for ((p, inside), h) in fine.p.iter_mut().zip(&mut fine.contact).zip(&fine.h) {
-        if h.is_infinite() || *h > highest {
-            *p = 0.0;
+    let State { h, p, contact, .. } = fine;
+    threads.for_a_pass(to.len()).for_each_row_pair((p, to.mx), (contact, to.mx), |y, p, contact| {
+        transfer::interpolate_row(&to, &from, &coarse.p, y, p, |to, value| *to = value);
+        for ((p, inside), h) in p.iter_mut().zip(contact).zip(&h[y * to.mx..]) {
+            if h.is_infinite() || *h > highest {
+                *p = 0.0;
+            }
+            *inside = *p > 0.0;
         }
-        *inside = *p > 0.0;
-    }
+    });
 }

@@ -180,9 +180,6 @@ impl<T: Real> Iteration<T> {
         for &(i, d) in &self.debts {
             self.t[i] += T::of(d / forecast);
         }
-        if S::LIMITED {
-            self.remember(state);
-        }
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
@@ -190,17 +187,20 @@ impl<T: Real> Iteration<T> {
         if !(step.tq > 0.0 && step.rt.is_finite()) {
             return None;
         }
-        let alpha = self.step_length(&step, search, S::LIMITED && state.at_limit.contains(&true));
+        let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
+        let held_back = search.believed(alpha);
+        if S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back)) {
+            self.remember(state);
+        }
         self.pay(state, forecast, alpha);
 
         // p = p + alpha t, 4.1
-        let held_back = search.believed(alpha);
         let left = self.update_pressures(state, set, alpha, held_back);
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q, 4.2
         let mut update = Update { alpha, ..Update::default() };
-        let limited = S::LIMITED && state.at_limit.contains(&true);
+        let limited = S::LIMITED && state.has_limited();
         let owed = self.owed();
         if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
             self.settle();

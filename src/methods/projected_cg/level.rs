@@ -8,9 +8,10 @@ use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::blank;
 use crate::operator::fft::Real;
 use crate::operator::Precision;
-use crate::operator::{reserve, zeros, Operator};
+use crate::operator::{reserve, Operator};
 use crate::progress::{Goal, Monitor};
 use crate::threads::Threads;
 
@@ -209,6 +210,7 @@ impl Level {
         work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State, S::Within<'_>) -> R,
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
+        let threads = &self.threads.clone();
         let Windowed { window, inner, units, part } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
         if S::LIMITED {
@@ -227,16 +229,16 @@ impl Level {
         if S::LIMITED {
             reserve(&mut part.at_limit, grid.len(), "elements at the limit")?;
             part.at_limit.resize(grid.len(), false);
-            window.extract(&state.grid, &state.at_limit, &mut part.at_limit);
-            part.reached_limit = false;
+            window.extract(&state.grid, &state.at_limit, &mut part.at_limit, threads);
+            part.reached_limit = state.reached_limit;
         } else {
             part.at_limit.clear();
         }
-        window.extract(&state.grid, &state.h, &mut part.h);
-        window.extract(&state.grid, &state.p, &mut part.p);
-        window.extract(&state.grid, &state.contact, &mut part.contact);
+        window.extract(&state.grid, &state.h, &mut part.h, threads);
+        window.extract(&state.grid, &state.p, &mut part.p, threads);
+        window.extract(&state.grid, &state.contact, &mut part.contact, threads);
         if displacement != Freshness::Stale {
-            window.extract(&state.grid, &state.u, &mut part.u);
+            window.extract(&state.grid, &state.u, &mut part.u, threads);
         }
         (part.load, part.approach) = (state.load, state.approach);
         if *units != Scaling::SAME {
@@ -246,10 +248,10 @@ impl Level {
         if *units != Scaling::SAME {
             units.convert_back(part);
         }
-        window.insert(&state.grid, &part.p, &mut state.p, 0.0);
-        window.insert(&state.grid, &part.contact, &mut state.contact, false);
+        window.insert(&state.grid, &part.p, &mut state.p, 0.0, threads);
+        window.insert(&state.grid, &part.contact, &mut state.contact, false, threads);
         if S::LIMITED {
-            window.insert(&state.grid, &part.at_limit, &mut state.at_limit, false);
+            window.insert(&state.grid, &part.at_limit, &mut state.at_limit, false, threads);
             state.reached_limit |= part.reached_limit;
         }
         state.approach = part.approach;
@@ -260,7 +262,7 @@ impl Level {
     /// The u of the last iteration, for what follows on other grids; infinite outside the window.
     pub fn take_displacements(&self, state: &mut State) {
         if let Some(Windowed { window, part: Some(part), .. }) = &self.windowed {
-            window.insert(&self.grid, &part.u, &mut state.u, f64::INFINITY);
+            window.insert(&self.grid, &part.u, &mut state.u, f64::INFINITY, &self.threads);
         }
     }
 
@@ -279,7 +281,7 @@ impl Level {
         let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None
         } else {
-            Some(|| State::new(grid, zeros(grid.len(), "undeformed distances")?, state.load, state.approach))
+            Some(|| State::new(grid, blank(grid.len(), f64::NAN, "undeformed distances")?, state.load, state.approach))
         };
         // The operator of a window depends on its size only.
         let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;

@@ -20,7 +20,7 @@
 //! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
 //! forecast.
 
-use super::passes::Update;
+use super::passes::{Update, HELD_BACK};
 use super::vectors::{Beyond, Iteration};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
@@ -62,7 +62,7 @@ impl<T: Real> Iteration<T> {
     pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
         (self.limits.missing, self.limits.shift) = (0.0, 0.0);
         let Load::Force(force) = state.load else { return None };
-        if !state.at_limit.contains(&true) {
+        if !state.has_limited() {
             return None;
         }
         let pressures = force / state.grid.element_area();
@@ -109,6 +109,25 @@ impl<T: Real> Iteration<T> {
         self.scale(state, factor);
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
         factor
+    }
+
+    /// Whether this step takes an element to its limit, or nearly.
+    pub(super) fn reaches_limit<S: AdmissibleSet>(
+        &mut self,
+        state: &State,
+        set: S,
+        alpha: f64,
+        forecast: Option<f64>,
+    ) -> bool {
+        let (t, p, farthest) = (&self.t, &state.p, forecast.map_or(alpha, |forecast| forecast.max(alpha)));
+        let [reached] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let beyond = |i: usize| p[i] + farthest * t[i].to_double() >= set.limit(i) * (1.0 - HELD_BACK);
+                let any = run.fold(false, |any, i| any | beyond(i));
+                sums.add(1, |_| [f64::from(u8::from(any))]);
+            }
+        });
+        reached > 0.0
     }
 
     /// With a limit: keeps the pressures that u knows of.

@@ -6,7 +6,9 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
-const HELD_BACK: f64 = 1e-6;
+pub(super) const HELD_BACK: f64 = 1e-6;
+/// Elements of a run that are looked at together.
+const CHUNK: usize = 64;
 
 /// What becomes of u: factor (u + alpha q + A d).
 #[derive(Clone, Copy)]
@@ -192,24 +194,26 @@ impl<T: Real> Iteration<T> {
                 p[local].iter_mut().zip(&t[run]).for_each(|(p, t)| *p += alpha * t.to_double());
             }
         });
-        let (before, n) = (self.debts.len(), state.p.len());
-        for i in self.runs.blocks_with_sum().flatten().filter(|&i| i < n) {
-            if !state.contact[i] {
+        let before = self.debts.len();
+        // Of these few elements leave, at the rim: the others the compiler can vectorise.
+        let chunks = self
+            .runs
+            .of_blocks_with_sum()
+            .flat_map(|run| run.clone().step_by(CHUNK).map(move |start| start..run.end.min(start + CHUNK)));
+        for chunk in chunks {
+            let (p, t) = (&mut state.p[chunk.clone()], &self.t[chunk.clone()]);
+            let some_leave = |some, ((p, t), i): ((&f64, &T), usize)| some | leaves(i, *p, *t);
+            if !p.iter().zip(t).zip(chunk.clone()).fold(false, some_leave) {
+                p.iter_mut().zip(t).for_each(|(p, t)| *p += alpha * t.to_double());
                 continue;
             }
-            let (p, t) = (state.p[i], self.t[i]);
-            let to = p + alpha * t.to_double();
-            state.p[i] = to;
-            if leaves(i, p, t) {
-                let at_limit = S::LIMITED && (to > set.limit(i) || to >= 0.0 && t > T::zero());
-                let bound = if at_limit { set.limit(i) } else { 0.0 };
-                if at_limit {
-                    (state.at_limit[i], state.reached_limit) = (true, true);
+            for i in chunk {
+                let (p, t) = (state.p[i], self.t[i]);
+                state.p[i] = p + alpha * t.to_double();
+                if leaves(i, p, t) {
+                    self.debts.push((i, leave(state, set, i, t > T::zero())));
+                    self.t[i] = T::zero();
                 }
-                self.debts.push((i, bound - to));
-                state.p[i] = bound;
-                self.t[i] = T::zero();
-                state.contact[i] = false;
             }
         }
         for debt in &self.debts[before..] {
@@ -254,11 +258,11 @@ impl<T: Real> Iteration<T> {
     /// u = factor (u + alpha q + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
     /// than the caches.
     pub(super) fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &Update) -> u64 {
+        let limited = S::LIMITED && state.has_limited();
         let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
         let Update { alpha, settled, factor } = *update;
-        let limited = S::LIMITED && at_limit.contains(&true);
         self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
             for (u, q) in u.iter_mut().zip(&q[row.clone()]) {
@@ -300,4 +304,16 @@ impl<T: Real> Iteration<T> {
         }
         entered
     }
+}
+
+/// Element i leaves C for a bound; `rises`: its pressure does. Returns what it gains.
+fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, rises: bool) -> f64 {
+    let to = state.p[i];
+    let at_limit = S::LIMITED && (to > set.limit(i) || to >= 0.0 && rises);
+    if at_limit {
+        (state.at_limit[i], state.reached_limit) = (true, true);
+    }
+    state.p[i] = if at_limit { set.limit(i) } else { 0.0 };
+    state.contact[i] = false;
+    state.p[i] - to
 }

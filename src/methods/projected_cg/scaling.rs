@@ -28,8 +28,7 @@ impl Scaling {
             Load::Force(force) => force / state.grid.element_area() * self_influence,
         };
         let approach = state.approach;
-        let touching = state.h.iter().zip(&state.contact).filter(|(h, inside)| **inside || **h < approach);
-        let length = touching.fold(alone, |largest: f64, (h, _)| largest.max((h - approach).abs()));
+        let length = farthest(&state.h, &state.contact, approach).max(alone);
         let pressure = length / self_influence;
         let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);
         Scaling { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
@@ -59,6 +58,21 @@ impl Scaling {
         state.p.iter_mut().for_each(|p| *p *= pressure);
         state.approach *= length;
     }
+}
+
+/// The largest |h - approach| of elements in contact, or below the approach.
+fn farthest(h: &[f64], contact: &[bool], approach: f64) -> f64 {
+    // Several at a time: that the compiler can vectorise.
+    const LANES: usize = 8;
+    let mut largest = [0.0; LANES];
+    for (h, contact) in h.chunks(LANES).zip(contact.chunks(LANES)) {
+        for ((largest, h), &inside) in largest.iter_mut().zip(h).zip(contact) {
+            let distance = (h - approach).abs();
+            let touches = inside | (*h < approach);
+            *largest = if touches & (distance > *largest) { distance } else { *largest };
+        }
+    }
+    largest.into_iter().fold(0.0, f64::max)
 }
 
 /// The exponent of two of a normal number.

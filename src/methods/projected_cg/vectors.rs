@@ -67,8 +67,7 @@ impl<T: Real> Iteration<T> {
             log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
         }
         let n = grid.len();
-        // A pass takes about a tenth of the time of a product.
-        let threads = &threads.suited_to(n / 10);
+        let threads = &threads.for_a_pass(n);
         let directions = || zeros(n, "search directions");
         let mut debts = Vec::new();
         reserve(&mut debts, n, "truncated elements")?;

@@ -6,9 +6,11 @@
 
 use std::ops::Range;
 
+use super::segments::first_that_is;
 use crate::contact::State;
 use crate::grid::Grid;
 use crate::operator::fft::good_length;
+use crate::threads::Threads;
 
 /// Elements around the contact area, at least: one for what may enter, more for an area that still moves.
 const MARGIN: usize = 3;
@@ -86,18 +88,24 @@ impl Window {
     }
 
     /// Copies the window's part of `from`, on `grid`, to `to`.
-    pub fn extract<A: Copy>(&self, grid: &Grid, from: &[A], to: &mut [A]) {
-        for (row, y) in to.chunks_exact_mut(self.x.len()).zip(self.y.clone()) {
-            row.copy_from_slice(&from[y * grid.mx..][self.x.clone()]);
-        }
+    pub fn extract<A: Copy + Send + Sync>(&self, grid: &Grid, from: &[A], to: &mut [A], threads: &Threads) {
+        let (x, first) = (&self.x, self.y.start);
+        threads.for_a_pass(to.len()).for_each_plain_row(to, x.len(), |y, row| {
+            row.copy_from_slice(&from[(first + y) * grid.mx..][x.clone()]);
+        });
     }
 
     /// Copies `from`, on the window, to its part of `to`; `to` becomes `outside` elsewhere.
-    pub fn insert<A: Copy>(&self, grid: &Grid, from: &[A], to: &mut [A], outside: A) {
-        to.fill(outside);
-        for (row, y) in from.chunks_exact(self.x.len()).zip(self.y.clone()) {
-            to[y * grid.mx..][self.x.clone()].copy_from_slice(row);
-        }
+    pub fn insert<A: Copy + Send + Sync>(&self, grid: &Grid, from: &[A], to: &mut [A], outside: A, threads: &Threads) {
+        let Window { x, y: rows } = self;
+        threads.for_a_pass(to.len()).for_each_plain_row(to, grid.mx, |y, row| {
+            if !rows.contains(&y) {
+                return row.fill(outside);
+            }
+            row[..x.start].fill(outside);
+            row[x.clone()].copy_from_slice(&from[(y - rows.start) * x.len()..][..x.len()]);
+            row[x.end..].fill(outside);
+        });
     }
 }
 
@@ -117,14 +125,15 @@ fn bounding_box(state: &State) -> Option<Window> {
 }
 
 fn bounding_box_of(elements: &[bool], mx: usize) -> Option<Window> {
-    let in_contact = |row: &&[bool]| row.contains(&true);
+    let first = first_that_is(true, elements)? / mx;
     let rows = elements.chunks_exact(mx);
-    let first = rows.clone().position(|row| in_contact(&row))?;
-    let last = rows.clone().rposition(|row| in_contact(&row))?;
+    let last = rows.clone().rposition(|row| first_that_is(true, row).is_some())?;
     let (mut start, mut end) = (mx, 0);
-    for row in rows.filter(in_contact) {
-        start = start.min(row.iter().position(|&inside| inside).unwrap_or(mx));
-        end = end.max(row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1));
+    for row in rows.skip(first).take(last + 1 - first) {
+        start = first_that_is(true, &row[..start]).unwrap_or(start);
+        if first_that_is(true, &row[end..]).is_some() {
+            end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
+        }
     }
     Some(Window { x: start..end, y: first..last + 1 })
 }
