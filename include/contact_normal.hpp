@@ -75,6 +75,79 @@ struct body {
     double shear_modulus, poisson_ratio;
 };
 
+/// Friction between the bodies: `contact_normal_friction`. Each member function returns the friction; directions are 0 for x, 1 for y.
+class friction {
+public:
+    /// One coefficient, or one per element.
+    explicit friction(double coefficient) { contact_normal_friction_init(&friction_), friction_.coefficient = coefficient; }
+    explicit friction(view<double> coefficients) : friction(0.0) { coefficients_ = coefficients; }
+
+    /// CONTACT_NORMAL_MOTION_..., and of rolling the length of the step (0: dx) and the direction (radians from the x axis).
+    friction &motion(std::int32_t kind, double rolling_distance = 0.0, double rolling_direction = 0.0)
+    {
+        friction_.motion = kind;
+        friction_.rolling_distance = rolling_distance, friction_.rolling_direction = rolling_direction;
+        return *this;
+    }
+    /// The creepage in a direction is given, or the force is.
+    friction &creepage(std::size_t direction, double value)
+    {
+        friction_.prescribed[checked(direction)] = CONTACT_NORMAL_PRESCRIBED_CREEPAGE, friction_.creepage[direction] = value;
+        return *this;
+    }
+    friction &force(std::size_t direction, double value)
+    {
+        friction_.prescribed[checked(direction)] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE, friction_.force[direction] = value;
+        return *this;
+    }
+    /// The spin, about a place counted from the middle of the grid.
+    friction &spin(double value, double centre_x = 0.0, double centre_y = 0.0)
+    {
+        friction_.spin = value, friction_.spin_centre[0] = centre_x, friction_.spin_centre[1] = centre_y;
+        return *this;
+    }
+    /// The tractions before, in x and y; or those that the solver found last.
+    friction &previous_traction(view<double> x, view<double> y)
+    {
+        previous_[0] = x, previous_[1] = y;
+        return *this;
+    }
+    friction &continues()
+    {
+        friction_.continues = 1;
+        return *this;
+    }
+    /// A rigid slip in addition, in x and y.
+    friction &rigid_slip(view<double> x, view<double> y)
+    {
+        slip_[0] = x, slip_[1] = y;
+        return *this;
+    }
+
+    /// That of the C ABI, for a grid of so many elements; `sized(name, values)` checks the arrays.
+    template <class Sized> contact_normal_friction get(Sized sized) const
+    {
+        contact_normal_friction named = friction_;
+        if (coefficients_) named.coefficients = sized("friction's coefficients", *coefficients_);
+        for (std::size_t k : {0u, 1u}) {
+            if (previous_[k]) named.previous_traction[k] = sized("friction's previous_traction", *previous_[k]);
+            if (slip_[k]) named.rigid_slip[k] = sized("friction's rigid_slip", *slip_[k]);
+        }
+        return named;
+    }
+
+private:
+    static std::size_t checked(std::size_t direction)
+    {
+        if (direction < 2) return direction;
+        throw error(CONTACT_NORMAL_INVALID_ARGUMENT, "direction is " + std::to_string(direction) + "; it must be 0 for x or 1 for y");
+    }
+
+    contact_normal_friction friction_;
+    std::optional<view<double>> coefficients_;
+    std::array<std::optional<view<double>>, 2> previous_, slip_;
+};
+
 /// What is simulated. Members of the same name as those of `contact_normal_scene`; each returns the scene.
 class scene {
 public:
@@ -157,6 +230,12 @@ public:
         pressure_limit_->limits = per_element("pressure_limit", limits);
         return *this;
     }
+    /// Friction between the bodies.
+    scene &friction(const contact_normal::friction &of)
+    {
+        friction_ = of.get([this](const char *name, view<double> values) { return per_element(name, values); });
+        return *this;
+    }
     /// The grid is one period in x, in y, or in both.
     scene &period(bool x, bool y)
     {
@@ -183,6 +262,7 @@ public:
         named.period = period_ ? &*period_ : nullptr;
         named.patches = patches_ ? &*patches_ : nullptr;
         named.row_tables = row_tables_ ? &*row_tables_ : nullptr;
+        named.friction = friction_ ? &*friction_ : nullptr;
         for (std::size_t body : {0u, 1u}) named.coating[body] = coating_[body] ? &*coating_[body] : nullptr;
         return named;
     }
@@ -207,6 +287,7 @@ private:
     std::optional<contact_normal_patches> patches_;
     std::optional<contact_normal_row_tables> row_tables_;
     std::array<std::optional<contact_normal_coating>, 2> coating_;
+    std::optional<contact_normal_friction> friction_;
 };
 
 /// How a scene is solved: `contact_normal_options`, filled with the defaults.
@@ -223,6 +304,8 @@ struct result {
     std::string message; // why, if the status is not OK
     std::vector<double> pressure, deformed_distance, displacement;
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
+    std::array<std::vector<double>, 2> traction, slip; // in x and y; zeros without friction
+    std::vector<std::int32_t> adhesion;                // 0: exterior, 1: stick, 2: slip
     contact_normal_report report;
     std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
 
@@ -269,6 +352,12 @@ contact_normal_status run(std::size_t size, result &found, options how, const co
     contact_normal_fields_init(&fields);
     fields.pressure = found.pressure.data(), fields.deformed_distance = found.deformed_distance.data();
     fields.displacement = found.displacement.data(), fields.contact = found.contact.data();
+    for (std::size_t k : {0u, 1u}) {
+        found.traction[k].resize(size), found.slip[k].resize(size);
+        fields.traction[k] = found.traction[k].data(), fields.slip[k] = found.slip[k].data();
+    }
+    found.adhesion.resize(size);
+    fields.adhesion = found.adhesion.data();
     contact_normal_report_init(&found.report);
     found.report.ledger = found.ledger.data(), found.report.ledger_capacity = ledger_room;
     found.status = call(&how, &fields, &found.report);
@@ -302,6 +391,55 @@ inline result solve(const scene &of, const options &how = {}, const progress &to
     result found;
     solve_into(of, found, how, told);
     return detail::or_throw(std::move(found));
+}
+
+/// What a table of tangential forces found: of each entry its numbers.
+struct friction_table {
+    contact_normal_status status = CONTACT_NORMAL_OK;
+    std::string message; // a line for each entry that is not OK
+    std::vector<contact_normal_status> statuses;
+    std::vector<std::array<double, 2>> force, creepage;
+    std::vector<double> moment, residual, products;
+    contact_normal_report report; // of the normal problem
+
+    /// True if all entries are solved to the tolerance.
+    explicit operator bool() const noexcept { return status == CONTACT_NORMAL_OK; }
+};
+
+/// Solves the tangential problem of a scene with friction for each of the entries: the creepage (or force) in x and in y, and the spin.
+/// `pressure`: my * mx values, or none: those of the normal problem. See `contact_normal_friction_batch`; throws `error` if the call itself is
+/// refused, but not for an entry.
+inline friction_table friction_batch(const scene &of, view<std::array<double, 3>> entries, const options &given = {},
+                                     const progress &told = {}, std::optional<view<double>> pressure = {})
+{
+    // No status has this value.
+    constexpr contact_normal_status untouched = -12345;
+    if (pressure && pressure->size() != of.size()) {
+        throw error(CONTACT_NORMAL_INVALID_ARGUMENT, "pressure has " + std::to_string(pressure->size()) + " values; it must have " +
+                                                         std::to_string(of.size()));
+    }
+    friction_table found;
+    const std::size_t count = entries.size();
+    found.statuses.assign(count, untouched), found.force.resize(count), found.creepage.resize(count);
+    for (auto *values : {&found.moment, &found.residual, &found.products}) values->resize(count);
+    contact_normal_friction_results results;
+    contact_normal_friction_results_init(&results);
+    results.status = found.statuses.data();
+    results.force = found.force.empty() ? nullptr : found.force.front().data();
+    results.creepage = found.creepage.empty() ? nullptr : found.creepage.front().data();
+    results.moment = found.moment.data(), results.residual = found.residual.data(), results.products = found.products.data();
+    contact_normal_report_init(&found.report);
+    options how = given;
+    detail::watched watch{told, nullptr};
+    if (told) how.progress = detail::on_progress, how.user = &watch;
+    const contact_normal_scene scene = of.get();
+    found.status = contact_normal_friction_batch(&scene, pressure ? pressure->data() : nullptr, &how, static_cast<std::int32_t>(count),
+                                                 count == 0 ? nullptr : entries.data()->data(), &results, &found.report);
+    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    if (watch.thrown) std::rethrow_exception(watch.thrown);
+    const bool is_refused = count == 0 || found.statuses.front() == untouched;
+    if (found.status < 0 && is_refused) throw error(found.status, found.message);
+    return found;
 }
 
 /// A handle for many solves on the grid, the bodies and the effects of a scene; it frees itself.

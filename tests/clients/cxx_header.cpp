@@ -152,9 +152,66 @@ static void handles()
     expect(came_through, "what progress throws comes through");
 }
 
+static void frictions()
+{
+    const std::vector<double> h = ball(0.01);
+    cn::scene scene(GRID, STEEL);
+    scene.undeformed_distance(h).force(500.0);
+    expect(cn::solve(scene).adhesion == std::vector<std::int32_t>(h.size(), 0), "no friction: nothing adheres");
+
+    const double creepage[2] = {-1e-3, 2e-4}, spin = 1e-4;
+    const cn::friction moved = cn::friction(0.3).motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).creepage(0, creepage[0]).creepage(1, creepage[1]).spin(spin);
+    const cn::result rolled = cn::solve(cn::scene(scene).friction(moved));
+    expect(static_cast<bool>(rolled) && rolled.report.tangential_force[0] > 0.0, "a negative creepage has a positive force");
+    double sum = 0.0;
+    std::int64_t slips = 0;
+    bool bounded = true;
+    for (std::size_t i = 0; i < h.size(); i++) {
+        sum += rolled.traction[0][i] * GRID.dx * GRID.dy, slips += rolled.adhesion[i] == CONTACT_NORMAL_ADHESION_SLIP;
+        // The lengths are rounded here, not there.
+        bounded = bounded && std::hypot(rolled.traction[0][i], rolled.traction[1][i]) <= 0.3 * rolled.pressure[i] * (1 + 1e-15);
+    }
+    expect(bounded, "|q| <= mu p");
+    expect(std::abs(sum - rolled.report.tangential_force[0]) < 1e-9 * 150.0 && slips == rolled.report.slip_count, "the report's force and slip");
+
+    // Coefficients per element; forces given.
+    const std::vector<double> coefficients(h.size(), 0.3);
+    const cn::result pushed = cn::solve(cn::scene(scene).friction(cn::friction(coefficients).force(0, 50.0).creepage(1, 0.0)));
+    expect(std::abs(pushed.report.tangential_force[0] - 50.0) < 1e-4 * 150.0, "the force given");
+    const std::vector<double> few(3, 0.3);
+    expect(thrown_by([&] { cn::scene(scene).friction(cn::friction(few)); }, "coefficients has 3 values") == CONTACT_NORMAL_INVALID_ARGUMENT,
+           "too few coefficients");
+    expect(thrown_by([&] { cn::friction(0.3).force(2, 1.0); }, "direction is 2") == CONTACT_NORMAL_INVALID_ARGUMENT, "a third direction");
+
+    // A table: its entries are what single solves find; what is refused is named.
+    std::vector<std::array<double, 3>> entries;
+    for (int k = 0; k < 20; k++) entries.push_back({creepage[0] * 0.1 * k, creepage[1], spin});
+    const cn::scene rolling = cn::scene(scene).friction(moved);
+    const cn::friction_table table = cn::friction_batch(rolling, entries);
+    expect(static_cast<bool>(table) && table.message.empty() && std::abs(table.report.force - 500.0) < 1e-9 * 500.0, "a table");
+    // A residual of 1e-6 leaves some 1e-7 of mu N.
+    expect(std::abs(table.force[10][0] - rolled.report.tangential_force[0]) < 1e-5 * 150.0, "an entry");
+    expect(table.creepage[7][0] == entries[7][0] && table.residual[7] <= 1e-6 && table.products[7] > 0.0, "its numbers");
+    const cn::friction_table given = cn::friction_batch(rolling, entries, {}, {}, cn::view<double>(rolled.pressure));
+    expect(given.force == table.force, "pressures that are given");
+    entries[3][2] = std::numeric_limits<double>::quiet_NaN();
+    const cn::friction_table broken = cn::friction_batch(rolling, entries);
+    expect(broken.status == CONTACT_NORMAL_NOT_FINITE && broken.statuses[3] == CONTACT_NORMAL_NOT_FINITE && broken.statuses[4] == CONTACT_NORMAL_OK &&
+               broken.message.rfind("entry 3: ", 0) == 0,
+           "an entry that is refused");
+    expect(thrown_by([&] { cn::friction_batch(scene, entries); }, "friction is not given") == CONTACT_NORMAL_INVALID_ARGUMENT, "no friction");
+    int calls = 0;
+    const cn::friction_table cancelled = cn::friction_batch(rolling, entries, {}, [&](const contact_normal_progress &told) {
+        calls++;
+        return told.cycles >= 2;
+    }, cn::view<double>(rolled.pressure));
+    expect(cancelled.statuses[2] == CONTACT_NORMAL_CANCELLED && cancelled.statuses[1] == CONTACT_NORMAL_OK && calls == 2, "a table cancelled");
+}
+
 int main()
 {
     scenes();
+    frictions();
     refusals();
     handles();
     std::printf("%d of %d checks failed\n", failed, checked);

@@ -90,8 +90,10 @@ fn report(ended: &Ended) -> Report {
 fn each_entry_is_what_a_solve_of_its_own_finds() {
     let (p, h) = (pressure(), vec![0.0; M * M]);
     let all: f64 = 0.3 * p.iter().sum::<f64>() * D * D;
-    for friction in frictions() {
-        let scene = scene(&h, friction);
+    let unlike = Bodies { shear_modulus: [82000.0, 41000.0], poisson_ratio: [0.28, 0.4] };
+    let all_bodies = |friction| [BODIES, unlike].map(|bodies| (friction, bodies));
+    for (friction, bodies) in frictions().into_iter().flat_map(all_bodies) {
+        let scene = Scene { bodies, ..scene(&h, friction) };
         let entries = table(&friction);
         let (stop, found) = batch(&scene, Some(&p), &entries, &options(1), None);
         assert_eq!(stop, Stop::Converged);
