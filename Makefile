@@ -18,7 +18,7 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: all demo test campaign soak bench bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
+.PHONY: all demo test campaign soak bench bench-table bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -88,6 +88,13 @@ $(OLD_LIBRARY):
 	@mkdir -p build/old-$(OLD)
 	git archive $(OLD) | tar -x -C build/old-$(OLD)
 	cd build/old-$(OLD) && CARGO_TARGET_DIR=target $(CARGO) build --release --locked --lib
+
+# The yardstick of tables of creep forces: 204800 ellipses of 35 x 35 elements on two processes. TABLE="--sample 0.01" extrapolates from a
+# hundredth of them; TABLE="--errors" compares the estimated errors with finer grids.
+TABLE ?=
+bench-table: all
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
+		"$(find_python)" benches/creep_force_table.py $(TABLE)
 
 # The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick".
 PEERS ?=

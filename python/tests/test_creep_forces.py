@@ -121,6 +121,17 @@ class Surfaces(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, words):
                 cn.creep_force_table(xi=[0.0], eta=[0.0], phi=[0.0], surface=given)
 
+    def test_unlike_bodies_have_no_symmetry(self):
+        x = (np.arange(16) - 7.5) * 0.15
+        surface = {"h": 0.01 * (x[None, :] ** 2 + x[:, None] ** 2), "dx": 0.15, "dy": 0.15, "force": 1000.0, "coefficient": 0.3,
+                   "shear_modulus": 82000.0}
+        axes = {"xi": [-1e-3, 1e-3], "eta": [0.0], "phi": [0.0, 1e-4]}
+        alike, unlike = (cn.creep_force_table(surface={**surface, "poisson_ratio": nu}, **axes) for nu in (0.28, (0.1, 0.45)))
+        self.assertEqual(alike.forces(1e-3, 0.0, -1e-4)[0], -alike.force_x[0, 0, 1, 0, 0])
+        with self.assertRaisesRegex(ValueError, "phi has values outside"):
+            unlike.forces(1e-3, 0.0, -1e-4)
+        self.assertGreater(abs(unlike.force_x + unlike.force_x[..., ::-1])[0, 0, 0].max(), 0.01 * 300)
+
     def test_a_surface_on_elements_twice_as_large(self):
         h = np.array([[1.0, 3.0, np.inf], [5.0, np.inf, np.inf], [2.0, 4.0, 7.0]])
         np.testing.assert_array_equal(halved(h), [[3.0, np.inf], [3.0, 7.0]])

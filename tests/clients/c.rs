@@ -122,7 +122,17 @@ fn time_steps() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface", "friction", "creep_forces"] {
+    for name in [
+        "layer",
+        "pressure_limit",
+        "period",
+        "patches",
+        "row_tables",
+        "coating",
+        "subsurface",
+        "friction",
+        "creep_forces",
+    ] {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
         let printed = run_linked(&program, &[], &folder);

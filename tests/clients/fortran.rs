@@ -85,7 +85,17 @@ fn wheel_rail_prints_what_is_expected() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
-    for name in ["layer", "pressure_limit", "period", "patches", "row_tables", "coating", "subsurface", "friction", "creep_forces"] {
+    for name in [
+        "layer",
+        "pressure_limit",
+        "period",
+        "patches",
+        "row_tables",
+        "coating",
+        "subsurface",
+        "friction",
+        "creep_forces",
+    ] {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
         let expected =
