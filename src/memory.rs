@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 /// Bytes that are kept in the process, at most: more than a solve on 1024 x 1024 elements takes.
 const MOST_KEPT: usize = 192 << 20;
 /// Smaller blocks the allocator keeps by itself.
-const LEAST_KEPT: usize = 1 << 15;
+const LEAST_KEPT: usize = 1 << 13;
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {

@@ -61,13 +61,23 @@ impl Survey {
     pub fn by(state: &State, threads: &Threads) -> Survey {
         let Grid { mx, my, .. } = state.grid;
         let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
-        let mut blocks = [nothing; BLOCKS];
         let rows = my.div_ceil(BLOCKS);
-        let blocks = &mut blocks[..my.div_ceil(rows)];
-        threads.for_a_pass(mx * my).for_each(blocks, |b, block| {
+        let add = |b: usize, block: &mut Survey| {
             (b * rows..((b + 1) * rows).min(my)).for_each(|y| block.add_rows(state, y * mx..(y + 1) * mx));
-        });
-        let mut survey = blocks.iter().fold(nothing, Survey::joined);
+        };
+        let (count, threads) = (my.div_ceil(rows), threads.for_a_pass(mx * my));
+        let mut survey = nothing;
+        if threads.count() == 1 {
+            for b in 0..count {
+                let mut block = nothing;
+                add(b, &mut block);
+                survey = survey.joined(&block);
+            }
+        } else {
+            let mut blocks = [nothing; BLOCKS];
+            threads.for_each(&mut blocks[..count], add);
+            survey = blocks[..count].iter().fold(survey, Survey::joined);
+        }
         let mut touching = survey.distance;
         if state.has_limited() {
             touching += survey.add_limited(state);
@@ -215,7 +225,7 @@ pub fn residual_norm(state: &State) -> f64 {
 
 fn over_contact(state: &State, value: impl Fn(usize) -> f64) -> f64 {
     let mut sum = 0.0;
-    for (i, _) in state.contact.iter().enumerate().filter(|(_, &inside)| inside) {
+    for i in state.rows_with_contact().flatten().filter(|&i| state.contact[i]) {
         sum += value(i) * value(i);
     }
     sum.sqrt()

@@ -1,5 +1,7 @@
 //! The unknowns of one grid and what is known about them.
 
+use std::ops::Range;
+
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep, reserve, zeros};
@@ -76,6 +78,15 @@ impl State {
     /// Whether an element is at its limit.
     pub fn has_limited(&self) -> bool {
         self.reached_limit && self.at_limit.contains(&true)
+    }
+
+    /// The rows that have an element in contact.
+    pub fn rows_with_contact(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        // All of a row, which the compiler can vectorise.
+        let touches = |row: &[bool]| row.iter().fold(false, |any, &inside| any | inside);
+        let mx = self.grid.mx;
+        let rows = self.contact.chunks_exact(mx).enumerate();
+        rows.filter(move |(_, row)| touches(row)).map(move |(y, _)| y * mx..(y + 1) * mx)
     }
 
     /// Elements in contact.

@@ -20,7 +20,7 @@ pub unsafe trait Versioned: Copy {
 
     /// What it is called in messages.
     fn short_name() -> &'static str {
-        Self::NAME.trim_start_matches("contact_normal_")
+        &Self::NAME["contact_normal_".len()..]
     }
 }
 

@@ -85,14 +85,27 @@ struct Piece {
 
 impl Piece {
     /// Pieces that suit transforms of both directions.
-    fn suit(pieces: &mut Vec<Piece>, threads: &Threads, rows: &RowTransform<f64>, columns: &ColumnTransform<f64>) {
+    fn suit(
+        pieces: &mut Vec<Piece>,
+        threads: &Threads,
+        rows: &RowTransform<f64>,
+        columns: &ColumnTransform<f64>,
+    ) -> Result<()> {
         pieces.resize_with(threads.pieces(), Piece::default);
         for piece in pieces {
             piece.row.resize(rows.length(), 0.0);
-            piece.column.resize(rows.bins().max(PAIRS * columns.length()), Complex::default());
+            let length = rows.bins().max(PAIRS * columns.length());
+            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS)?;
             rows.fit(&mut piece.rows);
             columns.fit(&mut piece.columns);
         }
+        Ok(())
+    }
+}
+
+impl Drop for Piece {
+    fn drop(&mut self) {
+        keep([&mut self.column]);
     }
 }
 
@@ -174,7 +187,7 @@ impl<T: Real> Convolution<T> {
         let nb = rows.bins();
         let SetUp { real: in_x, pieces, .. } = set_up;
         unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS)?;
-        Piece::suit(pieces, threads, &rows, &columns);
+        Piece::suit(pieces, threads, &rows, &columns)?;
         threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row;
             row.fill(0.0);
@@ -249,7 +262,7 @@ impl<T: Real> Convolution<T> {
         let (mx, my) = (grid.mx, grid.my);
         let SetUp { complex: in_x, pieces, .. } = set_up;
         unwritten(in_x, (2 * my - 1) * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
-        Piece::suit(pieces, threads, &rows, &columns);
+        Piece::suit(pieces, threads, &rows, &columns)?;
         threads.for_each_row(in_x, nb, pieces, |i, out, piece| {
             let row = &mut piece.row;
             row.fill(0.0);

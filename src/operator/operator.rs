@@ -18,11 +18,12 @@ use super::rows::{Piece, Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Patches};
-use crate::memory::{computed, keep, reserve, unwritten, zeros};
+use crate::memory::{blank, computed, keep, reserve, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
 const DIAGONAL: &str = "the operator's diagonal";
+const WORKSPACE: &str = "the product's workspace";
 
 /// The y direction.
 enum Columns<T: Real> {
@@ -75,6 +76,7 @@ impl<T: Real> Workspace<T> {
 impl<T: Real> Drop for Workspace<T> {
     fn drop(&mut self) {
         keep([&mut self.product.bins]);
+        self.product.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns]));
         let [scaled, product] = &mut self.masked;
         keep([scaled, product, &mut self.given]);
     }
@@ -199,6 +201,7 @@ impl<T: Real> Operator<T> {
     /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         let transform = &self.rows.transform;
+        let nan = Complex::new(T::nan(), T::nan());
         let (length, sums) = match &self.columns {
             Columns::Convolution(convolution) => (convolution.columns.length(), 0),
             Columns::PerRow(_) => (self.rows.my, 2 * self.rows.my),
@@ -208,16 +211,14 @@ impl<T: Real> Operator<T> {
             if let Columns::Convolution(convolution) = &self.columns {
                 convolution.columns.fit(&mut scratch);
             }
-            let columns = vec![Complex::default(); (BLOCK * length).max(transform.bins())];
-            Piece { row: vec![T::zero(); transform.length().max(sums)], columns, scratch }
+            let columns = blank((BLOCK * length).max(transform.bins()), nan, WORKSPACE)?;
+            Ok(Piece { row: zeros(transform.length().max(sums), WORKSPACE)?, columns, scratch })
         };
         let masked = self.coupling.as_ref().map_or(0, |_| self.rows.mx * self.rows.my);
-        let memory = |n| zeros(n, "the product's workspace");
-        let mut bins = Vec::new();
-        let nan = Complex::new(T::nan(), T::nan());
-        unwritten(&mut bins, self.rows.my * transform.bins(), nan, "the product's workspace")?;
+        let memory = |n| zeros(n, WORKSPACE);
+        let bins = blank(self.rows.my * transform.bins(), nan, WORKSPACE)?;
         Ok(Workspace {
-            product: Product { bins, pieces: (0..self.rows.threads.pieces()).map(piece).collect() },
+            product: Product { bins, pieces: (0..self.rows.threads.pieces()).map(piece).collect::<Result<_>>()? },
             masked: [memory(masked)?, memory(masked)?],
             given: memory(masked)?,
         })

@@ -6,7 +6,7 @@ use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
 use super::task::Task;
-use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
+use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
 use crate::methods::descent::Descent;
 use crate::methods::direct::Direct;
@@ -111,8 +111,8 @@ impl Methods {
         if from == Start::Nothing {
             return Ok(Some(true));
         }
+        let survey = task.survey();
         let (state, set) = (&mut *task.state, task.set);
-        let survey = Survey::of(state);
         if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries() {
             return Ok(None);
         }
@@ -124,7 +124,7 @@ impl Methods {
         }
         // With limits it is not known what grows with the load.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
-            self.projected_cg.predict(state)?;
+            self.projected_cg.predict(state, &task.problem.threads)?;
         }
         Ok(Some(false))
     }

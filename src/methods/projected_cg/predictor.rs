@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::memory::keep;
 use crate::operator::zeros;
 use crate::scene::Load;
+use crate::threads::Threads;
 
 /// The solution before the last; empty before there is one.
 #[derive(Default)]
@@ -26,7 +27,7 @@ impl Predictor {
 
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
     /// iteration truncates it, and owes u the change.
-    pub fn predict(&mut self, state: &mut State) -> Result<Freshness> {
+    pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<Freshness> {
         state.scale_to_approach();
         if self.p.is_empty() {
             let n = state.p.len();
@@ -60,15 +61,20 @@ impl Predictor {
         let step = work / energy;
         let step = if energy > 0.0 && step.is_finite() { step } else { 0.0 };
 
+        let mx = state.grid.mx;
+        let move_on = |now: &mut [f64], before: &mut [f64]| {
+            for (now, before) in now.iter_mut().zip(before) {
+                (*now, *before) = (*now + step * ((1.0 - share) * *now - *before), *now);
+            }
+        };
+        let threads = threads.for_a_pass(state.p.len());
+        threads.for_each_row_pair((&mut state.p, mx), (&mut self.p, mx), |_, now, before| move_on(now, before));
+        threads.for_each_row_pair((&mut state.u, mx), (&mut self.u, mx), |_, now, before| move_on(now, before));
         let mut displacement = Freshness::Exact;
-        for i in 0..state.p.len() {
-            let (p, u) = (state.p[i], state.u[i]);
-            state.p[i] = p + step * ((1.0 - share) * p - self.p[i]);
-            state.u[i] = u + step * ((1.0 - share) * u - self.u[i]);
-            state.contact[i] = state.p[i] != 0.0;
-            (self.p[i], self.u[i]) = (p, u);
-            if state.contact[i] && state.h[i].is_infinite() {
-                (state.p[i], state.contact[i]) = (0.0, false);
+        for ((p, inside), h) in state.p.iter_mut().zip(&mut state.contact).zip(&state.h) {
+            *inside = *p != 0.0;
+            if *inside && h.is_infinite() {
+                (*p, *inside) = (0.0, false);
                 displacement = Freshness::Stale;
             }
         }

@@ -64,15 +64,18 @@ impl Scaling {
 fn farthest(h: &[f64], contact: &[bool], approach: f64) -> f64 {
     // Several at a time: that the compiler can vectorise.
     const LANES: usize = 8;
+    let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
     let mut largest = [0.0; LANES];
-    for (h, contact) in h.chunks(LANES).zip(contact.chunks(LANES)) {
-        for ((largest, h), &inside) in largest.iter_mut().zip(h).zip(contact) {
-            let distance = (h - approach).abs();
-            let touches = inside | (*h < approach);
-            *largest = if touches & (distance > *largest) { distance } else { *largest };
+    let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));
+    let rest = h.remainder().iter().zip(contact.remainder());
+    let of_rest = rest.fold(0.0, |largest, (h, &inside)| larger(distance(*h, inside), largest));
+    for (h, contact) in h.zip(contact) {
+        for lane in 0..LANES {
+            largest[lane] = larger(distance(h[lane], contact[lane]), largest[lane]);
         }
     }
-    largest.into_iter().fold(0.0, f64::max)
+    largest.into_iter().fold(of_rest, |largest, value| larger(value, largest))
 }
 
 /// The exponent of two of a normal number.

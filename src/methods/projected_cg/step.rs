@@ -14,6 +14,7 @@ use crate::memory::reserve;
 use crate::methods::{Change, Habits, Step};
 use crate::operator::Precision;
 use crate::progress::{Goal, Monitor};
+use crate::threads::Threads;
 
 /// The iteration aims at this part of the tolerance: unpaid truncations and single precision rounding must still pass the certificate,
 /// and on a full contact of flat bodies, where A is worst conditioned, p be within ten tolerances (tests/random_problems.rs). Work over
@@ -96,8 +97,8 @@ impl ProjectedCg {
     }
 
     /// A step in time: moves `state` on from the last solution.
-    pub fn predict(&mut self, state: &mut State) -> Result<()> {
-        state.u_is = self.predictor.predict(state)?;
+    pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<()> {
+        state.u_is = self.predictor.predict(state, threads)?;
         Ok(())
     }
 
