@@ -21,6 +21,7 @@
 #include <exception>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -480,6 +481,74 @@ private:
     };
     std::unique_ptr<contact_normal_solver, free> handle_;
 };
+
+/// What acts on the elements of a body, my * mx values each; a view of no values: nothing. Tractions are those on this body.
+struct loads {
+    view<double> pressure;
+    view<double> traction_x{nullptr, 0}, traction_y{nullptr, 0};
+};
+
+/// Stresses below the centres of the elements, positive in tension: n * my * mx values for n depths, x fastest.
+struct stresses {
+    std::array<std::vector<double>, 6> components; // xx, yy, zz, xy, xz, yz
+    std::vector<double> von_mises, maximum_shear;
+    contact_normal_stress_maximum largest_von_mises{}, largest_shear{};
+};
+
+namespace detail {
+
+inline const double *load(const scene &of, const char *name, view<double> values)
+{
+    if (values.size() == 0) return nullptr;
+    if (values.size() == of.size()) return values.data();
+    throw error(CONTACT_NORMAL_INVALID_ARGUMENT, std::string(name) + " has " + std::to_string(values.size()) +
+                                                     " values; it must have " + std::to_string(of.size()));
+}
+
+inline std::int32_t points_of(std::size_t n)
+{
+    if (n <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) return static_cast<std::int32_t>(n);
+    throw error(CONTACT_NORMAL_INVALID_ARGUMENT, "there are more than 2^31 - 1 depths or points");
+}
+
+} // namespace detail
+
+/// The stresses in body 1 or 2 of a scene at these depths below its elements; of the scene, grid, Poisson's ratio and period matter.
+inline stresses subsurface_stress(const scene &of, std::int32_t body, const loads &on, view<double> depths, const options &how = {})
+{
+    stresses found;
+    const contact_normal_scene scene = of.get();
+    const std::int32_t n = detail::points_of(depths.size());
+    contact_normal_stress_outputs outputs;
+    contact_normal_stress_outputs_init(&outputs);
+    for (std::size_t c = 0; c < 6; c++) {
+        found.components[c].resize(depths.size() * of.size());
+        outputs.stress[c] = found.components[c].data();
+    }
+    for (auto *values : {&found.von_mises, &found.maximum_shear}) values->resize(depths.size() * of.size());
+    outputs.von_mises = found.von_mises.data(), outputs.maximum_shear = found.maximum_shear.data();
+    outputs.largest_von_mises = &found.largest_von_mises, outputs.largest_shear = &found.largest_shear;
+    const double *const p = detail::load(of, "pressure", on.pressure);
+    const double *const qx = detail::load(of, "traction_x", on.traction_x), *const qy = detail::load(of, "traction_y", on.traction_y);
+    const contact_normal_status status =
+        check(contact_normal_subsurface_stress(&scene, body, p, qx, qy, depths.data(), n, &how, &outputs));
+    if (status > 0) throw error(status, contact_normal_last_error());
+    return found;
+}
+
+/// The six components at points (x, y, z), x and y from the outer corner of element (0, 0).
+inline std::vector<std::array<double, 6>> stress_at_points(const scene &of, std::int32_t body, const loads &on,
+                                                           view<std::array<double, 3>> points, const options &how = {})
+{
+    std::vector<std::array<double, 6>> found(points.size());
+    if (found.empty()) return found;
+    const contact_normal_scene scene = of.get();
+    const double *const p = detail::load(of, "pressure", on.pressure);
+    const double *const qx = detail::load(of, "traction_x", on.traction_x), *const qy = detail::load(of, "traction_y", on.traction_y);
+    check(contact_normal_stress_at_points(&scene, body, p, qx, qy, points.data()->data(), detail::points_of(points.size()), &how,
+                                          found.data()->data()));
+    return found;
+}
 
 /// The exact contact of h = curvature_x x^2 + curvature_y y^2 for a prescribed approach or force (`load`).
 inline contact_normal_hertz_solution hertz(double curvature_x, double curvature_y, const body &one, const body &other,

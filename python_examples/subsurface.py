@@ -19,11 +19,19 @@ def ball():
 
 
 def wheel_on_rail(path):
-    """A measured case (see data/wheel_rail), with sliding friction of .3 along the rail."""
+    """A measured case (see data/wheel_rail): the wheel, body 1, rolls along x with creepages and spin; friction of .3."""
     rows = [line for line in Path(path).read_text().splitlines() if not line.startswith("#")]
     mx, my, dx, dy, _, force, modulus, ratio = (float(word) for word in rows[0].split())
     h = np.array([float(word) for row in rows[1:] for word in row.split()[:1]]).reshape(int(my), int(mx))
-    return cn.solve(h, dx, dy, force=force, shear_modulus=modulus, poisson_ratio=ratio), 0.3
+    rolling = dict(coefficient=0.3, motion="STEADY_ROLLING", creepage=(-1e-3, 5e-4), spin=-2e-4)
+    return cn.solve(h, dx, dy, force=force, shear_modulus=modulus, poisson_ratio=ratio, friction=rolling)
+
+
+def finer(result, coarse, traction):
+    """The largest von Mises stress between the depths: once more with depths up to the neighbours of the one that has it."""
+    k, depths = int(coarse.largest_von_mises["depth"]), coarse.depths
+    between = np.linspace(depths[max(k - 1, 0)], depths[min(k + 1, len(depths) - 1)], 21)
+    return result.subsurface(between, traction=traction).largest_von_mises
 
 
 def say(name, stress, unit):
@@ -40,9 +48,15 @@ def main(case, folder=None):
     say("ball", still, p0)
     sliding = rolled.subsurface(depths, traction=(0.25 * rolled.pressure, 0 * rolled.pressure))
     say("sliding ball", sliding, p0)
-    wheel, friction = wheel_on_rail(case)
-    below = wheel.subsurface(np.linspace(0.0, 8.0, 41), traction=(friction * wheel.pressure, 0 * wheel.pressure))
-    say("wheel on rail", below, wheel.report["max_pressure"])
+    wheel = wheel_on_rail(case)
+    # The tractions that were found act on body 1, the wheel; those on the rail are their opposites.
+    p0, (fx, fy) = wheel.report["max_pressure"], wheel.report["tangential_force"]
+    print(f"wheel on rail: p0 = {p0:.0f} N/mm2, tangential force ({fx / 1000:.1f}, {fy / 1000:.1f}) kN, "
+          f"{(wheel.adhesion == 1).sum() / wheel.contact.sum():.0%} of the contact area sticks")
+    below = wheel.subsurface(np.linspace(0.0, 8.0, 41), traction=wheel.traction)
+    say("wheel on rail", below, p0)
+    at = finer(wheel, below, wheel.traction)
+    print(f"wheel on rail: largest von Mises between these depths {at['value'] / p0:.4f} p0 at z = {at['z']:.2f} mm")
     if folder:
         import matplotlib
 

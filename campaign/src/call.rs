@@ -7,7 +7,7 @@ use std::ptr::{null, null_mut};
 use contact_normal::ffi::*;
 
 use crate::case::{Case, How};
-use crate::effects::{Effects, Values};
+use crate::effects::{Effects, OwnCoefficients, Values};
 use crate::grid::Load;
 
 /// What outputs hold before a call.
@@ -39,6 +39,7 @@ pub struct EffectStructs {
     pub period: contact_normal_period,
     patches: contact_normal_patches,
     row_tables: contact_normal_row_tables,
+    coating: [contact_normal_coating; 2],
 }
 
 fn pointer_if<T>(named: bool, to: &T) -> *const T {
@@ -58,7 +59,14 @@ pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
         period: initialised(contact_normal_period_init),
         patches: initialised(contact_normal_patches_init),
         row_tables: initialised(contact_normal_row_tables_init),
+        coating: [initialised(contact_normal_coating_init); 2],
     });
+    for (coating, layer) in structs.coating.iter_mut().zip(effects.coating.iter().flat_map(|coating| coating.layers)) {
+        if let Some(layer) = layer {
+            (coating.thickness, coating.shear_modulus) = (layer.thickness, layer.shear_modulus);
+            coating.poisson_ratio = layer.poisson_ratio;
+        }
+    }
     if let Some(own) = &effects.influence {
         (structs.influence.cx, structs.influence.cy) = (own.cx as i32, own.cy as i32);
         structs.influence.coefficients = own.values.as_ptr();
@@ -96,6 +104,10 @@ impl EffectStructs {
         scene.period = pointer_if(effects.period.is_some(), &self.period);
         scene.patches = pointer_if(effects.patches.is_some(), &self.patches);
         scene.row_tables = pointer_if(effects.row_tables.is_some(), &self.row_tables);
+        for (b, coating) in self.coating.iter().enumerate() {
+            let named = effects.coating.as_ref().is_some_and(|effect| effect.layers[b].is_some());
+            scene.coating[b] = pointer_if(named, coating);
+        }
     }
 }
 
@@ -232,6 +244,48 @@ impl Handle {
             // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
             unsafe { contact_normal_solver_solve(self.0, scene, options, fields, report) }
         })
+    }
+
+    /// Sets other coefficients: the status.
+    pub fn set_influence(&mut self, own: &OwnCoefficients) -> i32 {
+        let mut influence = initialised(contact_normal_influence_init);
+        (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
+        // SAFETY: a struct with a table of the size that it says.
+        unsafe { contact_normal_solver_set_influence(self.0, &influence) }
+    }
+
+    /// Solves cases that differ in surface and load only, in one call: its status, and what came of each.
+    pub fn solve_batch(&mut self, cases: &[Case]) -> (i32, Vec<Outputs>) {
+        let mut canceller = Canceller { calls: 0, at: 0 };
+        let options = options(&cases[0].how, false, &mut canceller);
+        let scenes: Vec<Scene> = cases.iter().map(Scene::of).collect();
+        let list: Vec<contact_normal_scene> = scenes.iter().map(|scene| scene.scene).collect();
+        let (mut outputs, mut fields): (Vec<_>, Vec<_>) = cases.iter().map(outputs).unzip();
+        let before: Vec<_> = outputs.iter().map(Outputs::bits).collect();
+        let mut reports: Vec<_> = outputs.iter().map(|outputs| outputs.report).collect();
+        let mut statuses = vec![-77; cases.len()];
+        let (count, statuses_at) = (cases.len() as i32, statuses.as_mut_ptr());
+        let (fields_at, reports_at) = (fields.as_mut_ptr(), reports.as_mut_ptr());
+        // SAFETY: arrays of as many structs, each with the arrays that it declares.
+        let status = unsafe {
+            contact_normal_solver_solve_batch(
+                self.0,
+                count,
+                list.as_ptr(),
+                &options,
+                fields_at,
+                reports_at,
+                statuses_at,
+            )
+        };
+        for (k, outputs) in outputs.iter_mut().enumerate() {
+            outputs.written =
+                outputs.bits() != before[k] || reports[k].force.to_bits() != outputs.report.force.to_bits();
+            outputs.report = reports[k];
+            outputs.status = statuses[k];
+            outputs.message = if statuses[k] == CONTACT_NORMAL_OK { String::new() } else { last_error() };
+        }
+        (status, outputs)
     }
 
     /// The pressures that it holds, if it says that it does.

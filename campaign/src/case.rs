@@ -2,6 +2,7 @@
 
 use contact_normal::ffi::*;
 
+use crate::coating;
 use crate::effects::{self, Effects};
 use crate::grid::{Grid, Load};
 use crate::half_space::compliance;
@@ -63,6 +64,12 @@ impl Case {
         h.iter_mut().for_each(|h| *h = *h * height + offset);
         let c = compliance(shear_modulus, poisson_ratio);
         let mut effects = effects::make(random, &kinds, &grid, c);
+        // By numbers of their own: those of the other effects stay what they were.
+        let own = &mut Random::new(seed ^ 0xc0a7);
+        // Elements of an oracle by quadrature are not slender.
+        if own.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
+            effects.coating = Some(coating::random(own, &grid, shear_modulus, poisson_ratio));
+        }
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);
         if kinds.limit {

@@ -1,5 +1,6 @@
 //! The effects that a scene may name, and random ones.
 
+use crate::coating::Coating;
 use crate::grid::Grid;
 use crate::half_space::free;
 use crate::random::Random;
@@ -46,6 +47,7 @@ pub struct Effects {
     pub patches: Option<Patches>,
     pub influence: Option<OwnCoefficients>,
     pub row_tables: Option<OwnCoefficients>,
+    pub coating: Option<Coating>,
     /// Own coefficients that are not symmetric.
     pub unsymmetric: bool,
     /// Coefficients of no elastic body: nothing is promised but that the status is true.
@@ -78,6 +80,7 @@ impl Effects {
             self.influence.as_ref().map(|_| own[0]),
             self.row_tables.as_ref().map(|_| own[1]),
             self.period.map(period),
+            self.coating.as_ref().map(|_| "coating"),
             self.patches.as_ref().map(|_| "patches"),
             per_element(&self.layer, "layer", "layer per element"),
             per_element(&self.limit, "limit", "limit per element"),
@@ -95,6 +98,7 @@ impl Effects {
         let own = self.influence.is_some() || self.row_tables.is_some();
         self.period.is_some() && (own || self.patches.is_some())
             || self.influence.is_some() && self.row_tables.is_some()
+            || self.coating.is_some() && (own || matches!(self.period, Some((true, false) | (false, true))))
     }
 
     /// Effects that MULTIGRID and FULL_MULTIGRID may refuse (docs/effects.md).
@@ -179,7 +183,7 @@ pub fn patches(random: &mut Random, grid: &Grid) -> Patches {
 }
 
 /// Sums of what is positive definite (the half-space, a foundation), and what breaks that.
-fn table(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite): (bool, bool)) -> OwnCoefficients {
+pub fn table(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite): (bool, bool)) -> OwnCoefficients {
     let (cx, cy) = (grid.mx + random.pick(&[0, 0, 1, 7]), grid.my + random.pick(&[0, 0, 2]));
     let half_space = free(cx + 1, cy + 1, grid.dx, grid.dy, c);
     let own = half_space.at(0, 0);

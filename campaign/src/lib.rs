@@ -1,13 +1,17 @@
 //! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
 //!
 //! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
-//! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and what failed. Nothing of the
-//! library is used but the C ABI's functions: a change of its core does not touch this.
+//! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and
+//! what failed. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`. Nothing of
+//! the library is used but the C ABI's functions: a change of its core does not touch this.
 
 pub mod account;
+pub mod accuracy;
+pub mod batch;
 pub mod bytes;
 pub mod call;
 pub mod case;
+pub mod coating;
 pub mod effects;
 pub mod grid;
 pub mod half_space;
@@ -16,12 +20,15 @@ pub mod random;
 pub mod rules;
 pub mod scales;
 pub mod sequence;
+pub mod set_influence;
+pub mod stress;
 pub mod surface;
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::time::Instant;
 
 use case::Case;
+use random::Random;
 use rules::Failure;
 
 /// What came of one case.
@@ -39,7 +46,12 @@ const TOO_LONG: f64 = 20.0;
 pub fn run(seed: u64) -> Run {
     let case = Case::new(seed);
     let began = Instant::now();
-    let outcome = catch_unwind(AssertUnwindSafe(|| if case.through_handle { sequence(&case) } else { single(&case) }));
+    let ask = || {
+        let (statuses, mut failures) = if case.through_handle { sequence(&case) } else { single(&case) };
+        failures.extend(beside(&case));
+        (statuses, failures)
+    };
+    let outcome = catch_unwind(AssertUnwindSafe(ask));
     let (statuses, mut failures) = outcome.unwrap_or_else(|panic| {
         let details = panic.downcast_ref::<String>().cloned().unwrap_or_default();
         (Vec::new(), vec![Failure { promise: "no panic", details }])
@@ -49,6 +61,19 @@ pub fn run(seed: u64) -> Run {
         failures.push(Failure { promise: "bounded time", details: format!("{seconds:.1} s") });
     }
     Run { case, statuses, failures, seconds }
+}
+
+/// What some seeds are asked beside their case.
+fn beside(case: &Case) -> Vec<Failure> {
+    // By numbers of their own: those of the case stay what they were.
+    let random = &mut Random::new(case.seed ^ 0x00be_51de);
+    match random.uniform() {
+        u if u < 0.04 => stress::check(random),
+        u if u < 0.05 => accuracy::check(random),
+        u if u < 0.10 => batch::run(case, random),
+        u if u < 0.15 => set_influence::run(case, random),
+        _ => Vec::new(),
+    }
 }
 
 fn sequence(case: &Case) -> (Vec<i32>, Vec<Failure>) {

@@ -27,6 +27,10 @@ impl<'a> Operator<'a> {
         let coefficients = match (&effects.influence, &effects.row_tables, effects.period) {
             (Some(own), ..) => Coefficients::Table(own),
             (_, Some(own), _) => Coefficients::RowTables(own),
+            _ if effects.coating.is_some() => {
+                let coating = effects.coating.as_ref().expect("a coating");
+                Coefficients::HalfSpace(coating.coefficients(grid, effects.period))
+            }
             (.., Some(period)) => Coefficients::HalfSpace(periodic(mx, my, dx, dy, c, period)),
             _ => Coefficients::HalfSpace(free(mx, my, dx, dy, c)),
         };

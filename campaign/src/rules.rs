@@ -113,9 +113,11 @@ impl Measures {
         self.residual <= tolerance * (1.0 + 1e-12) * self.distance + self.rounding * self.count.sqrt()
     }
 
-    /// Whether rounding alone may exceed the tolerance.
+    /// Whether rounding alone may exceed the tolerance: in the residual of C, whose distances may be small beside those at the limit, too.
     fn is_below_rounding(&self, tolerance: f64) -> bool {
-        !(tolerance * self.rms > 10.0 * self.rounding)
+        let of_residual = self.distance / f64::max(self.count, 1.0).sqrt();
+        let smallest = if self.count > 0.0 { f64::min(self.rms, of_residual) } else { self.rms };
+        !(tolerance * smallest > 10.0 * self.rounding)
     }
 }
 

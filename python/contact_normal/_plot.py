@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -10,8 +11,28 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from ._result import Ledger, Result
-    from ._stress import SubsurfaceStress
+    from ._arguments import Doubles
+
+
+class Solved(Protocol):
+    """What is drawn of a `Result`."""
+
+    pressure: Doubles
+    contact: npt.NDArray[np.bool_]
+    traction: Doubles
+    adhesion: npt.NDArray[np.int32]
+    dx: float
+    dy: float
+    report: dict[str, Any]
+
+
+class Below(Protocol):
+    """What is drawn of a `SubsurfaceStress`."""
+
+    depths: Doubles
+    zz: Doubles
+    dx: float
+    dy: float
 
 
 def _new_axes(size: tuple[float, float]) -> Axes:
@@ -23,7 +44,7 @@ def _new_axes(size: tuple[float, float]) -> Axes:
     return axes
 
 
-def plot_pressure(result: Result, axes: Axes | None) -> Axes:
+def plot_pressure(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot`."""
     axes = axes or _new_axes((8.0, 6.0))
     my, mx = result.pressure.shape
@@ -41,11 +62,11 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     _outline(axes, result.contact, x_edges, y_edges)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label="pressure")
     axes.set(xlabel="x", ylabel="y", aspect="equal")
-    axes.set_title(f"force {result.force:.5g}, approach {result.approach:.5g}, {mx} × {my} elements", fontsize=10)
+    axes.set_title(f"force {result.report['force']:.5g}, approach {result.report['approach']:.5g}, {mx} × {my} elements", fontsize=10)
     return axes
 
 
-def plot_traction(result: Result, axes: Axes | None) -> Axes:
+def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
     axes = axes or _new_axes((8.0, 6.0))
     my, mx = result.adhesion.shape
@@ -80,12 +101,12 @@ def _outline(axes: Axes, contact: npt.NDArray[np.bool_], x_edges: Any, y_edges: 
     axes.vlines(x_edges[columns], y_edges[rows], y_edges[rows + 1], color="crimson", linewidth=1.6)
 
 
-def plot_ledger(ledger: Ledger, axes: Axes | None) -> Axes:
+def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes | None) -> Axes:
     """See `Ledger.plot`."""
     axes = axes or _new_axes((6.4, 4.2))
     for name, error, of in (
         ("pressures (rms)", "error_pressure", None),
-        (ledger.estimated, "error_force", ledger.estimated),
+        (estimated, "error_force", estimated),
         ("largest pressure", "error_max_pressure", "max_pressure"),
     ):
         scales = [1.0 if of is None else row[of] for row in ledger]
@@ -121,7 +142,7 @@ def _nearest(place: float, d: float, m: int, name: str) -> int:
     return k
 
 
-def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
+def plot_section(stress: Below, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
     """See `SubsurfaceStress.plot_section`."""
     if x is not None and y is not None:
         raise TypeError("give either x or y: the plane of the section")
@@ -138,7 +159,8 @@ def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of:
     places, depths = (np.arange(m) + 0.5 - 0.5 * m) * d, stress.depths[order]
     filled = axes.contourf(places, depths, shown[order], 24, cmap="magma")
     row, column = np.unravel_index(np.argmax(np.abs(shown[order])), shown.shape)
-    axes.plot(places[column], depths[row], "+", color="white", markersize=12, markeredgewidth=2)
+    for colour, width in (("black", 4), ("white", 2)):
+        axes.plot(places[column], depths[row], "+", color=colour, markersize=10 + width, markeredgewidth=width)
     axes.figure.colorbar(filled, ax=axes, label={"von_mises": "von Mises"}.get(of, of.replace("_", " ")))
     axes.set(xlabel=across, ylabel="depth z", aspect="equal")
     axes.set_title(f"{name} = {where:.4g}: largest {shown[order][row, column]:.4g} at {across} = {places[column]:.4g}, z = {depths[row]:.4g}",
@@ -147,7 +169,7 @@ def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of:
     return axes
 
 
-def plot_depth(stress: SubsurfaceStress, x: float, y: float, axes: Axes | None) -> Axes:
+def plot_depth(stress: Below, x: float, y: float, axes: Axes | None) -> Axes:
     """See `SubsurfaceStress.plot_depth`."""
     axes = axes or _new_axes((6.0, 4.5))
     my, mx = stress.zz.shape[1:]

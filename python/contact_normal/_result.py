@@ -52,7 +52,7 @@ class Ledger(list[dict[str, float]]):
         """
         from ._plot import plot_ledger
 
-        return plot_ledger(self, axes)
+        return plot_ledger(self, self.estimated, axes)
 
 
 class Result:

@@ -25,6 +25,7 @@ mod solver;
 mod special;
 mod status;
 mod stress;
+mod stress_outputs;
 mod structs;
 mod tangential;
 
@@ -45,4 +46,5 @@ pub use solver::*;
 pub use special::*;
 pub use status::*;
 pub use stress::*;
+pub use stress_outputs::*;
 pub use tangential::*;

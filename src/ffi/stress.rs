@@ -9,67 +9,15 @@ use super::status::{
     contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
     CONTACT_NORMAL_UNSUPPORTED,
 };
-use super::structs::{self, versioned};
+use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
+use super::structs;
 use crate::effects;
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::ProgressCallback;
 use crate::scene::Period;
-use crate::stress::{self, Body, Depth, Loads, Maximum, Wanted};
+use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
-
-/// The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
-#[repr(C)]
-#[derive(Clone, Copy, Default)]
-pub struct contact_normal_stress_maximum {
-    /// The value.
-    pub value: f64,
-    /// Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
-    pub x: f64,
-    /// The same in y.
-    pub y: f64,
-    /// The depth.
-    pub z: f64,
-    /// The element above it.
-    pub ix: i32,
-    /// The same in y.
-    pub iy: i32,
-    /// Which of the depths, from 0.
-    pub depth: i32,
-    /// Always 0.
-    pub reserved: i32,
-}
-
-/// Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct contact_normal_stress_outputs {
-    /// Set by `contact_normal_stress_outputs_init`.
-    pub struct_size: i64,
-    /// The components xx, yy, zz, xy, xz, yz, `[n][my][mx]` each for n depths; default NULL.
-    pub stress: [*mut f64; 6],
-    /// The von Mises stress, `[n][my][mx]`, or NULL (default).
-    pub von_mises: *mut f64,
-    /// The largest shear stress, half of what the first and the third principal stress differ by, `[n][my][mx]`, or NULL (default).
-    pub maximum_shear: *mut f64,
-    /// The principal stresses, the largest first, `[n][my][mx]` each; default NULL.
-    pub principal: [*mut f64; 3],
-    /// The unit vectors of their directions, `[n][my][mx][3]` each; default NULL.
-    pub directions: [*mut f64; 3],
-    /// The largest von Mises stress of all depths, or NULL (default).
-    pub largest_von_mises: *mut contact_normal_stress_maximum,
-    /// The largest shear stress of all depths, or NULL (default).
-    pub largest_shear: *mut contact_normal_stress_maximum,
-}
-
-versioned! { contact_normal_stress_outputs, 136 }
-
-/// Fills outputs with NULL: nothing is wanted. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contact_normal_stress_outputs) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(outputs) }
-}
 
 /// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
 /// tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
@@ -213,64 +161,6 @@ impl Load {
     }
 }
 
-impl contact_normal_stress_outputs {
-    fn wanted(&self) -> Wanted {
-        Wanted {
-            components: self.stress.map(|stress| !stress.is_null()),
-            von_mises: !self.von_mises.is_null() || !self.largest_von_mises.is_null(),
-            maximum_shear: !self.maximum_shear.is_null() || !self.largest_shear.is_null(),
-            principal: self.principal.iter().any(|stress| !stress.is_null()),
-            directions: self.directions.iter().any(|direction| !direction.is_null()),
-        }
-    }
-
-    /// Adds what is written at n depths of so many elements, and the struct that says where.
-    fn add_to(
-        &self,
-        regions: &mut Regions,
-        at: *const contact_normal_stress_outputs,
-        (n, elements): (usize, usize),
-    ) -> Result<(), Refusal> {
-        let count = n.saturating_mul(elements);
-        regions.input_struct(at, self)?;
-        for stress in self.stress {
-            regions.output("stress", stress, count)?;
-        }
-        regions.output("von_mises", self.von_mises, count)?;
-        regions.output("maximum_shear", self.maximum_shear, count)?;
-        for (stress, direction) in self.principal.into_iter().zip(self.directions) {
-            regions.output("principal", stress, count)?;
-            regions.output("directions", direction, count.saturating_mul(3))?;
-        }
-        regions.output("largest_von_mises", self.largest_von_mises, 1)?;
-        regions.output("largest_shear", self.largest_shear, 1)
-    }
-
-    /// Writes what is wanted of depth k.
-    unsafe fn write(&self, k: usize, depth: &Depth) {
-        unsafe fn copy<A>(values: &[A], to: *mut f64, k: usize) {
-            if !to.is_null() {
-                // SAFETY: room for n depths, by the conventions of the ABI, and nothing overlaps (`Regions`).
-                unsafe {
-                    std::ptr::copy_nonoverlapping(values.as_ptr(), to.cast::<A>().add(k * values.len()), values.len())
-                };
-            }
-        }
-        // SAFETY (all): by the caller.
-        unsafe {
-            for c in 0..6 {
-                copy(&depth.stress[c], self.stress[c], k);
-            }
-            copy(&depth.von_mises, self.von_mises, k);
-            copy(&depth.maximum_shear, self.maximum_shear, k);
-            for i in 0..3 {
-                copy(&depth.principal[i], self.principal[i], k);
-                copy(&depth.directions[i], self.directions[i], k);
-            }
-        }
-    }
-}
-
 fn run(
     body: &Body,
     loads: &Loads<'_>,
@@ -290,21 +180,8 @@ fn run(
     })?;
     for (found, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
         if let (Some(found), false) = (found, to.is_null()) {
-            let Maximum { value, depth, ix, iy } = found;
-            let place = |k: usize, d: f64| (k as f64 + 0.5) * d;
             // SAFETY: not null: room for one, by the conventions of the ABI.
-            unsafe {
-                to.write(contact_normal_stress_maximum {
-                    value,
-                    x: place(ix, body.grid.dx),
-                    y: place(iy, body.grid.dy),
-                    z: depths[depth],
-                    ix: ix as i32,
-                    iy: iy as i32,
-                    depth: depth as i32,
-                    reserved: 0,
-                });
-            }
+            unsafe { to.write(contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid)) };
         }
     }
     if !all {

@@ -28,7 +28,7 @@
 use std::f64::consts::PI;
 
 use super::kernels::{is_odd, Asked, Kernels};
-use super::Body;
+use super::{Body, Loaded};
 use crate::error::{Error, Result};
 use crate::memory::zeros;
 
@@ -38,6 +38,8 @@ const NODES: usize = 10;
 const REACH: f64 = 90.0;
 /// `exp(-40) = 4e-18`: waves that have faded.
 const FADED: f64 = 40.0;
+/// Of a bin, at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`.
+const MOST_ALIASES: usize = 14;
 /// Elements more slender than this have too many images within reach.
 const MOST_SLENDER: f64 = 64.0;
 
@@ -47,6 +49,8 @@ pub struct Waves {
     /// Of each kernel asked for, `[bin in x][bin in y]`, both >= 0: what is real of its spectrum.
     spectrum: Vec<f64>,
     bins: (usize, usize),
+    /// Of each bin in y.
+    in_y: Vec<Aliases>,
     /// Near the surface: kernels of single elements, and the sum over images at offsets up to half the period. Set up when needed.
     images: Option<Images>,
 }
@@ -74,7 +78,8 @@ impl Waves {
                 Some(Images { kernels, reach, folded: zeros(asked.count() * x * y, what)? })
             }
         };
-        Ok(Waves { asked, spectrum: zeros(asked.count() * bins.0 * bins.1, what)?, bins, images })
+        let spectrum = zeros(asked.count() * bins.0 * bins.1, what)?;
+        Ok(Waves { asked, spectrum, bins, in_y: zeros(bins.1, what)?, images })
     }
 
     /// Whether a depth, in longer sides of an element, is near the surface.
@@ -123,36 +128,57 @@ impl Waves {
         Some((&self.spectrum[part(self.bins.0 * self.bins.1)], folded))
     }
 
-    /// Adds the waves of depth z, times a factor.
+    /// Adds the waves of depth z >= 1, times a factor: those that have not faded.
     fn add_waves(&mut self, body: &Body, z: f64, factor: f64) {
         let (dx, dy) = body.element();
-        let (mx, my) = (body.grid.mx as f64, body.grid.my as f64);
-        let n = self.bins.0 * self.bins.1;
-        let last = |d: f64| (FADED / z * d / (2.0 * PI)).ceil() as i64 + 1;
+        let (rows, n) = (self.bins.1, self.bins.0 * self.bins.1);
+        let most = FADED / z;
+        for (j, aliases) in self.in_y.iter_mut().enumerate() {
+            aliases.fill(j, body.grid.my, dy, most);
+        }
+        let mut in_x = Aliases::default();
         for i in 0..self.bins.0 {
-            for j in 0..self.bins.1 {
+            in_x.fill(i, body.grid.mx, dx, most);
+            for (j, in_y) in self.in_y.iter().enumerate() {
                 let mut sum = [[0.0; 6]; 3];
-                for a in -last(dx)..=last(dx) {
-                    let kx = 2.0 * PI * (i as f64 / mx + a as f64) / dx;
-                    for b in -last(dy)..=last(dy) {
-                        let ky = 2.0 * PI * (j as f64 / my + b as f64) / dy;
-                        let k = kx.hypot(ky);
-                        if k * z <= FADED {
-                            add_wave(
-                                body.poisson_ratio,
-                                (kx, ky, k),
-                                z,
-                                sinc(0.5 * kx * dx) * sinc(0.5 * ky * dy),
-                                &mut sum,
-                            );
+                for (kx, mean_x) in in_x.list() {
+                    for (ky, mean_y) in in_y.list() {
+                        let k2 = kx * kx + ky * ky;
+                        if k2 <= most * most {
+                            let wave = (*kx, *ky, k2.sqrt());
+                            add_wave(body.poisson_ratio, self.asked.loaded, wave, z, mean_x * mean_y, &mut sum);
                         }
                     }
                 }
-                for (place, (load, c)) in self.asked.list().enumerate() {
-                    self.spectrum[place * n + i * self.bins.1 + j] += factor * sum[load][c];
-                }
+                let spectra = self.spectrum[i * rows + j..].iter_mut().step_by(n);
+                spectra.zip(self.asked.list()).for_each(|(value, (load, c))| *value += factor * sum[load][c]);
             }
         }
+    }
+}
+
+/// The wave numbers of a bin and of its aliases, and what an element makes of them.
+#[derive(Clone, Copy, Default)]
+struct Aliases {
+    count: usize,
+    waves: [(f64, f64); MOST_ALIASES],
+}
+
+impl Aliases {
+    /// Of bin i of m, up to `most` of either sign.
+    fn fill(&mut self, i: usize, m: usize, d: f64, most: f64) {
+        let (place, period) = (i as f64 / m as f64, 2.0 * PI / d);
+        let (first, last) = ((-most / period - place).ceil(), (most / period - place).floor());
+        self.count = 0;
+        for (alias, wave) in (first as i64..=last as i64).zip(&mut self.waves) {
+            let k = period * (place + alias as f64);
+            *wave = (k, sinc(0.5 * k * d));
+            self.count += 1;
+        }
+    }
+
+    fn list(&self) -> &[(f64, f64)] {
+        &self.waves[..self.count]
     }
 }
 
@@ -196,7 +222,7 @@ fn sinc(x: f64) -> f64 {
 }
 
 /// Adds one wave: the spectra above without their factors i, two of which make -1.
-fn add_wave(nu: f64, (kx, ky, k): (f64, f64, f64), z: f64, load: f64, sum: &mut [[f64; 6]; 3]) {
+fn add_wave(nu: f64, loaded: Loaded, (kx, ky, k): (f64, f64, f64), z: f64, load: f64, sum: &mut [[f64; 6]; 3]) {
     if k == 0.0 {
         let sideways = -nu / (1.0 - nu) * load;
         (sum[0][0], sum[0][1]) = (sum[0][0] + sideways, sum[0][1] + sideways);
@@ -207,8 +233,14 @@ fn add_wave(nu: f64, (kx, ky, k): (f64, f64, f64), z: f64, load: f64, sum: &mut 
     }
     let (l, m, kz, e) = (kx / k, ky / k, k * z, load * (-k * z).exp());
     let h = 1.0 - 2.0 * nu;
-    let of_pressure =
-        [-(2.0 * nu + (h - kz) * l * l), -(2.0 * nu + (h - kz) * m * m), -(1.0 + kz), l * m * (h - kz), l * kz, m * kz];
+    let mut add = |load: usize, of_load: [f64; 6]| {
+        sum[load].iter_mut().zip(of_load).for_each(|(sum, value)| *sum += e * value);
+    };
+    if loaded[0] {
+        let xx = -(2.0 * nu + (h - kz) * l * l);
+        let yy = -(2.0 * nu + (h - kz) * m * m);
+        add(0, [xx, yy, -(1.0 + kz), l * m * (h - kz), l * kz, m * kz]);
+    }
     // Along the traction and across it.
     let of_traction = |l: f64, m: f64| {
         [
@@ -220,8 +252,11 @@ fn add_wave(nu: f64, (kx, ky, k): (f64, f64, f64), z: f64, load: f64, sum: &mut 
             -kz * l * m,
         ]
     };
-    let (in_x, [yy, xx, zz, xy, yz, xz]) = (of_traction(l, m), of_traction(m, l));
-    for (sum, of_load) in sum.iter_mut().zip([of_pressure, in_x, [xx, yy, zz, xy, xz, yz]]) {
-        sum.iter_mut().zip(of_load).for_each(|(sum, value)| *sum += e * value);
+    if loaded[1] {
+        add(1, of_traction(l, m));
+    }
+    if loaded[2] {
+        let [yy, xx, zz, xy, yz, xz] = of_traction(m, l);
+        add(2, [xx, yy, zz, xy, xz, yz]);
     }
 }

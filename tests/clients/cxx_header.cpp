@@ -1,6 +1,7 @@
 // contact_normal.hpp: what its classes promise. Prints one line per check that fails, and the number of checks.
 #include <contact_normal.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -208,12 +209,40 @@ static void frictions()
     expect(cancelled.statuses[2] == CONTACT_NORMAL_CANCELLED && cancelled.statuses[1] == CONTACT_NORMAL_OK && calls == 2, "a table cancelled");
 }
 
+static void stresses_below_the_surface()
+{
+    const std::vector<double> h = ball(0.01), depths{0.0, 0.3};
+    cn::scene scene(GRID, STEEL);
+    const cn::result found = cn::solve(scene.undeformed_distance(h).force(500.0));
+    std::vector<double> q;
+    for (double p : found.pressure) q.push_back(0.2 * p);
+    const cn::stresses below = cn::subsurface_stress(scene, 1, {found.pressure, q}, depths);
+    const std::size_t n = scene.size(), middle = 12 * 32 + 16;
+    expect(below.components[5].size() == 2 * n && below.von_mises.size() == 2 * n, "a value per element and depth");
+    const double p = found.pressure[middle];
+    expect(std::abs(below.components[2][middle] + p) <= 1e-13 * p, "szz = -p at the surface");
+    expect(std::abs(below.components[4][middle] + q[middle]) <= 1e-13 * p, "sxz = -qx at the surface");
+    double largest = 0.0;
+    for (double value : below.von_mises) largest = std::max(largest, value);
+    expect(below.largest_von_mises.value == largest, "the largest is that of the array");
+    const std::vector<std::array<double, 3>> points{{{16.5 * GRID.dx, 12.5 * GRID.dy, 0.3}}};
+    const auto at = cn::stress_at_points(scene, 1, {found.pressure, q}, points);
+    expect(at.size() == 1 && std::abs(at[0][2] - below.components[2][n + middle]) <= 1e-12 * p, "a point below an element");
+    expect(cn::stress_at_points(scene, 1, {found.pressure}, std::vector<std::array<double, 3>>{}).empty(), "no points");
+    const std::vector<double> few(5);
+    const auto short_traction = [&] { cn::subsurface_stress(scene, 1, {found.pressure, few}, depths); };
+    expect(thrown_by(short_traction, "traction_x has 5 values") == CONTACT_NORMAL_INVALID_ARGUMENT, "tractions of another size");
+    const auto body_3 = [&] { cn::subsurface_stress(scene, 3, {found.pressure}, depths); };
+    expect(thrown_by(body_3, "body is 3") == CONTACT_NORMAL_INVALID_ARGUMENT, "no third body");
+}
+
 int main()
 {
     scenes();
     frictions();
     refusals();
     handles();
+    stresses_below_the_surface();
     std::printf("%d of %d checks failed\n", failed, checked);
     return failed != 0;
 }

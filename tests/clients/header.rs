@@ -27,6 +27,7 @@ fn the_committed_header_is_the_generated_one() {
         "accuracy",
         "price_list",
         "special",
+        "stress_outputs",
         "stress",
         "log",
     ] {

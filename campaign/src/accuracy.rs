@@ -1,0 +1,80 @@
+//! A solve to an accuracy: a ball, whose exact solution (Hertz 1882) the force or the approach is compared with.
+
+use std::f64::consts::PI;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+use contact_normal::ffi::*;
+
+use crate::call::initialised;
+use crate::half_space::compliance;
+use crate::random::Random;
+use crate::rules::Failure;
+
+/// h = r^2/(2 R), from a place of the rectangle.
+struct Ball {
+    radius: f64,
+    centre: [f64; 2],
+}
+
+unsafe extern "C" fn write(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, user: *mut c_void) -> i32 {
+    // SAFETY: the ball of this call, and room for all values.
+    let (ball, h) = unsafe { (&*user.cast::<Ball>(), std::slice::from_raw_parts_mut(h, (mx * my) as usize)) };
+    for (i, value) in h.iter_mut().enumerate() {
+        let (ix, iy) = (i % mx as usize, i / mx as usize);
+        let x = (ix as f64 + 0.5) * dx - ball.centre[0];
+        let y = (iy as f64 + 0.5) * dy - ball.centre[1];
+        *value = (x * x + y * y) / (2.0 * ball.radius);
+    }
+    0
+}
+
+/// Elements of the finest grid that is allowed.
+const MOST: i64 = 256 * 256;
+
+/// One search.
+pub fn check(random: &mut Random) -> Vec<Failure> {
+    let (unit, modulus) = (random.decades(1e-3, 1e3), random.decades(1e-6, 1e6));
+    let (shear_modulus, poisson_ratio) = ([modulus, f64::INFINITY], [random.between(0.0, 0.5), 0.3]);
+    // E* = 1/(pi c); a contact of a radius that is this part of half the rectangle's shorter side.
+    let e_star = 1.0 / (PI * compliance(shear_modulus, poisson_ratio));
+    let (m, ratio) = (random.integer(4, 24) as f64, random.between(0.6, 1.6));
+    let (mx, my) = (m as i32, (m * ratio).ceil() as i32);
+    let sides = [f64::from(mx) * unit, f64::from(my) * unit];
+    let a = 0.5 * sides[0].min(sides[1]) * random.between(0.3, 0.8);
+    let radius = a * random.decades(5.0, 1e3);
+    let (approach, force) = (a * a / radius, 4.0 / 3.0 * e_star * a.powi(3) / radius);
+    let centre = [0, 1].map(|k| 0.5 * sides[k] + random.between(-0.1, 0.1) * unit);
+    let mut ball = Ball { radius, centre };
+    let by_force = random.chance(0.5);
+
+    let mut scene = initialised(contact_normal_scene_init);
+    (scene.mx, scene.my, scene.dx, scene.dy) = (mx, my, unit, unit);
+    (scene.shear_modulus, scene.poisson_ratio) = (shear_modulus, poisson_ratio);
+    (scene.approach, scene.force, scene.load) = (approach, force, i32::from(by_force));
+    let mut accuracy = initialised(contact_normal_accuracy_init);
+    (accuracy.target, accuracy.max_elements) = (random.decades(1e-4, 0.1), MOST);
+    accuracy.surface = Some(write);
+    accuracy.user = (&raw mut ball).cast();
+    let mut report = initialised(contact_normal_report_init);
+    // SAFETY: structs, and a callback that writes what it is asked for.
+    let status = unsafe { contact_normal_solve_to_accuracy(&scene, null(), &mut accuracy, null_mut(), &mut report) };
+    let (found, exact) = if by_force { (report.approach, approach) } else { (report.force, force) };
+    let error = (found / exact - 1.0).abs();
+    let (target, reached) = (accuracy.target, accuracy.reached);
+    let details = format!(
+        "status {status}: target {target:.1e}, reached {reached:.1e}, true {error:.1e}, {} x {} from {mx} x {my}, by force: {by_force}",
+        accuracy.mx, accuracy.my
+    );
+    let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
+    let holds = match status {
+        CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= target,
+        // The next grid would have been too large.
+        CONTACT_NORMAL_ITERATION_LIMIT => 4 * elements > MOST && reached > target,
+        _ => false,
+    };
+    if holds && elements <= MOST {
+        return Vec::new();
+    }
+    vec![Failure { promise: "a solve to an accuracy meets its target", details }]
+}

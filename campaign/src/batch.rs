@@ -1,0 +1,56 @@
+//! Batches: each problem is certified, has the bits of a call of its own, and none keeps another from being solved.
+
+use crate::call::{self, Handle};
+use crate::case::{Case, How};
+use crate::random::Random;
+use crate::rules::{check, Failure};
+
+/// Solves a case and some of its kind in one call; now and then one of them is none.
+pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
+    let mut first = case.clone();
+    // What all problems of a batch have in common.
+    first.how = How {
+        threads: 1 + i32::from(random.chance(0.3)),
+        given: None,
+        fixed: None,
+        cancel_at: None,
+        ..case.how.clone()
+    };
+    let Ok(mut handle) = Handle::new(&first) else { return Vec::new() };
+    let mut cases = vec![first.clone()];
+    for _ in 0..random.integer(1, 4) {
+        let mut next = first.next(random);
+        next.how = first.how.clone();
+        cases.push(next);
+    }
+    let spoiled = random.chance(0.3).then(|| random.integer(0, cases.len() - 1));
+    if let Some(k) = spoiled {
+        cases[k].h[0] = f64::NAN;
+    }
+    let (status, found) = handle.solve_batch(&cases);
+    let mut failures = Vec::new();
+    let statuses: Vec<i32> = found.iter().map(|outputs| outputs.status).collect();
+    let expected = statuses.iter().find(|s| **s < 0).or(statuses.iter().find(|s| **s > 0)).copied().unwrap_or(0);
+    if status != expected {
+        failures
+            .push(Failure { promise: "a batch has the first status", details: format!("{status} of {statuses:?}") });
+    }
+    for (k, (case, outputs)) in cases.iter().zip(&found).enumerate() {
+        if Some(k) == spoiled {
+            if outputs.status >= 0 || outputs.written {
+                let details = format!("status {}, written {}", outputs.status, outputs.written);
+                failures.push(Failure { promise: "a batch refuses what is no scene", details });
+            }
+            continue;
+        }
+        let name =
+            |failure: Failure| Failure { details: format!("problem {k} of a batch: {}", failure.details), ..failure };
+        failures.extend(check(case, outputs).into_iter().map(name));
+        let alone = call::solve(case);
+        if outputs.status != alone.status || (alone.status >= 0 && outputs.bits() != alone.bits()) {
+            let details = format!("problem {k}: status {} and {}", outputs.status, alone.status);
+            failures.push(Failure { promise: "a batch gives the bits of single calls", details });
+        }
+    }
+    failures
+}

@@ -1,0 +1,282 @@
+//! Coatings: a bonded layer on a body, by its transfer function and a quadrature of its Hankel integral.
+//!
+//! Beside a half-space of the layer's material, a pressure on one element displaces by
+//!
+//! ```text
+//! c (1/t) integral over the element of F(r/t),    F(rho) = integral over s > 0 of (B(s) - 1) J0(s rho),    c = (1 - nu1)/(2 pi G1)
+//! ```
+//!
+//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule: layers here are at least
+//! half as thick as elements are long. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
+//! over elements.
+
+use std::f64::consts::PI;
+
+use crate::grid::Grid;
+use crate::half_space::{free, periodic, Quadrant};
+use crate::random::Random;
+
+/// Thickness, shear modulus and Poisson ratio of a layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    pub thickness: f64,
+    pub shear_modulus: f64,
+    pub poisson_ratio: f64,
+}
+
+/// The layers of both bodies, and the bodies below.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coating {
+    pub layers: [Option<Layer>; 2],
+    pub shear_modulus: [f64; 2],
+    pub poisson_ratio: [f64; 2],
+}
+
+/// What a coefficient may be off, over it: what the library says of its own for G1/G2 of 0.01 to 100, and as much here.
+const ACCURACY: f64 = 2e-10;
+/// Points a side of an element. F has its singularities at +-2i, elements are at most two thicknesses long: `(2 + sqrt 5)^-24 = 1e-15`.
+const POINTS: usize = 12;
+/// Nodes of a panel of the table, as many as that to be good to 1e-13; panels are half as wide as `asinh(rho/2)` changes by 1.
+const NODES: usize = 14;
+
+/// Layers on one body or on both, of bodies that are not rigid.
+pub fn random(random: &mut Random, grid: &Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Coating {
+    let longer = grid.dx.max(grid.dy);
+    let size = (grid.mx as f64 * grid.dx).hypot(grid.my as f64 * grid.dy);
+    let mut layer = |b: usize| {
+        let equal = random.chance(0.05);
+        let factor = random.decades(0.01, 100.0);
+        let thickness = f64::max(longer * random.decades(0.5, 50.0), 0.02 * size);
+        let poisson_ratio = if equal { poisson_ratio[b] } else { random.between(0.0, 0.5) };
+        let shear_modulus = shear_modulus[b] * if equal { 1.0 } else { factor };
+        Layer { thickness: if random.chance(0.05) { 0.0 } else { thickness }, shear_modulus, poisson_ratio }
+    };
+    let layers = [layer(0), layer(1)];
+    let layers = match random.integer(0, 2) {
+        1 if shear_modulus[1].is_finite() => [None, Some(layers[1])],
+        2 if shear_modulus[1].is_finite() => layers.map(Some),
+        _ => [Some(layers[0]), None],
+    };
+    Coating { layers, shear_modulus, poisson_ratio }
+}
+
+/// B(s), from N and D as they are defined: for G1/G2 of 0.01 to 100 some four digits cancel at most.
+fn transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> f64 {
+    let lambda = 1.0 - 4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2));
+    let kappa = (mu - 1.0) / (mu + 3.0 - 4.0 * nu1);
+    let th = (-2.0 * s).exp();
+    let n = 1.0 + 4.0 * s * kappa * th - lambda * kappa * th * th;
+    let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
+    n / d
+}
+
+/// Nodes and weights on [0, 1] by Newton's method on the Legendre polynomial.
+pub fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let legendre = |x: f64| {
+        let (mut before, mut p) = (1.0, x);
+        for j in 2..=n {
+            (before, p) = (p, ((2 * j - 1) as f64 * x * p - (j - 1) as f64 * before) / j as f64);
+        }
+        (p, n as f64 * (x * p - before) / (x * x - 1.0))
+    };
+    let node = |k: usize| {
+        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        for _ in 0..9 {
+            let (p, slope) = legendre(x);
+            x -= p / slope;
+        }
+        let slope = legendre(x).1;
+        (0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+/// F up to a distance, on panels in `v = asinh(rho/2)`.
+struct Table {
+    width: f64,
+    panels: Vec<Vec<f64>>,
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl Table {
+    fn new(mu: f64, nu: [f64; 2], last: f64) -> Table {
+        let count = ((0.5 * last).asinh() / 0.5).ceil().max(1.0);
+        let width = 1.0001 * (0.5 * last).asinh() / count;
+        // Chebyshev points of the second kind, and their barycentric weights.
+        let nodes: Vec<f64> = (0..NODES).map(|i| 0.5 - 0.5 * (PI * i as f64 / (NODES - 1) as f64).cos()).collect();
+        let weight = |i: usize| if i == 0 || i == NODES - 1 { 0.5 } else { 1.0 } * if i % 2 == 0 { 1.0 } else { -1.0 };
+        let place = |panel: usize, node: f64| 2.0 * ((panel as f64 + node) * width).sinh();
+        let panel = |panel: usize| {
+            let rule = hankel(mu, nu, place(panel, 1.0));
+            let f = |rho: f64| rule.iter().map(|(s, w)| w * libm::j0(s * rho)).sum::<f64>();
+            nodes.iter().map(|&node| f(place(panel, node))).collect()
+        };
+        let panels = (0..count as usize).map(panel).collect();
+        Table { width, panels, weights: (0..NODES).map(weight).collect(), nodes }
+    }
+
+    fn at(&self, rho: f64) -> f64 {
+        let v = (0.5 * rho).asinh() / self.width;
+        let panel = (v as usize).min(self.panels.len() - 1);
+        let x = v - panel as f64;
+        let (mut above, mut below) = (0.0, 0.0);
+        for ((node, weight), f) in self.nodes.iter().zip(&self.weights).zip(&self.panels[panel]) {
+            if x == *node {
+                return *f;
+            }
+            let part = weight / (x - node);
+            (above, below) = (above + part * f, below + part);
+        }
+        above / below
+    }
+}
+
+/// Nodes s and weights times B(s) - 1: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
+fn hankel(mu: f64, nu: [f64; 2], rho: f64) -> Vec<(f64, f64)> {
+    let (widest, rule) = (f64::min(0.5, 8.0 / rho), gauss(10));
+    let (mut nodes, mut low, mut width) = (Vec::new(), 0.0, f64::min(widest, 0.02 / mu.max(1.0)));
+    while low < 22.0 {
+        nodes.extend(rule.iter().map(|(x, w)| {
+            let s = low + width * x;
+            (s, w * width * (transfer(mu, nu, s) - 1.0))
+        }));
+        low += width;
+        width = f64::min(2.0 * width, widest);
+    }
+    nodes
+}
+
+impl Coating {
+    /// `(c, thickness, G1/G2, nu)` of what is at the surface of a body; no thickness: one material.
+    fn surface(&self, b: usize) -> (f64, f64, f64, [f64; 2]) {
+        let (g, nu) = (self.shear_modulus[b], self.poisson_ratio[b]);
+        match self.layers[b].filter(|layer| layer.thickness > 0.0) {
+            Some(layer) => {
+                let c = (1.0 - layer.poisson_ratio) / (2.0 * PI * layer.shear_modulus);
+                (c, layer.thickness, layer.shear_modulus / g, [layer.poisson_ratio, nu])
+            }
+            None => ((1.0 - nu) / (2.0 * PI * g), 0.0, 1.0, [nu, nu]),
+        }
+    }
+
+    /// The coefficients of both bodies; with one period those of layers that are none.
+    pub fn coefficients(&self, grid: &Grid, period: Option<(bool, bool)>) -> Quadrant {
+        let Grid { mx, my, dx, dy } = *grid;
+        let surfaces = [self.surface(0), self.surface(1)];
+        let c = surfaces[0].0 + surfaces[1].0;
+        let mut quadrant = match period {
+            Some(period) => periodic(mx, my, dx, dy, c, period),
+            None => free(mx, my, dx, dy, c),
+        };
+        for (c, t, mu, nu) in surfaces {
+            if t == 0.0 {
+                continue;
+            }
+            match period {
+                Some((true, true)) => add_waves(grid, (c, t, mu, nu), &mut quadrant.values),
+                Some(_) => {}
+                None => add_elements(grid, (c, t, mu, nu), &mut quadrant.values),
+            }
+        }
+        let largest = quadrant.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        quadrant.rounding += ACCURACY * largest;
+        quadrant
+    }
+}
+
+fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {
+    let Grid { mx, my, dx, dy } = *grid;
+    let table = Table::new(mu, nu, ((mx as f64 + 1.0) * dx).hypot((my as f64 + 1.0) * dy) / t);
+    let near = gauss(POINTS);
+    // F is as smooth as 1/rho, or smoother, beyond eight elements: h/(4 r) to the power of 8.
+    let far = gauss(4);
+    for (k, value) in values.iter_mut().enumerate() {
+        let (x, y) = ((k % mx) as f64 * dx, (k / mx) as f64 * dy);
+        let rule = if x.hypot(y) > 24.0 * dx.max(dy) { &far } else { &near };
+        let mut mean = 0.0;
+        for (u, wu) in rule {
+            for (v, wv) in rule {
+                mean += wu * wv * table.at((x + (u - 0.5) * dx).hypot(y + (v - 0.5) * dy) / t);
+            }
+        }
+        *value += c * dx * dy / t * mean;
+    }
+}
+
+fn add_waves(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {
+    let Grid { mx, my, dx, dy } = *grid;
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+    let reach = |d: f64| (18.0 * d / (2.0 * PI * t)).ceil() as i64 + 1;
+    let number = |i: usize, m: usize, alias: i64, d: f64| 2.0 * PI * (i as f64 / m as f64 + alias as f64) / d;
+    let mut in_x = vec![0.0; mx * my];
+    for j in 0..my {
+        for i in 0..mx {
+            let mut sum = 0.0;
+            for a in -reach(dx)..=reach(dx) {
+                for b in -reach(dy)..=reach(dy) {
+                    let (kx, ky) = (number(i, mx, a, dx), number(j, my, b, dy));
+                    let k = kx.hypot(ky);
+                    if k > 0.0 && k * t < 20.0 {
+                        sum += (transfer(mu, nu, k * t) - 1.0) / k * sinc(0.5 * kx * dx) * sinc(0.5 * ky * dy);
+                    }
+                }
+            }
+            for kx in 0..mx {
+                in_x[j * mx + kx] += sum * (2.0 * PI * ((i * kx) % mx) as f64 / mx as f64).cos();
+            }
+        }
+    }
+    for ky in 0..my {
+        for j in 0..my {
+            let factor = 2.0 * PI * c * (2.0 * PI * ((j * ky) % my) as f64 / my as f64).cos() / (mx * my) as f64;
+            for kx in 0..mx {
+                values[ky * mx + kx] += factor * in_x[j * mx + kx];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(t: f64, mu: f64, nu: [f64; 2]) -> Coating {
+        let layer = Layer { thickness: t, shear_modulus: mu, poisson_ratio: nu[0] };
+        Coating { layers: [Some(layer), None], shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [nu[1], 0.3] }
+    }
+
+    /// Nine elements are one that is three times as long: half as thick as those are long, and four times.
+    #[test]
+    fn nine_elements_are_one() {
+        for (t, mu, nu) in
+            [(1.5, 0.01, [0.5, 0.3]), (4.0, 0.2, [0.3, 0.1]), (1.5, 10.0, [0.0, 0.5]), (12.0, 100.0, [0.3, 0.3])]
+        {
+            let coating = of(t, mu, nu);
+            let fine = coating.coefficients(&Grid { mx: 40, my: 40, dx: 1.0, dy: 0.7 }, None);
+            let coarse = coating.coefficients(&Grid { mx: 12, my: 12, dx: 3.0, dy: 2.1 }, None);
+            for (kx, ky) in [(0, 0), (1, 0), (0, 2), (5, 3), (11, 11)] {
+                let nine = (-1..2).flat_map(|j| (-1..2).map(move |i| (3 * kx + i, 3 * ky + j)));
+                let sum: f64 = nine.map(|(kx, ky)| fine.at(kx, ky)).sum();
+                let error = (sum - coarse.at(kx, ky)).abs();
+                // The half of what both may be off together.
+                assert!(
+                    error <= 0.25 * coarse.rounding,
+                    "t {t} mu {mu} ({kx}, {ky}): {error:e} of {:e}",
+                    coarse.rounding
+                );
+            }
+        }
+    }
+
+    /// One material; a layer so thick that it is the body; and waves on a long period, which differ by those of the images.
+    #[test]
+    fn limits_are_half_spaces() {
+        let grid = Grid { mx: 20, my: 16, dx: 1.0, dy: 1.0 };
+        let plain = free(20, 16, 1.0, 1.0, 0.7 / (2.0 * PI));
+        let same = of(3.0, 1.0, [0.3, 0.3]).coefficients(&grid, None);
+        assert!(same.values.iter().zip(&plain.values).all(|(a, b)| (a - b).abs() <= 1e-13));
+        let thick = of(1e9, 5.0, [0.3, 0.1]).coefficients(&grid, None);
+        assert!(thick.values.iter().zip(&plain.values).all(|(a, b)| (5.0 * a - b).abs() <= 1e-8));
+    }
+}

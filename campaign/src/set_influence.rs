@@ -1,0 +1,74 @@
+//! Other coefficients on a handle: used from then on, or refused and as if nothing had happened.
+
+use contact_normal::ffi::*;
+
+use crate::call::{self, Handle};
+use crate::case::Case;
+use crate::effects::{self, OwnCoefficients};
+use crate::half_space::compliance;
+use crate::random::Random;
+use crate::rules::{check, Failure};
+
+/// A handle that was set up without a table takes none.
+fn without_table(case: &Case, own: &OwnCoefficients) -> Vec<Failure> {
+    let Ok(mut handle) = Handle::new(case) else { return Vec::new() };
+    let status = handle.set_influence(own);
+    if status == CONTACT_NORMAL_INVALID_ARGUMENT {
+        return check(case, &handle.solve(case, false));
+    }
+    vec![Failure { promise: "a handle without a table takes none", details: format!("status {status}") }]
+}
+
+/// A handle of a scene without a period, row tables, or a coating, whose coefficients change from solve to solve.
+pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
+    let named = &case.effects;
+    if named.period.is_some() || named.row_tables.is_some() || named.coating.is_some() {
+        return Vec::new();
+    }
+    let mut case = case.clone();
+    (case.how.given, case.how.fixed, case.how.cancel_at) = (None, None, None);
+    let c = compliance(case.shear_modulus, case.poisson_ratio);
+    if case.effects.influence.is_none() {
+        let own = effects::table(random, &case.grid, c, (false, false));
+        if random.chance(0.1) {
+            return without_table(&case, &own);
+        }
+        case.effects.influence = Some(own);
+    }
+    let Ok(mut handle) = Handle::new(&case) else { return Vec::new() };
+    let mut failures = Vec::new();
+    for _ in 0..random.integer(1, 3) {
+        let unsymmetric = random.chance(0.3);
+        let mut own = effects::table(random, &case.grid, c, (unsymmetric, false));
+        let spoiled = random.chance(0.3);
+        if spoiled {
+            // That of an element on itself: what is beyond the grid's reach is not read.
+            let on_itself = own.cy * 2 * own.cx + own.cx;
+            own.values[on_itself] = f64::NAN;
+        }
+        let status = handle.set_influence(&own);
+        if (status >= 0) == spoiled {
+            let details = format!("status {status}, spoiled {spoiled}");
+            failures.push(Failure { promise: "coefficients are set, or refused where they are none", details });
+        }
+        if !spoiled {
+            let effects = &mut case.effects;
+            (effects.influence, effects.unsymmetric, effects.indefinite) = (Some(own), unsymmetric, false);
+        }
+        // Later scenes need not name the table that the handle has.
+        let mut asked = case.clone();
+        if random.chance(0.5) {
+            asked.effects.influence = None;
+        }
+        let outputs = handle.solve(&asked, false);
+        let name =
+            |failure: Failure| Failure { details: format!("after set_influence: {}", failure.details), ..failure };
+        failures.extend(check(&case, &outputs).into_iter().map(name));
+        let fresh = call::solve(&case);
+        if outputs.status != fresh.status || outputs.bits() != fresh.bits() {
+            let details = format!("status {} and {}", outputs.status, fresh.status);
+            failures.push(Failure { promise: "coefficients that were set give the bits of a fresh call", details });
+        }
+    }
+    failures
+}

@@ -1,0 +1,206 @@
+//! Stresses below the surface: those that the library returns against direct sums of point forces.
+//!
+//! A force `(fx, fy, fz)` on the surface of a half-space, fz into it, makes at `r = (x, y, z)` the stresses of Boussinesq and Cerruti
+//! (Johnson, Contact Mechanics, eq. 3.19 and appendix; Love, section 166), with `R = |r|`, `h = 1 - 2 nu`, and e.g.
+//!
+//! ```text
+//! szz = -3 z^2 (fx x + fy y + fz z)/(2 pi R^5)
+//! ```
+//!
+//! An element is Gauss points of them, more where it is near.
+
+use std::f64::consts::PI;
+use std::ptr::null;
+
+use contact_normal::ffi::*;
+
+use crate::call::initialised;
+use crate::coating::gauss;
+use crate::grid::Grid;
+use crate::random::Random;
+use crate::rules::Failure;
+
+type Tensor = [f64; 6];
+
+/// Stresses by a force along z.
+fn boussinesq(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
+    let r = (x * x + y * y + z * z).sqrt();
+    let (h, r3, s) = (1.0 - 2.0 * nu, r.powi(3), r + z);
+    let along =
+        |a: f64| h * (z / r3 - 1.0 / (r * s) + a * a * (2.0 * r + z) / (r3 * s * s)) - 3.0 * a * a * z / r.powi(5);
+    let (xx, yy) = (along(x), along(y));
+    let xy = h * x * y * (2.0 * r + z) / (r3 * s * s) - 3.0 * x * y * z / r.powi(5);
+    let shear = -3.0 * z * z / r.powi(5);
+    [xx, yy, shear * z, xy, shear * x, shear * y].map(|value| value / (2.0 * PI))
+}
+
+/// Stresses by a force along x.
+fn cerruti(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
+    let r = (x * x + y * y + z * z).sqrt();
+    let (h, r2, s) = (1.0 - 2.0 * nu, r * r, r + z);
+    let over = 1.0 / (r * s * s);
+    let (c, d) = (x * x * (3.0 * r + z) / (r2 * s), y * y * (3.0 * r + z) / (r2 * s));
+    let five = r.powi(5);
+    let xx = -3.0 * x.powi(3) / five + h * (x / r.powi(3) - 3.0 * x * over + x * over * c);
+    let yy = -3.0 * x * y * y / five + h * (x / r.powi(3) - x * over + x * over * d);
+    let xy = -3.0 * x * x * y / five + h * y * over * (c - 1.0);
+    let by = -3.0 * x * z / five;
+    [xx, yy, by * z, xy, by * x, by * y].map(|value| value / (2.0 * PI))
+}
+
+/// The same by a force along y.
+fn cerruti_y(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
+    let [xx, yy, zz, xy, xz, yz] = cerruti(nu, [y, x, z]);
+    [yy, xx, zz, xy, yz, xz]
+}
+
+/// Places and weights along an element from its centre: on parts of it that are at most half as long as it is far away.
+fn places(rule: &[(f64, f64)], d: f64, distance: f64) -> Vec<(f64, f64)> {
+    let parts = (2.0 * d / distance).ceil().max(1.0);
+    let part = |k: usize| rule.iter().map(move |(x, w)| ((k as f64 + x) * d / parts - 0.5 * d, w * d / parts));
+    (0..parts as usize).flat_map(part).collect()
+}
+
+/// Loads on a grid, and a body.
+struct Loaded {
+    grid: Grid,
+    nu: f64,
+    loads: [Option<Vec<f64>>; 3],
+}
+
+impl Loaded {
+    /// The stresses at a point, x and y from the outer corner of element (0, 0).
+    fn at(&self, point: [f64; 3]) -> Tensor {
+        let Grid { mx, dx, dy, .. } = self.grid;
+        let (near, far, kernels) = (gauss(8), gauss(4), [boussinesq, cerruti, cerruti_y]);
+        let mut sum = [0.0; 6];
+        for j in 0..self.grid.len() {
+            let loads = self.loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| load[j]));
+            if loads == [0.0; 3] {
+                continue;
+            }
+            let centre = [((j % mx) as f64 + 0.5) * dx, ((j / mx) as f64 + 0.5) * dy];
+            let [x, y, z] = [point[0] - centre[0], point[1] - centre[1], point[2]];
+            let distance = (x * x + y * y + z * z).sqrt();
+            let rule = if distance > 10.0 * dx.max(dy) { &far } else { &near };
+            let (in_x, in_y) = (places(rule, dx, distance), places(rule, dy, distance));
+            for (px, wx) in &in_x {
+                for (py, wy) in &in_y {
+                    for (load, kernel) in loads.into_iter().zip(kernels).filter(|(load, _)| *load != 0.0) {
+                        let stresses = kernel(self.nu, [x - px, y - py, z]);
+                        sum.iter_mut().zip(stresses).for_each(|(sum, stress)| *sum += load * wx * wy * stress);
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// What the library says at depths below all elements, `[component][depth][element]`, and at points.
+    fn library(&self, depths: &[f64], points: &[[f64; 3]]) -> Result<(Vec<Vec<f64>>, Vec<Tensor>), i32> {
+        let mut scene = initialised(contact_normal_scene_init);
+        (scene.mx, scene.my) = (self.grid.mx as i32, self.grid.my as i32);
+        (scene.dx, scene.dy, scene.poisson_ratio) = (self.grid.dx, self.grid.dy, [0.1, self.nu]);
+        let mut stress = vec![vec![f64::NAN; depths.len() * self.grid.len()]; 6];
+        let mut outputs = initialised(contact_normal_stress_outputs_init);
+        outputs.stress = std::array::from_fn(|c| stress[c].as_mut_ptr());
+        let [p, qx, qy] = self.loads.each_ref().map(|load| load.as_ref().map_or(null(), |load| load.as_ptr()));
+        let (z, n) = (depths.as_ptr(), depths.len() as i32);
+        // SAFETY: arrays as long as the grid and the depths say.
+        let status = unsafe { contact_normal_subsurface_stress(&scene, 2, p, qx, qy, z, n, null(), &mut outputs) };
+        let mut at = vec![[f64::NAN; 6]; points.len()];
+        let (place, n) = (points.as_ptr().cast(), points.len() as i32);
+        // SAFETY: as above, and room for six values of each point.
+        let at_points =
+            unsafe { contact_normal_stress_at_points(&scene, 2, p, qx, qy, place, n, null(), at.as_mut_ptr().cast()) };
+        match (status, at_points) {
+            (CONTACT_NORMAL_OK, CONTACT_NORMAL_OK) => Ok((stress, at)),
+            (CONTACT_NORMAL_OK, refused) | (refused, _) => Err(refused),
+        }
+    }
+}
+
+/// Random loads and depths: at some elements and at points beside them.
+pub fn check(random: &mut Random) -> Vec<Failure> {
+    let unit = random.decades(1e-3, 1e3);
+    let grid = Grid {
+        mx: random.integer(1, 24),
+        my: random.integer(1, 24),
+        dx: unit,
+        dy: unit * if random.chance(0.5) { 1.0 } else { random.decades(0.125, 8.0) },
+    };
+    let size = random.decades(1e-6, 1e6);
+    let mut load = |chance: f64| {
+        let values =
+            (0..grid.len()).map(|_| size * random.between(-1.0, 1.0) * f64::from(random.chance(0.7))).collect();
+        random.chance(chance).then_some(values)
+    };
+    let mut loads = [load(0.8), load(0.5), load(0.5)];
+    if loads.iter().all(Option::is_none) {
+        loads[0] = Some(vec![size; grid.len()]);
+    }
+    let loaded = Loaded { grid, nu: random.between(0.0, 0.5), loads };
+    let longer = grid.dx.max(grid.dy);
+    let depths = [longer * random.decades(0.2, 3.0), longer * random.decades(1.0, 100.0)];
+    let elements: Vec<usize> = (0..2).map(|_| random.integer(0, grid.len() - 1)).collect();
+    let beside = |random: &mut Random, m: usize, d: f64| random.between(-1.0, m as f64 + 1.0) * d;
+    let points: Vec<[f64; 3]> =
+        (0..2).map(|k| [beside(random, grid.mx, grid.dx), beside(random, grid.my, grid.dy), depths[k % 2]]).collect();
+    let (on_grid, at_points) = match loaded.library(&depths, &points) {
+        Ok(found) => found,
+        Err(status) => {
+            return vec![Failure { promise: "stresses are refused without a reason", details: format!("{status}") }]
+        }
+    };
+    let mut failures = Vec::new();
+    let mut compare = |found: Tensor, place: [f64; 3]| {
+        let exact = loaded.at(place);
+        for (c, (found, exact)) in found.into_iter().zip(exact).enumerate() {
+            // Loads of `size`. Parts of half the distance leave `(4 + sqrt 17)^-16 = 3e-15` of eight points; four points at ten elements
+            // `(1/40)^8`, times what differences of 1/R^3 grow by.
+            if !((found - exact).abs() <= 1e-9 * size) {
+                let details =
+                    format!("component {c} at {place:?} of {grid:?}: {found:e} for {exact:e}, loads of {size:e}");
+                failures.push(Failure { promise: "stresses are those of the loads", details });
+            }
+        }
+    };
+    for (k, z) in depths.into_iter().enumerate() {
+        for &i in &elements {
+            let centre = [((i % grid.mx) as f64 + 0.5) * grid.dx, ((i / grid.mx) as f64 + 0.5) * grid.dy, z];
+            compare(std::array::from_fn(|c| on_grid[c][k * grid.len() + i]), centre);
+        }
+    }
+    at_points.into_iter().zip(&points).for_each(|(found, place)| compare(found, *place));
+    failures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On the axis of a square and below a corner: Love (1929), Johnson (3.26) for szz; and equilibrium of each kernel by differences.
+    #[test]
+    fn kernels_are_in_equilibrium_and_have_the_closed_form() {
+        for kernel in [boussinesq, cerruti, cerruti_y] {
+            let (place, step) = ([0.7, -0.4, 0.9], 1e-4);
+            let slope = |axis: usize, c: usize| {
+                let at = |by: f64| {
+                    let mut moved = place;
+                    moved[axis] += by;
+                    kernel(0.3, moved)[c]
+                };
+                (at(step) - at(-step)) / (2.0 * step)
+            };
+            for row in [[0, 3, 4], [3, 1, 5], [4, 5, 2]] {
+                let sum: f64 = row.into_iter().enumerate().map(|(axis, c)| slope(axis, c)).sum();
+                assert!(sum.abs() <= 1e-7, "{row:?}: {sum:e}");
+            }
+        }
+        let grid = Grid { mx: 1, my: 1, dx: 2.0, dy: 2.0 };
+        let loaded = Loaded { grid, nu: 0.3, loads: [Some(vec![1.0]), None, None] };
+        let (z, r) = (0.8f64, (2.0f64 + 0.64).sqrt());
+        let exact = -2.0 / PI * ((1.0 / (z * r)).atan() + 2.0 * z / (r * (1.0 + z * z)));
+        assert!((loaded.at([1.0, 1.0, z])[2] - exact).abs() <= 1e-9);
+    }
+}
