@@ -140,6 +140,9 @@ module contact_normal
     real(c_double) :: spin_offset = 0
     type(c_ptr) :: previous_traction(2) = c_null_ptr
     type(c_ptr) :: rigid_slip(2) = c_null_ptr
+    type(c_ptr) :: influence(3) = c_null_ptr
+    integer(c_int32_t) :: influence_cx = 0, influence_cy = 0
+    real(c_double) :: influence_scale = 0
   end type
 
   ! What is simulated. Since 0.1.
@@ -408,7 +411,7 @@ module contact_normal
     contact_normal_solver_free, norm_solve, tang_solve, &
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
     contact_normal_set_row_tables, contact_normal_set_coating, contact_normal_set_friction, &
-    contact_normal_set_friction_fields, contact_normal_set_friction_results
+    contact_normal_set_friction_fields, contact_normal_set_friction_results, contact_normal_set_tangential_influence
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 

@@ -564,6 +564,25 @@ typedef struct contact_normal_friction {
    A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
    */
   const double *rigid_slip[2];
+  /*
+   Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
+   y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
+   xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
+   tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike.
+   */
+  const double *influence[3];
+  /*
+   The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
+   */
+  int32_t influence_cx;
+  /*
+   And -cy..cy-1.
+   */
+  int32_t influence_cy;
+  /*
+   Every coefficient is multiplied by this, positive; default 1.
+   */
+  double influence_scale;
 } contact_normal_friction;
 
 /*

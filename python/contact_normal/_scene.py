@@ -156,7 +156,8 @@ _FRICTION_PAIRS = ("previous_traction", "rigid_slip")
 
 
 def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    known = ("coefficient", "motion", "creepage", "force", "continues", "spin_centre", *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
+    known = ("coefficient", "motion", "creepage", "force", "continues", "spin_centre", "influence", *_FRICTION_NUMBERS,
+             *_FRICTION_PAIRS)
     unknown = sorted(set(value) - set(known))
     if unknown:
         raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(known)}")
@@ -185,7 +186,24 @@ def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
         for k, field in enumerate(value.get(name) if value.get(name) is not None else ()):
             kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
             getattr(effect, name)[k] = pointer(kept[-1])
+    if value.get("influence") is not None:
+        kept.extend(_tangential_influence(effect, value["influence"]))
     return effect, kept
+
+
+def _tangential_influence(effect: Any, tables: Any) -> list[Any]:
+    if len(tables) not in (3, 4):
+        raise ValueError(f"friction['influence'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    kept = [doubles(f"friction['influence'][{k}]", table, dimensions="(2 cy, 2 cx)") for k, table in enumerate(tables[:3])]
+    shape = kept[0].shape
+    if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
+        raise ValueError(f"friction['influence'] has shapes {[table.shape for table in kept]}; all must be (2 cy, 2 cx)")
+    effect.influence_cy, effect.influence_cx = shape[0] // 2, shape[1] // 2
+    for k, table in enumerate(kept):
+        effect.influence[k] = pointer(table)
+    if len(tables) == 4:
+        effect.influence_scale = tables[3]
+    return kept
 
 
 def _row_tables(value: Any) -> tuple[Any, Doubles]:

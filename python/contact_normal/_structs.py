@@ -87,6 +87,10 @@ class Friction(ctypes.Structure):
         ("spin_offset", c_double),
         ("previous_traction", POINTER(c_double) * 2),
         ("rigid_slip", POINTER(c_double) * 2),
+        ("influence", POINTER(c_double) * 3),
+        ("influence_cx", c_int32),
+        ("influence_cy", c_int32),
+        ("influence_scale", c_double),
     ]
 
 

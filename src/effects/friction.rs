@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::effect::{check_values, Effect};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
-use crate::scene::Plain;
+use crate::scene::{Bodies, Plain};
 
 /// mu, a number: the same everywhere or one per element, `[my][mx]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,89 @@ pub enum Previous<'a> {
     Kept,
 }
 
+/// Tangential influence coefficients of the caller's own: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the
+/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TangentialInfluence<'a> {
+    /// Elements of the grid that they were made for.
+    pub cx: usize,
+    /// And in y.
+    pub cy: usize,
+    /// Axx, Ayy, Axy: displacements in x by tractions in x, in y by those in y, and of one by the other.
+    pub coefficients: [&'a [f64]; 3],
+    /// Every coefficient is multiplied by this, positive.
+    pub scale: f64,
+}
+
+/// A step of rolling is of whole elements if it is so near.
+const WHOLE: f64 = 1e-9;
+
+/// The names of the tables.
+const TABLES: [&str; 3] = ["friction->influence[0] (xx)", "friction->influence[1] (yy)", "friction->influence[2] (xy)"];
+
+/// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
+const SYMMETRY: f64 = 1e-7;
+
+impl TangentialInfluence<'_> {
+    /// The coefficients at an offset of the tables.
+    pub fn at(&self, kx: i64, ky: i64) -> [f64; 3] {
+        let k = (ky + self.cy as i64) as usize * 2 * self.cx + (kx + self.cx as i64) as usize;
+        self.coefficients.map(|values| self.scale * values[k])
+    }
+
+    /// Refuses tables that do not reach offsets of `mx` by `my`, and what no coefficients of a half-space's kind are.
+    fn check(&self, mx: usize, my: usize) -> Result<()> {
+        let scale = "coefficients are scaled by a positive, finite number";
+        require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence_scale", self.scale, scale)?;
+        for (name, c, m) in [("cx", self.cx, mx), ("cy", self.cy, my)] {
+            if c < m {
+                let rule = format!("the tables must reach the offsets of the grid, and of a step of rolling: {m}");
+                return invalid(format!("friction->influence_{name} is {c}; {rule}"));
+            }
+        }
+        let expected = self.cx.checked_mul(self.cy).and_then(|n| n.checked_mul(4));
+        for (name, values) in TABLES.iter().zip(self.coefficients) {
+            if expected != Some(values.len()) {
+                return invalid(format!("{name} has {} values; it must have 2 cx by 2 cy", values.len()));
+            }
+        }
+        let own = self.at(0, 0);
+        if !(own[0] > 0.0 && own[1] > 0.0) {
+            let rule = "a traction must displace its own element along";
+            return Err(Error::NotPositiveDefinite(format!("friction->influence at offset (0, 0) is {own:?}; {rule}")));
+        }
+        let largest = own[0].max(own[1]);
+        for ky in 0..self.cy as i64 {
+            for kx in 0..self.cx as i64 {
+                self.check_offset(kx, ky, largest)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Those of one offset and of its mirrors.
+    fn check_offset(&self, kx: i64, ky: i64, largest: f64) -> Result<()> {
+        let value = self.at(kx, ky);
+        let mirrors = [(kx, ky, 1.0), (-kx, ky, -1.0), (kx, -ky, -1.0), (-kx, -ky, 1.0)];
+        for (component, name) in TABLES.iter().enumerate() {
+            for (x, y, odd) in mirrors {
+                let (mirrored, sign) = (self.at(x, y)[component], if component == 2 { odd } else { 1.0 });
+                if !mirrored.is_finite() {
+                    let rule = "coefficients must be finite";
+                    return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {mirrored}; {rule}")));
+                }
+                if !((mirrored - sign * value[component]).abs() <= SYMMETRY * largest) {
+                    let (at, rule) = (value[component], "xx and yy must be even in x and in y, xy odd in both");
+                    return Err(Error::Unsupported(format!(
+                        "{name} is {at} at offset ({kx}, {ky}) and {mirrored} at ({x}, {y}); {rule}"
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Friction between the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<'a> {
@@ -92,6 +175,8 @@ pub struct Friction<'a> {
     pub previous: Previous<'a>,
     /// A rigid slip of the caller's in addition, lengths per step, x and y.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
+    /// Tangential coefficients of the caller's own; none: those of the half-space.
+    pub influence: Option<TangentialInfluence<'a>>,
 }
 
 impl Friction<'_> {
@@ -108,6 +193,7 @@ impl Friction<'_> {
             spin_offset: 1.0 / 6.0,
             previous: Previous::None,
             rigid_slip: None,
+            influence: None,
         }
     }
 
@@ -163,6 +249,23 @@ impl Friction<'_> {
         let rule =
             "a step of steady rolling must be at least a tenth of an element long, and at most a million elements";
         require(STEPS.contains(&longest), "friction->rolling_distance", self.distance(grid), rule)
+    }
+
+    /// Refuses tables that do not suit the grid and the step: between whole offsets they say nothing.
+    fn check_influence(&self, grid: &Grid) -> Result<()> {
+        let Some(influence) = &self.influence else { return Ok(()) };
+        let (mut mx, mut my) = (grid.mx, grid.my);
+        if self.motion != Motion::Shift {
+            let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
+            let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
+            if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE {
+                return Err(Error::Unsupported(format!(
+                    "friction->influence is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements"
+                )));
+            }
+            (mx, my) = (mx.saturating_add(x.round().abs() as usize), my.saturating_add(y.round().abs() as usize));
+        }
+        influence.check(mx, my)
     }
 
     /// Refuses numbers that are none.
@@ -221,15 +324,26 @@ impl Effect for Friction<'_> {
             check_values("friction->rigid_slip[0]", x, grid, finite)?;
             check_values("friction->rigid_slip[1]", y, grid, finite)?;
         }
+        self.check_influence(grid)
+    }
+
+    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check(&scene.grid)?;
+        let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
+        let has_bodies = !others.iter().flatten().any(|other| other.replaces_bodies());
+        if self.influence.is_some() && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
+            return Err(Error::Unsupported(
+                "friction->influence has no coefficients of what couples the normal and the tangential problem of unlike bodies".into(),
+            ));
+        }
         Ok(())
     }
 
-    fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
-        self.check(&scene.grid)
-    }
-
-    // Tangential coefficients of these are not known.
+    // Tangential coefficients of these are not known, unless they are given.
     fn excludes(&self) -> &'static [&'static str] {
-        &["influence", "row_tables", "period", "patches", "coating"]
+        match self.influence {
+            Some(_) => &["row_tables", "period", "patches", "coating"],
+            None => &["influence", "row_tables", "period", "patches", "coating"],
+        }
     }
 }

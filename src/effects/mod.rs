@@ -9,7 +9,7 @@
 //! | patches | period | no | those of the set-up |
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
-//! | friction | influence, row_tables, coating, period, patches | yes | another one for each solve |
+//! | friction | influence (without tangential tables), row_tables, coating, period, patches | yes | another one for each solve |
 //!
 //! A new effect is a file with an `impl Effect`, a field of [`Scene`](crate::scene::Scene), and a line in the list (`list.rs`).
 
@@ -26,7 +26,7 @@ mod tables;
 
 pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};
-pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
+pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
 pub use layer::Layer;
 pub use list::{check_effects, excluded_method, replace_bodies};
 pub use named::Named;

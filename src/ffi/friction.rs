@@ -1,11 +1,15 @@
 //! `contact_normal_friction`.
 
-use super::arguments::{optional, GivenEffect, Regions};
+use super::arguments::{count, optional, required, GivenEffect, Regions};
+use super::influence::table_size;
 use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::friction::{EXTERIOR, SLIP, STICK};
 use crate::grid::Grid;
-use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
+use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
+
+/// The tables of own coefficients.
+const TABLES: [&str; 3] = ["friction->influence[0]", "friction->influence[1]", "friction->influence[2]"];
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -69,9 +73,20 @@ pub struct contact_normal_friction {
     pub previous_traction: [*const f64; 2],
     /// A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
     pub rigid_slip: [*const f64; 2],
+    /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
+    /// y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
+    /// xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
+    /// tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike.
+    pub influence: [*const f64; 3],
+    /// The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
+    pub influence_cx: i32,
+    /// And -cy..cy-1.
+    pub influence_cy: i32,
+    /// Every coefficient is multiplied by this, positive; default 1.
+    pub influence_scale: f64,
 }
 
-versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0 }
+versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
 
 /// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
 #[no_mangle]
@@ -124,7 +139,27 @@ impl contact_normal_friction {
             spin_offset: self.spin_offset,
             previous,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
+            influence: self.own_influence()?,
         })
+    }
+
+    /// cx, cy and the values of each table; none if there are no tables.
+    fn table_size(&self) -> Result<Option<(usize, usize, usize)>, Refusal> {
+        if self.influence.iter().all(|table| table.is_null()) {
+            return Ok(None);
+        }
+        let cx = count("friction->influence_cx", self.influence_cx)?;
+        let cy = count("friction->influence_cy", self.influence_cy)?;
+        Ok(Some((cx, cy, table_size(cx, cy)?)))
+    }
+
+    /// The caller's own tangential coefficients.
+    fn own_influence<'a>(&self) -> Result<Option<TangentialInfluence<'a>>, Refusal> {
+        let Some((cx, cy, size)) = self.table_size()? else { return Ok(None) };
+        // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
+        let table = |k: usize| unsafe { required(TABLES[k], self.influence[k], size) };
+        let coefficients = [table(0)?, table(1)?, table(2)?];
+        Ok(Some(TangentialInfluence { cx, cy, coefficients, scale: self.influence_scale }))
     }
 
     fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
@@ -146,6 +181,11 @@ impl GivenEffect for contact_normal_friction {
         for k in 0..2 {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
+        }
+        if let Some((_, _, size)) = self.table_size()? {
+            for (name, table) in TABLES.into_iter().zip(self.influence) {
+                regions.input(name, table, size)?;
+            }
         }
         Ok(())
     }

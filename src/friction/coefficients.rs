@@ -28,6 +28,9 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::tables::Tables;
+use crate::effects::TangentialInfluence;
+use crate::error::Result;
 use crate::influence::gauss;
 use crate::scene::Bodies;
 
@@ -75,6 +78,8 @@ pub struct Tangential {
     shape: Arc<Shape>,
     /// The series of Axx and Ayy.
     series: [Series; 2],
+    /// The caller's own, in place of these.
+    own: Option<Tables>,
 }
 
 /// The series of a and b, which depend on the ratio dx/dy only.
@@ -103,14 +108,29 @@ impl Tangential {
         };
         let xx = combined(&|a, b| shear * (a + b) - poisson * a);
         let yy = combined(&|a, b| shear * (a + b) - poisson * b);
-        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy] }
+        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy], own: None }
     }
 
-    /// The same bodies, another element size.
-    pub fn for_element(&self, dx: f64, dy: f64) -> Tangential {
+    /// The caller's own coefficients, for elements `dx` by `dy`.
+    pub fn of_tables(dx: f64, dy: f64, influence: &TangentialInfluence<'_>) -> Result<Tangential> {
+        let no_bodies = Compliance { shear: 1.0, poisson: 0.0, unlike: 0.0 };
+        Ok(Tangential { own: Some(Tables::new(influence)?), ..Tangential::new(dx, dy, no_bodies) })
+    }
+
+    /// Whether these are the caller's own, or there are none, as `influence` says.
+    pub fn are_of(&self, influence: Option<&TangentialInfluence<'_>>) -> bool {
+        match (&self.own, influence) {
+            (Some(own), Some(influence)) => own.are_of(influence),
+            (own, influence) => own.is_none() && influence.is_none(),
+        }
+    }
+
+    /// The same bodies, another element size; own tables are coarsened where elements are larger.
+    pub fn for_element(&self, dx: f64, dy: f64) -> Result<Tangential> {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
-        Tangential::of_shape(dx, dy, self.compliance, shape)
+        let own = self.own.as_ref().map(|own| own.coarsened(dx > self.dx, dy > self.dy)).transpose()?;
+        Ok(Tangential { own, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
     }
 
     /// What the materials make of tractions.
@@ -118,8 +138,11 @@ impl Tangential {
         self.compliance
     }
 
-    /// The coefficients at an offset, in elements.
+    /// The coefficients at an offset, in elements; of own tables at the next whole one.
     pub fn at(&self, x: f64, y: f64) -> Entry {
+        if let Some(own) = &self.own {
+            return own.at(x.round() as i64, y.round() as i64);
+        }
         let (kx, ky, sign) = (x.abs(), y.abs(), if (x < 0.0) == (y < 0.0) { 1.0 } else { -1.0 });
         let (dx, dy) = (self.dx, self.dy);
         let Compliance { shear, poisson, .. } = self.compliance;

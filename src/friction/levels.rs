@@ -64,7 +64,7 @@ pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads)
     let mut levels = vec![Level::new(grid, operators)?];
     let mut next = coarser(&grid);
     while let Some(grid) = next {
-        let tangential = tangential.for_element(grid.dx, grid.dy);
+        let tangential = tangential.for_element(grid.dx, grid.dy)?;
         let last = &levels[levels.len() - 1].problem;
         let rolling = last.operators.step().map(|rolling| rolling.on(&last.grid, &grid));
         levels.push(Level::new(grid, Operators::new(&tangential, &grid, rolling, single, threads)?)?);

@@ -5,6 +5,7 @@
 //! | [`coefficients`] | influence of tangential tractions |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
+//! | `tables` | coefficients of the caller's own |
 //! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift` | projected conjugate gradients on discs, for motions that are given |
 //! | `newton`, `fgmres` | semismooth Newton, for forces that are given and where the gradients stall |
@@ -23,6 +24,7 @@ mod newton;
 mod problem;
 mod shift;
 mod solver;
+mod tables;
 mod tangent;
 mod toeplitz;
 

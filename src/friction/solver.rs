@@ -153,6 +153,11 @@ impl Solver {
         }
     }
 
+    /// The coefficients.
+    pub fn tangential(&self) -> &Tangential {
+        &self.tangential
+    }
+
     /// The last result.
     pub fn solution(&self) -> Option<&Solution> {
         self.has_solution.then_some(&self.solution)

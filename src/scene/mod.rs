@@ -7,6 +7,7 @@ mod refine;
 
 pub use crate::effects::{
     Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit, Previous,
+    TangentialInfluence,
 };
 pub use bodies::Bodies;
 pub use load::Load;

@@ -294,8 +294,8 @@ impl Solver {
         };
         let threads = self.problem.threads.clone();
         let mut tangent = match kept {
-            Some(kept) => kept,
-            None => Box::new(Tangent::new(scene, options, &threads)?),
+            Some(kept) if kept.suits(friction) => kept,
+            _ => Box::new(Tangent::new(scene, options, &threads)?),
         };
         let turn = Turn { scene, friction, options, threads: &threads };
         let outcome = self.take_turns(&mut tangent, &turn, stop, monitor);

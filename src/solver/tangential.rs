@@ -50,8 +50,13 @@ pub struct Turn<'a> {
 impl Tangent {
     /// For a scene's grid and bodies.
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
-        let compliance = Compliance::of(&scene.bodies);
-        let tangential = Tangential::new(scene.grid.dx, scene.grid.dy, compliance);
+        let Grid { dx, dy, .. } = scene.grid;
+        let own = scene.friction.as_ref().and_then(|friction| friction.influence);
+        let tangential = match &own {
+            Some(own) => Tangential::of_tables(dx, dy, own)?,
+            None => Tangential::new(dx, dy, Compliance::of(&scene.bodies)),
+        };
+        let compliance = tangential.compliance();
         let solver = Solver::new(scene.grid, tangential, options.precision != Precision::Double, threads);
         let coupled = (compliance.unlike != 0.0).then(|| Coupled::new(&scene.grid, compliance.unlike, threads));
         Ok(Tangent { solver, coupled: coupled.transpose()? })
@@ -60,6 +65,11 @@ impl Tangent {
     /// The last result.
     pub fn solution(&self) -> Option<&Solution> {
         self.solver.solution()
+    }
+
+    /// Whether it has the coefficients that a scene asks for.
+    pub fn suits(&self, friction: &Friction<'_>) -> bool {
+        self.solver.tangential().are_of(friction.influence.as_ref())
     }
 
     /// There is no last result any more.

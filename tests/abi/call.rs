@@ -168,6 +168,17 @@ impl Call {
         &mut self.friction.known
     }
 
+    /// The table as that of xx and of yy, for friction; xy is 0.
+    pub fn use_tangential_tables(&mut self) -> &mut contact_normal_friction {
+        self.tables.clear();
+        self.tables.resize(4 * CX * CY, 0.0);
+        let (table, zeros) = (self.table.as_ptr(), self.tables.as_ptr());
+        let friction = self.use_friction();
+        friction.influence = [table, table, zeros];
+        (friction.influence_cx, friction.influence_cy) = (CX as i32, CY as i32);
+        friction
+    }
+
     /// Sets a coefficient of a loaded row and a row.
     pub fn set_in_row(&mut self, jy: usize, iy: usize, kx: i64, value: f64) {
         self.use_row_tables();

@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use crate::call::{Call, MX};
+use crate::call::{Call, CX, CY, MX};
 use contact_normal::ffi::*;
 
 pub const NULL: i32 = CONTACT_NORMAL_NULL_POINTER;
@@ -146,6 +146,13 @@ pub const SET_UP: &[Row] = &[
     (&["friction->rigid_slip[0]", "(2, 0)", "NaN"], NOT_FINITE, |c| { c.each[2] = NAN; let each = c.each.as_ptr(); c.use_friction().rigid_slip = [each; 2]; }),
     (&["continues", "previous_traction"], INVALID, |c| { let each = c.each.as_ptr(); let f = c.use_friction(); (f.continues, f.previous_traction) = (1, [each; 2]); }),
     (&["friction", "influence"], UNSUPPORTED, |c| { c.use_table(); c.use_friction(); }),
+    (&["friction->influence[1]"], NULL, |c| c.use_tangential_tables().influence[1] = std::ptr::null()),
+    (&["friction->influence_cx", "5"], INVALID, |c| c.use_tangential_tables().influence_cx = 5),
+    (&["friction->influence_cy", "-7"], INVALID, |c| c.use_tangential_tables().influence_cy = -7),
+    (&["friction->influence_scale", "-1"], INVALID, |c| c.use_tangential_tables().influence_scale = -1.0),
+    (&["friction->influence[0]", "(1, 0)", "even"], UNSUPPORTED, |c| { c.table[2 * CX * CY + CX + 1] *= 1.1; c.use_tangential_tables(); }),
+    (&["friction->influence[0]", "(-1, 0)", "NaN"], NOT_FINITE, |c| { c.table[2 * CX * CY + CX - 1] = NAN; c.use_tangential_tables(); }),
+    (&["friction->influence", "whole elements"], UNSUPPORTED, |c| { let f = c.use_tangential_tables(); (f.motion, f.rolling_direction) = (1, 0.5); }),
     (&["friction", "row_tables"], UNSUPPORTED, |c| { c.use_row_tables(); c.use_friction(); }),
     (&["friction", "period"], UNSUPPORTED, |c| { c.use_friction(); c.use_period(1, 0); }),
     (&["friction", "patches"], UNSUPPORTED, |c| { c.use_friction(); c.use_patches(HALF); }),

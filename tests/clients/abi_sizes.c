@@ -60,6 +60,10 @@ int main(void)
     OFFSET(contact_normal_friction, spin_offset);
     OFFSET(contact_normal_friction, previous_traction);
     OFFSET(contact_normal_friction, rigid_slip);
+    OFFSET(contact_normal_friction, influence);
+    OFFSET(contact_normal_friction, influence_cx);
+    OFFSET(contact_normal_friction, influence_cy);
+    OFFSET(contact_normal_friction, influence_scale);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);

@@ -261,7 +261,8 @@ fn c_and_rust_agree_on_every_struct() {
         }
         contact_normal_friction {
             struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
-            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip
+            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip,
+            influence, influence_cx, influence_cy, influence_scale
         }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,

@@ -224,7 +224,8 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_patches: struct_size, count, reserved, patch, factors;
         contact_normal_row_tables: struct_size, cx, rows, coefficients, scale;
         contact_normal_friction: struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
-            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip;
+            rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip,
+            influence, influence_cx, influence_cy, influence_scale;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
             patches, row_tables, coating, friction;

@@ -84,6 +84,10 @@ program fortran_layout
   call show("contact_normal_friction.spin_offset", c_loc(friction%spin_offset))
   call show("contact_normal_friction.previous_traction", c_loc(friction%previous_traction))
   call show("contact_normal_friction.rigid_slip", c_loc(friction%rigid_slip))
+  call show("contact_normal_friction.influence", c_loc(friction%influence))
+  call show("contact_normal_friction.influence_cx", c_loc(friction%influence_cx))
+  call show("contact_normal_friction.influence_cy", c_loc(friction%influence_cy))
+  call show("contact_normal_friction.influence_scale", c_loc(friction%influence_scale))
 
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)

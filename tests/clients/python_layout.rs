@@ -61,7 +61,11 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         rolling_direction,
         spin_offset,
         previous_traction,
-        rigid_slip
+        rigid_slip,
+        influence,
+        influence_cx,
+        influence_cy,
+        influence_scale
     );
     layout!(ours, "Coating", contact_normal_coating, struct_size, thickness, shear_modulus, poisson_ratio);
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);

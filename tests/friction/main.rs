@@ -15,6 +15,7 @@ mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
 mod support;
+mod tables;
 mod unlike;
 mod wheel_on_rail;
 mod wheel_rail;

@@ -1,0 +1,45 @@
+"""Tangential coefficients of the caller's own, as Python has them."""
+
+import unittest
+
+import numpy as np
+
+import contact_normal as cn
+
+M, D = 20, 0.1
+X = (np.arange(M) - 0.5 * (M - 1)) * D
+H = (X[None, :] ** 2 + X[:, None] ** 2) / (2 * 50.0)
+BODIES = {"shear_modulus": 1.0, "poisson_ratio": 0.0}
+
+
+def corner_differences(function):
+    """Of `function(x, y)` over the corners of an element, at the offsets -M..M-1 in both directions."""
+    y, x = np.meshgrid((np.arange(2 * M) - M) * D, (np.arange(2 * M) - M) * D, indexing="ij")
+    corners = ((1, 1, 1), (-1, 1, -1), (1, -1, -1), (-1, -1, 1))
+    return sum(sign * function(x + i * D / 2, y + j * D / 2) for i, j, sign in corners)
+
+
+class TangentialInfluence(unittest.TestCase):
+    def test_tables_of_a_half_space_give_its_tractions(self):
+        # nu = 0 and 1/G = 1: Axx = Ayy = (a + b)/pi, Axy = 0 (Kalker 1990, appendix B).
+        both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
+        none = np.zeros_like(both)
+        friction = {"coefficient": 0.3, "creepage": (-0.004, 0.001)}
+        known = cn.solve(H, D, D, force=0.05, friction=friction, **BODIES)
+        # Bodies of G = 1: 1/G = (1 + 1)/2 = 1.
+        for influence in ((both, both, none), (4 * both, 4 * both, none, 0.25)):
+            found = cn.solve(H, D, D, force=0.05, friction={**friction, "influence": influence}, **BODIES)
+            self.assertEqual(found.status, cn.OK)
+            # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
+            np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
+            self.assertGreater(np.count_nonzero(found.adhesion == 1), 0)
+
+    def test_tables_of_the_wrong_shape_are_refused(self):
+        table = np.ones((2 * M, 2 * M))
+        for influence, words in (((table, table), "2 entries"), ((table, table, table[1:]), "shapes")):
+            with self.assertRaisesRegex(ValueError, words):
+                cn.solve(H, D, D, force=0.05, friction={"coefficient": 0.3, "influence": influence}, **BODIES)
+
+
+if __name__ == "__main__":
+    unittest.main()

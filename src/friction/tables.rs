@@ -1,0 +1,70 @@
+//! Tangential coefficients of the caller's own: three tables, for whole offsets.
+//!
+//! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on
+//! those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y, as for the normal coefficients.
+
+use std::sync::Arc;
+
+use super::coefficients::Entry;
+use crate::effects::TangentialInfluence;
+use crate::error::Result;
+use crate::memory::zeros;
+
+/// `Axx, Ayy, Axy` at the offsets `0..cx` by `0..cy`: Axx and Ayy are even in both directions, Axy is odd in both.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    cx: usize,
+    cy: usize,
+    values: Arc<Vec<Entry>>,
+}
+
+impl Tables {
+    /// Of tables that were checked.
+    pub fn new(influence: &TangentialInfluence<'_>) -> Result<Tables> {
+        Tables::of(influence.cx, influence.cy, |x, y| influence.at(x, y))
+    }
+
+    fn of(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
+        let mut values: Vec<Entry> = zeros(cx * cy, "the tangential influence coefficients")?;
+        for (k, entry) in values.iter_mut().enumerate() {
+            *entry = at((k % cx) as i64, (k / cx) as i64);
+        }
+        Ok(Tables { cx, cy, values: Arc::new(values) })
+    }
+
+    /// Whether they were made of these.
+    pub fn are_of(&self, influence: &TangentialInfluence<'_>) -> bool {
+        let place = |k: usize| ((k % self.cx) as i64, (k / self.cx) as i64);
+        (self.cx, self.cy) == (influence.cx, influence.cy)
+            && self.values.iter().enumerate().all(|(k, entry)| {
+                let (x, y) = place(k);
+                *entry == influence.at(x, y)
+            })
+    }
+
+    /// The coefficients at a whole offset; beyond the tables the outermost serve.
+    pub fn at(&self, x: i64, y: i64) -> Entry {
+        let clamp = |k: i64, c: usize| (k.unsigned_abs() as usize).min(c - 1);
+        let [xx, yy, xy] = self.values[clamp(y, self.cy) * self.cx + clamp(x, self.cx)];
+        [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
+    }
+
+    /// On a grid that is coarsened in x, in y, or in both.
+    pub fn coarsened(&self, in_x: bool, in_y: bool) -> Result<Tables> {
+        let stencil = |is_halved: bool, k: i64| match is_halved {
+            true => [(2 * k - 1, 0.5), (2 * k, 1.0), (2 * k + 1, 0.5)],
+            false => [(k, 1.0), (k, 0.0), (k, 0.0)],
+        };
+        let half = |c: usize, is_halved: bool| if is_halved { c.div_ceil(2) } else { c };
+        Tables::of(half(self.cx, in_x), half(self.cy, in_y), |kx, ky| {
+            let mut sum = [0.0; 3];
+            for (x, in_x) in stencil(in_x, kx) {
+                for (y, in_y) in stencil(in_y, ky) {
+                    let entry = self.at(x, y);
+                    (0..3).for_each(|component| sum[component] += in_x * in_y * entry[component]);
+                }
+            }
+            sum
+        })
+    }
+}

@@ -1,0 +1,180 @@
+//! Tangential coefficients of the caller's own: those of the half-space as tables give what the half-space gives; what is none is
+//! refused by name.
+
+use std::f64::consts::PI;
+
+use contact_normal::error::Error;
+use contact_normal::friction::{Compliance, Solution, Tangential};
+use contact_normal::grid::Grid;
+use contact_normal::influence::{HalfSpace, Kernel, Table};
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene, TangentialInfluence};
+use contact_normal::solver::{solve, Options, Solver, Stop};
+
+const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
+/// Columns and rows of the tables beyond those of the grid.
+const BEYOND: usize = 2;
+
+fn ball(mx: usize, my: usize) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(mx, my, 0.06, 0.05).unwrap();
+    let place = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
+    let h = (0..grid.len()).map(|i| place(i % mx, mx, 0.06).powi(2) + place(i / mx, my, 0.05).powi(2));
+    (grid, h.map(|squared| squared / 100.0).collect())
+}
+
+/// Three tables, divided by `scale`, which is a power of two.
+fn tables(grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
+    let tangential = Tangential::new(grid.dx, grid.dy, Compliance::of(&STEEL));
+    let (cx, cy) = (grid.mx + BEYOND, grid.my + BEYOND);
+    let offset = |k: usize, c: usize| (k % (2 * c)) as f64 - c as f64;
+    [0, 1, 2].map(|component| {
+        let value = |k: usize| tangential.at(offset(k, cx), offset(k / (2 * cx), cy))[component] / scale;
+        (0..4 * cx * cy).map(value).collect()
+    })
+}
+
+fn influence<'a>(grid: &Grid, tables: &'a [Vec<f64>; 3], scale: f64) -> TangentialInfluence<'a> {
+    let coefficients = [&tables[0][..], &tables[1][..], &tables[2][..]];
+    TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my + BEYOND, coefficients, scale }
+}
+
+fn pushed() -> Friction<'static> {
+    Friction { prescribed: [Prescribed::Creepage(-1e-3), Prescribed::Force(60.0)], spin: 1e-3, ..Friction::new(0.3) }
+}
+
+fn steps() -> [Friction<'static>; 3] {
+    let rolling = Friction { motion: Motion::TransientRolling, previous: Previous::Kept, ..pushed() };
+    let aside = Friction { rolling_direction: 0.5 * PI, rolling_distance: 0.1, ..rolling };
+    [pushed(), rolling, aside]
+}
+
+fn solved<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>, tolerance: f64) -> Vec<Solution> {
+    let options = Options { tolerance, ..Options::default() };
+    let mut solver = Solver::new(scene, &options).unwrap();
+    let step = |friction: Friction<'a>| {
+        let scene = Scene { friction: Some(Friction { influence: own, ..friction }), ..scene.clone() };
+        let (stop, _) = solver.solve(&scene, &options, None, None).unwrap();
+        assert_eq!(stop, Stop::Converged);
+        solver.friction().unwrap().clone()
+    };
+    steps().into_iter().map(step).collect()
+}
+
+#[test]
+fn tables_of_the_half_space_give_what_the_half_space_gives() {
+    // Without a coarser grid every number is the same; with them only those of the coarser grids differ.
+    for (m, most) in [(20, 0.0), (48, 1e-5)] {
+        let (grid, h) = ball(m, m - 2);
+        let scene = Scene::new(grid, &h, STEEL, Load::Force(900.0));
+        let known = solved(&scene, None, 1e-8);
+        for scale in [1.0, 0.25] {
+            let tables = tables(&grid, scale);
+            let found = solved(&scene, Some(influence(&grid, &tables, scale)), 1e-8);
+            for (known, found) in known.iter().zip(&found) {
+                let largest = known.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
+                for (a, b) in known.traction.iter().zip(&found.traction) {
+                    let off = (a[0] - b[0]).hypot(a[1] - b[1]);
+                    // What a residual of 1e-8 hides of the tractions (docs/friction.md: 1e-5 at 1e-6, less by its square root).
+                    assert!(off <= most * largest, "{m}: {off:e} of {largest}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn own_coefficients_of_both_problems_need_no_bodies() {
+    let (grid, h) = ball(20, 18);
+    let half_space = HalfSpace::new(grid.dx, grid.dy, 2.0 * (1.0 - 0.28) / 82000.0 / 2.0);
+    let (cx, cy) = (grid.mx as i64, grid.my as i64);
+    let normal: Vec<f64> =
+        (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky))).map(|(kx, ky)| half_space.at(kx, ky)).collect();
+    let tables = tables(&grid, 1.0);
+    let scene = |bodies, is_own: bool| Scene {
+        influence: is_own.then(|| Table::new(grid.mx, grid.my, &normal, &grid).unwrap()),
+        friction: Some(Friction { influence: is_own.then(|| influence(&grid, &tables, 1.0)), ..pushed() }),
+        ..Scene::new(grid, &h, bodies, Load::Force(900.0))
+    };
+    let options = Options { tolerance: 1e-8, ..Options::default() };
+    let none = Bodies { shear_modulus: [0.0; 2], poisson_ratio: [0.0; 2] };
+    let (known, ..) = solve(&scene(STEEL, false), &options).unwrap();
+    let (found, ..) = solve(&scene(none, true), &options).unwrap();
+    for (a, b) in known.friction().unwrap().traction.iter().zip(&found.friction().unwrap().traction) {
+        // Pressures of two kernels of the same coefficients, each to a residual of 1e-8.
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-5 * 0.3 * 900.0 / grid.element_area() / 100.0, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_handle_notices_other_tables() {
+    let (grid, h) = ball(20, 18);
+    let (tables, half) = (tables(&grid, 1.0), tables(&grid, 2.0));
+    let scene = |tables| Scene {
+        friction: Some(Friction { influence: Some(influence(&grid, tables, 1.0)), ..pushed() }),
+        ..Scene::new(grid, &h, STEEL, Load::Force(900.0))
+    };
+    let options = Options::default();
+    let mut handle = Solver::new(&scene(&tables), &options).unwrap();
+    handle.solve(&scene(&tables), &options, None, None).unwrap();
+    handle.solve(&scene(&half), &options, None, None).unwrap();
+    let (fresh, ..) = solve(&scene(&half), &options).unwrap();
+    let (first, ..) = solve(&scene(&tables), &options).unwrap();
+    let traction = |solver: &Solver| solver.friction().unwrap().traction.clone();
+    let off = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
+    let largest = traction(&fresh).iter().map(|q| q[0].abs()).fold(0.0, f64::max);
+    // A warm start changes the pressures within their tolerance.
+    assert!(off(&traction(&handle), &traction(&fresh)) <= 1e-3 * largest);
+    assert!(off(&traction(&first), &traction(&fresh)) > 1e-2 * largest, "the tables do not matter here");
+}
+
+#[test]
+fn tables_that_are_none_are_refused_by_name() {
+    let (grid, h) = ball(20, 18);
+    let good = tables(&grid, 1.0);
+    let of =
+        |tables: &[Vec<f64>; 3], change: &dyn Fn(&mut TangentialInfluence<'_>), friction: Friction<'static>, bodies| {
+            let mut own = influence(&grid, tables, 1.0);
+            change(&mut own);
+            let friction = Some(Friction { influence: Some(own), ..friction });
+            let scene = Scene { friction, ..Scene::new(grid, &h, bodies, Load::Force(900.0)) };
+            solve(&scene, &Options::default()).err()
+        };
+    let as_it_is = |_: &mut TangentialInfluence<'_>| ();
+    let refused = |error: Option<Error>, words: &str| {
+        let message = error.as_ref().expect(words).to_string();
+        assert!(message.contains(words), "{message} ({words})");
+        error.unwrap()
+    };
+    assert!(of(&good, &as_it_is, pushed(), STEEL).is_none());
+    let with = |component: usize, k: usize, value: f64| {
+        let mut tables = good.clone();
+        tables[component][k] = value;
+        tables
+    };
+    let width = 2 * (grid.mx + BEYOND);
+    let middle = (grid.my + BEYOND) * width + grid.mx + BEYOND;
+    let error = of(&with(0, middle + 3, f64::NAN), &as_it_is, pushed(), STEEL);
+    assert!(matches!(refused(error, "(xx) at offset (3, 0) is NaN"), Error::NotFinite(_)));
+    for (component, name) in ["(xx)", "(yy)", "(xy)"].into_iter().enumerate() {
+        let error = of(&with(component, middle - 2 + width, 0.1 * good[0][middle]), &as_it_is, pushed(), STEEL);
+        assert!(matches!(refused(error, name), Error::Unsupported(_)));
+    }
+    let error = of(&with(1, middle, -1.0), &as_it_is, pushed(), STEEL);
+    assert!(matches!(refused(error, "offset (0, 0)"), Error::NotPositiveDefinite(_)));
+    for (change, words) in [
+        (&(|own: &mut TangentialInfluence<'_>| own.cx = 19) as &dyn Fn(&mut TangentialInfluence<'_>), "cx is 19"),
+        (&|own| own.cy = usize::MAX, "2 cx by 2 cy"),
+        (&|own| own.scale = 0.0, "scale is 0"),
+        (&|own| own.coefficients[2] = &[], "(xy) has 0 values"),
+    ] {
+        refused(of(&good, change, pushed(), STEEL), words);
+    }
+    let rolling = Friction { motion: Motion::TransientRolling, ..pushed() };
+    for (direction, distance, words) in
+        [(0.3, 0.06, "whole elements"), (0.0, 0.07, "whole elements"), (0.0, 0.18, "of a step of rolling: 23")]
+    {
+        let friction = Friction { rolling_direction: direction, rolling_distance: distance, ..rolling };
+        refused(of(&good, &as_it_is, friction, STEEL), words);
+    }
+    let unlike = Bodies { shear_modulus: [82000.0, 1000.0], poisson_ratio: [0.28, 0.4] };
+    refused(of(&good, &as_it_is, pushed(), unlike), "unlike bodies");
+}
