@@ -147,6 +147,33 @@ impl Threads {
         });
     }
 
+    /// Calls `work(row, its data in a, its data in b, scratch)` on each row of both, a run of rows per piece.
+    pub fn for_each_row_pair_with<A: Send, B: Send, S: Send>(
+        &self,
+        (a, length_a): (&mut [A], usize),
+        (b, length_b): (&mut [B], usize),
+        scratch: &mut [S],
+        work: impl Fn(usize, &mut [A], &mut [B], &mut S) + Sync + Send,
+    ) {
+        let rows_per_piece = a.len().div_ceil(length_a).div_ceil(scratch.len()).max(1);
+        let rows = |k: usize, a: &mut [A], b: &mut [B], scratch: &mut S| {
+            for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
+                work(k * rows_per_piece + i, a, b, scratch);
+            }
+        };
+        let (of_a, of_b) = (rows_per_piece * length_a, rows_per_piece * length_b);
+        match self.workers() {
+            None => {
+                let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
+                pieces.for_each(|(k, ((a, b), scratch))| rows(k, a, b, scratch));
+            }
+            Some(workers) => workers.install(|| {
+                let pieces = a.par_chunks_mut(of_a).zip(b.par_chunks_mut(of_b)).zip(scratch).enumerate();
+                pieces.for_each(|(k, ((a, b), scratch))| rows(k, a, b, scratch));
+            }),
+        }
+    }
+
     /// Calls `work(row, its data)` on each row of `data`.
     pub fn for_each_plain_row<A: Send>(
         &self,

@@ -211,7 +211,7 @@ impl<T: Real> Operator<T> {
             if let Columns::Convolution(convolution) = &self.columns {
                 convolution.columns.fit(&mut scratch);
             }
-            let columns = blank((BLOCK * length).max(transform.bins()), nan, WORKSPACE)?;
+            let columns = blank(BLOCK * length, nan, WORKSPACE)?;
             Ok(Piece { row: zeros(transform.length().max(sums), WORKSPACE)?, columns, scratch })
         };
         let masked = self.coupling.as_ref().map_or(0, |_| self.rows.mx * self.rows.my);

@@ -51,11 +51,9 @@ impl<T: Real> Rows<T> {
     pub fn back(&self, u: &mut [T], product: &mut Product<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
         let Product { bins, pieces } = product;
         let nb = self.transform.bins();
-        let bins = &bins[..];
-        self.threads.for_each_row(u, self.mx, pieces, |iy, u_row, piece| {
-            // The inverse overwrites its input: each row goes through the piece's scratch.
-            let row_bins = &mut piece.columns[..nb];
-            row_bins.copy_from_slice(&bins[iy * nb..(iy + 1) * nb]);
+        let bins = &mut bins[..self.my * nb];
+        self.threads.for_each_row_pair_with((u, self.mx), (bins, nb), pieces, |iy, u_row, row_bins, piece| {
+            // The inverse overwrites its input.
             self.transform.inverse(row_bins, &mut piece.row[..self.transform.length()], &mut piece.scratch);
             write(iy, u_row, &piece.row[..self.mx]);
         });
