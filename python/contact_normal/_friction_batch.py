@@ -94,7 +94,8 @@ def friction_batch(
     """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
 
     The normal problem is solved once, or not at all if there are pressures. As many entries are solved at a time as `threads` says;
-    neighbours in the list should be neighbours in the motion, for each starts from the tractions of the one before.
+    neighbours in the list should be neighbours in the motion, for an entry
+    that differs little from the one before starts from its tractions.
 
     Parameters
     ----------

@@ -162,6 +162,21 @@ fn an_entry_starts_from_its_neighbour() {
 }
 
 #[test]
+fn an_entry_far_from_its_neighbour_starts_from_nothing() {
+    let (p, h) = (pressure(), vec![0.0; M * M]);
+    for friction in frictions() {
+        let near = |x: f64| if matches!(friction.prescribed[0], Prescribed::Force(_)) { 100.0 * x } else { 1e-3 * x };
+        let far = Entry { amount: [near(-1.5), 0.0], spin: 1e-4 };
+        let of = |entries: &[Entry]| {
+            let (_, found) = batch(&scene(&h, friction), Some(&p), entries, &options(1), None);
+            let Report { force, products, .. } = report(&found.last().expect("an entry").0);
+            [force[0], force[1], products].map(f64::to_bits)
+        };
+        assert_eq!(of(&[Entry { amount: [near(0.5), 0.0], spin: 1e-4 }, far]), of(&[far]), "{friction:?}");
+    }
+}
+
+#[test]
 fn an_entry_that_is_refused_harms_no_other() {
     let (p, h) = (pressure(), vec![0.0; M * M]);
     let friction = frictions()[1];
