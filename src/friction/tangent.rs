@@ -105,7 +105,7 @@ impl Tangent {
 
     /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r: the circulant inverse M of A with
     /// residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D dominates, its own
-    /// inverse. In steady rolling, `B = A d`, with x of `d x = E X' M X E r` in the place of the first term (see [`March`](super::march::March)).
+    /// inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let mixing = |i: usize| 1.0 / (1.0 + MIXED * self.curvature[i] / a0);
@@ -114,9 +114,15 @@ impl Tangent {
             let e = mixing(i);
             mixed[i] = [e * r[i][0], e * r[i][1]];
         }
-        problem.extension.fill(mixed);
+        // The march starts from nothing at each leading edge: what is beside C does not help it.
+        let is_continued = problem.operators.rolling.is_none();
+        if is_continued {
+            problem.extension.fill(mixed);
+        }
         problem.operators.precondition(mixed, unit, z);
-        problem.extension.fold(z);
+        if is_continued {
+            problem.extension.fold(z);
+        }
         for i in problem.contact() {
             let e = mixing(i);
             z[i] = self.project(i, [e * z[i][0], e * z[i][1]]);
