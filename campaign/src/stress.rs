@@ -81,7 +81,9 @@ impl Loaded {
             }
             let centre = [((j % mx) as f64 + 0.5) * dx, ((j / mx) as f64 + 0.5) * dy];
             let [x, y, z] = [point[0] - centre[0], point[1] - centre[1], point[2]];
-            let distance = (x * x + y * y + z * z).sqrt();
+            // From the nearest place of the element.
+            let beside = |x: f64, d: f64| f64::max(x.abs() - 0.5 * d, 0.0);
+            let distance = beside(x, dx).hypot(beside(y, dy)).hypot(z);
             let rule = if distance > 10.0 * dx.max(dy) { &far } else { &near };
             let (in_x, in_y) = (places(rule, dx, distance), places(rule, dy, distance));
             for (px, wx) in &in_x {

@@ -119,7 +119,9 @@ pub fn range(scene: &Scene<'_>, problem: &Problem, largest: f64, fixed: Option<G
                 None if lowest.is_finite() => (approach - lowest).max(0.0),
                 None => 0.0,
             };
-            (depth / influence, depth, 0.0)
+            // A single element of two periods has an influence of 0, and without a depth there is no pressure.
+            let pressure = if depth == 0.0 { 0.0 } else { depth / influence };
+            (pressure, depth, 0.0)
         }
         Load::Force(force) => {
             let pressure = force / scene.grid.element_area();

@@ -76,3 +76,21 @@ fn approaches_near_the_mean_are_solved() {
         }
     }
 }
+
+/// A single element of two periods displaces nothing: an approach below its h leaves it alone, and its own h is full contact.
+#[test]
+fn a_single_element_has_its_own_distance_for_an_approach() {
+    let (grid, h) = (Grid::new(1, 1, 0.8, 0.8).unwrap(), [0.3]);
+    let scene = |approach| Scene {
+        period: Some(Period { x: true, y: true }),
+        ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(approach))
+    };
+    for below in [0.2, 0.3 - 1e-9] {
+        let (solver, stop, _) = solve(&scene(below), &Options::default()).unwrap();
+        assert_eq!((stop, &solver.state().p[..]), (Stop::Converged, &[0.0][..]));
+    }
+    match solve(&scene(0.3), &Options::default()) {
+        Ok((solver, stop, _)) => assert_eq!((stop, &solver.state().p[..]), (Stop::Converged, &[0.0][..])),
+        Err(refused) => assert!(refused.to_string().contains("contact is full"), "{refused}"),
+    }
+}
