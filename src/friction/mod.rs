@@ -18,15 +18,18 @@ pub mod cross;
 pub mod dense;
 mod extension;
 mod fgmres;
+mod forces;
 mod levels;
 mod march;
 mod newton;
 mod problem;
 mod shift;
 mod solver;
+mod system;
 mod tables;
 mod tangent;
 mod toeplitz;
+mod vectors;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};

@@ -1,9 +1,10 @@
 //! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
 
 use super::certificate::Certificate;
+use super::forces::Forces;
 use super::levels::{interpolate, levels, restrict, Level};
 use super::march::Rolling;
-use super::newton::{self, Forces};
+use super::newton;
 use super::problem::{dot, square, Operators, Problem, Scale};
 use super::shift::{self, End, Goal};
 use super::toeplitz::{Toeplitz, Workspace};
@@ -447,7 +448,7 @@ fn one(
         let certified = part == 1.0;
         let goal = Goal { tolerance, limit, certified, watch };
         end = if newton {
-            newton::solve(problem, state, &mut memory.tangent, forces, goal)?
+            newton::solve(problem, state, (&mut memory.tangent, &mut memory.fields), forces, goal)?
         } else {
             shift::solve(problem, state, memory, goal)
         };
