@@ -23,6 +23,7 @@ mod levels;
 mod march;
 mod newton;
 mod problem;
+mod sensitivity;
 mod shift;
 mod solver;
 mod system;

@@ -100,6 +100,15 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: h, border })
     }
 
+    /// `r -= H z` of a field, whose product with A is given.
+    pub fn subtract(&self, z: &Bordered, product: &[Vector], r: &mut [Vector]) {
+        let tangent = self.tangent;
+        vectors::map(self.problem.threads(), r, |i, r| {
+            let left = plus(r, -1.0, tangent.project_inside(i, product[i]));
+            plus(left, -tangent.curvature[i], z.field[i])
+        });
+    }
+
     /// A times a field, to the precision of directions.
     pub fn multiply(&mut self, field: &[Vector], product: &mut [Vector]) {
         let unit = self.problem.rms_bound();
