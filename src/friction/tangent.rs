@@ -118,9 +118,10 @@ impl Tangent {
         }
     }
 
-    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant inverse M of A with
-    /// residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D dominates, its own
-    /// inverse. In steady rolling, `B = A d`, with x of `d x = E X' M X E r` in the place of the first term (see [`March`](super::march::March)).
+    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant
+    /// inverse M of A, with residuals continued beside C by X (see [`Extension`](super::extension::Extension)), and its own inverse
+    /// where the curvature D dominates. In steady rolling, `B = A d`, with x of `d x = E X' M X E r` in the place of the first term
+    /// (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let mixing = |i: usize| 1.0 / (1.0 + MIXED * self.curvature[i] / a0);
