@@ -41,12 +41,11 @@ impl<'a> TangentSystem<'a> {
         let (border, inverse, scratch) = ([Vec::new(), Vec::new()], [[0.0; 2]; 2], fields.take(n)?);
         let mut system = TangentSystem { problem, tangent, forces, border, inverse, scratch };
         let mut matrix = [[0.0; 2]; 2];
-        for k in 0..2 {
+        for (k, e) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
             if !forces.given[k] {
                 continue;
             }
             let mut unit = fields.take(n)?;
-            let e = if k == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
             vectors::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, e));
             let mut column = fields.take(n)?;
             system.precondition_field(&unit, &mut column);

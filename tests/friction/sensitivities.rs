@@ -74,6 +74,7 @@ fn a_series_goes_on_from_the_last_solution() {
                 assert!((a.creepage[i] - b.creepage[i]).abs() <= 1e-5, "{k}: {:?} {:?}", a.creepage, b.creepage);
             }
         }
-        println!("SERIES {forces} {products} {cold}");
+        // The start is nearer than what coarse grids give, and they cost nothing.
+        assert!(products < 0.9 * cold, "{products} {cold}");
     }
 }
