@@ -143,6 +143,8 @@ module contact_normal
     type(c_ptr) :: influence(3) = c_null_ptr
     integer(c_int32_t) :: influence_cx = 0, influence_cy = 0
     real(c_double) :: influence_scale = 0
+    integer(c_int32_t) :: sensitivities = 0
+    integer(c_int32_t) :: reserved = 0
   end type
 
   ! What is simulated. Since 0.1.
@@ -281,6 +283,7 @@ module contact_normal
     integer(c_int64_t) :: slip_count = 0
     real(c_double) :: tangential_products = 0
     real(c_double) :: tangential_seconds = 0
+    real(c_double) :: sensitivities(9) = 0
   end type
 
   ! The accuracy that is asked for, what it may cost, and the grid that it took. Since 0.1.

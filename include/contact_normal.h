@@ -583,6 +583,14 @@ typedef struct contact_normal_friction {
    Every coefficient is multiplied by this, positive; default 1.
    */
   double influence_scale;
+  /*
+   1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+   */
+  int32_t sensitivities;
+  /*
+   Must be 0.
+   */
+  int32_t reserved;
 } contact_normal_friction;
 
 /*
@@ -1101,6 +1109,11 @@ typedef struct contact_normal_report {
    Seconds of the tangential problem, which are part of `solve_seconds`.
    */
   double tangential_seconds;
+  /*
+   If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
+   creepages in x and y and by the spin; [3][3], row by row. Creepages that are found count as given.
+   */
+  double sensitivities[9];
 } contact_normal_report;
 
 /*

@@ -156,8 +156,8 @@ _FRICTION_PAIRS = ("previous_traction", "rigid_slip")
 
 
 def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    known = ("coefficient", "motion", "creepage", "force", "continues", "spin_centre", "influence", *_FRICTION_NUMBERS,
-             *_FRICTION_PAIRS)
+    known = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence",
+             *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
     unknown = sorted(set(value) - set(known))
     if unknown:
         raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(known)}")
@@ -171,6 +171,7 @@ def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
     motion = value.get("motion", MOTION_SHIFT)
     effect.motion = value_of("motion", motion) if isinstance(motion, str) else motion
     effect.continues = bool(value.get("continues", False))
+    effect.sensitivities = bool(value.get("sensitivities", False))
     effect.creepage = pair("friction['creepage']", value.get("creepage", 0.0))
     effect.spin_centre = pair("friction['spin_centre']", value.get("spin_centre", 0.0))
     forces = value.get("force", (None, None))

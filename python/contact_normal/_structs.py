@@ -91,6 +91,8 @@ class Friction(ctypes.Structure):
         ("influence_cx", c_int32),
         ("influence_cy", c_int32),
         ("influence_scale", c_double),
+        ("sensitivities", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -254,6 +256,7 @@ class Report(ctypes.Structure):
         ("slip_count", c_int64),
         ("tangential_products", c_double),
         ("tangential_seconds", c_double),
+        ("sensitivities", c_double * 9),
     ]
 
 

@@ -177,6 +177,8 @@ pub struct Friction<'a> {
     pub rigid_slip: Option<[&'a [f64]; 2]>,
     /// Tangential coefficients of the caller's own; none: those of the half-space.
     pub influence: Option<TangentialInfluence<'a>>,
+    /// Whether the derivatives of the forces by the creepages and the spin are asked for.
+    pub sensitivities: bool,
 }
 
 impl Friction<'_> {
@@ -194,6 +196,7 @@ impl Friction<'_> {
             previous: Previous::None,
             rigid_slip: None,
             influence: None,
+            sensitivities: false,
         }
     }
 
@@ -237,6 +240,16 @@ impl Friction<'_> {
         });
         let own = self.rigid_slip.map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+    }
+
+    /// How the rigid slip at element i changes with xi (0), eta (1) or phi (2).
+    pub fn rigid_slip_by(&self, grid: &Grid, i: usize, creepage: usize) -> [f64; 2] {
+        let mut unit = Friction { prescribed: [Prescribed::Creepage(0.0); 2], spin: 0.0, rigid_slip: None, ..*self };
+        match creepage {
+            2 => unit.spin = 1.0,
+            k => unit.prescribed[k] = Prescribed::Creepage(1.0),
+        }
+        unit.rigid_slip_at(grid, i)
     }
 
     /// Refuses steps of steady rolling that elements do not resolve.

@@ -1,6 +1,6 @@
 //! `contact_normal_friction`.
 
-use super::arguments::{count, optional, required, GivenEffect, Regions};
+use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::influence::table_size;
 use super::status::Refusal;
 use super::structs::{self, versioned};
@@ -84,6 +84,10 @@ pub struct contact_normal_friction {
     pub influence_cy: i32,
     /// Every coefficient is multiplied by this, positive; default 1.
     pub influence_scale: f64,
+    /// 1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+    pub sensitivities: i32,
+    /// Must be 0.
+    pub reserved: i32,
 }
 
 versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
@@ -126,6 +130,14 @@ impl contact_normal_friction {
             }
             (other, _) => return Err(Refusal::invalid(format!("friction->continues is {other}; it must be 0 or 1"))),
         };
+        reserved("friction->reserved", self.reserved)?;
+        let sensitivities = match self.sensitivities {
+            0 => false,
+            1 => true,
+            other => {
+                return Err(Refusal::invalid(format!("friction->sensitivities is {other}; it must be 0 or 1")));
+            }
+        };
         // SAFETY: as above.
         let coefficients = unsafe { optional(self.coefficients, grid.len()) };
         Ok(Friction {
@@ -140,6 +152,7 @@ impl contact_normal_friction {
             previous,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
             influence: self.own_influence()?,
+            sensitivities,
         })
     }
 

@@ -208,6 +208,9 @@ pub struct contact_normal_report {
     pub tangential_products: f64,
     /// Seconds of the tangential problem, which are part of `solve_seconds`.
     pub tangential_seconds: f64,
+    /// If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
+    /// creepages in x and y and by the spin; [3][3], row by row. Creepages that are found count as given.
+    pub sensitivities: [f64; 9],
 }
 
 versioned! {
@@ -242,6 +245,9 @@ impl contact_normal_report {
             (to.tangential_residual, to.tangential_gap) = (found.certificate.residual, found.certificate.gap);
             copy!(found.certificate => to: stick_count, slip_count);
             (to.tangential_products, to.tangential_seconds) = (found.products, found.seconds);
+            for (to, from) in to.sensitivities.iter_mut().zip(found.sensitivities.iter().flatten().flatten()) {
+                *to = *from;
+            }
         }
         to.limited_by = match report.limit {
             Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,

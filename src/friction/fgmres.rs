@@ -2,41 +2,21 @@
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
 
-use super::problem::{dot, plus};
+use super::problem::dot;
+use super::vectors::{self, Fields};
 use super::Vector;
+use crate::error::Result;
+use crate::threads::Threads;
 
-/// A field of tractions or slips, and a border: creepages or forces.
-#[derive(Clone)]
+/// A field of tractions or slips, 0 outside C, and a border: creepages or forces.
+#[derive(Default)]
 pub struct Bordered {
     pub field: Vec<Vector>,
     pub border: Vector,
 }
 
-impl Bordered {
-    /// Zeros.
-    pub fn zeros(n: usize) -> Bordered {
-        Bordered { field: vec![[0.0; 2]; n], border: [0.0; 2] }
-    }
-
-    /// `self + a other`.
-    pub fn add(&mut self, a: f64, other: &Bordered) {
-        self.field.iter_mut().zip(&other.field).for_each(|(to, from)| *to = plus(*to, a, *from));
-        self.border = plus(self.border, a, other.border);
-    }
-
-    /// `self . other`; borders weigh `weight`.
-    pub fn dot(&self, other: &Bordered, weight: f64) -> f64 {
-        let sum: f64 = self.field.iter().zip(&other.field).map(|(v, w)| dot(*v, *w)).sum();
-        sum + weight * dot(self.border, other.border)
-    }
-
-    fn scale(&mut self, a: f64) {
-        self.field.iter_mut().for_each(|v| *v = [a * v[0], a * v[1]]);
-        self.border = [a * self.border[0], a * self.border[1]];
-    }
-}
-
 /// One direction: the preconditioned vector, and the product of its field with A.
+#[derive(Default)]
 pub struct Direction {
     pub z: Bordered,
     pub product: Vec<Vector>,
@@ -45,62 +25,140 @@ pub struct Direction {
 /// What is solved: `H x = r`.
 pub trait System {
     /// A preconditioned vector, its product with A, and `H` of it.
-    fn direction(&mut self, v: &Bordered) -> (Direction, Bordered);
+    fn direction(&mut self, v: &Bordered, fields: &mut Fields) -> Result<(Direction, Bordered)>;
 }
 
 /// Directions at most.
 const MOST: usize = 40;
 
-/// Solves `H x = r` until the residual is at most `target`. Returns the directions and their coefficients; `weight`: of borders in the
-/// inner product.
-pub fn solve(system: &mut dyn System, r: Bordered, target: f64, weight: f64) -> (Vec<Direction>, Vec<f64>) {
-    let mut norm = r.dot(&r, weight).sqrt();
-    let (mut directions, mut basis): (Vec<Direction>, Vec<Bordered>) = (Vec::new(), vec![r]);
-    // Upper triangle column by column, rotations, and the right-hand side.
-    let mut columns: Vec<Vec<f64>> = Vec::new();
-    let mut rotations: Vec<(f64, f64)> = Vec::new();
-    let mut rest = vec![norm];
+/// What was found: `x = sum_j y_j z_j`.
+#[derive(Default)]
+pub struct Combination {
+    pub directions: Vec<Direction>,
+    pub y: Vec<f64>,
+    /// The norm of what is left of r, relative to that of r.
+    pub left: f64,
+}
+
+/// The triangular system of the coefficients.
+#[derive(Default)]
+struct Triangle {
+    columns: Vec<Vec<f64>>,
+    rotations: Vec<(f64, f64)>,
+    rest: Vec<f64>,
+}
+
+/// Solves `H x = r` until the residual is at most `target`; `weight`: of borders in the inner product.
+pub fn solve(
+    system: &mut dyn System,
+    mut r: Bordered,
+    (target, weight): (f64, f64),
+    threads: &Threads,
+    fields: &mut Fields,
+) -> Result<Combination> {
+    let square = |v: &Bordered| vectors::dot(threads, &v.field, &v.field) + weight * dot(v.border, v.border);
+    let first = square(&r).sqrt();
+    let mut norm = first;
+    let mut found = Combination { left: 1.0, ..Combination::default() };
     if !(norm > target) {
-        return (directions, Vec::new());
+        fields.give(r.field);
+        return Ok(found);
     }
-    basis[0].scale(1.0 / norm);
-    while directions.len() < MOST && norm > target {
-        let k = directions.len();
-        let (direction, mut w) = system.direction(&basis[k]);
-        let mut column = Vec::with_capacity(k + 2);
-        for v in &basis {
-            let h = w.dot(v, weight);
-            w.add(-h, v);
-            column.push(h);
-        }
-        let left = w.dot(&w, weight).sqrt();
-        for (i, &(c, s)) in rotations.iter().enumerate() {
-            (column[i], column[i + 1]) = (c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]);
-        }
-        let diagonal = column[k].hypot(left);
-        if !(diagonal > 0.0 && diagonal.is_finite()) {
+    scale(threads, &mut r, 1.0 / norm);
+    let mut basis = vec![r];
+    let mut triangle = Triangle { rest: vec![norm], ..Triangle::default() };
+    while found.directions.len() < MOST && norm > target {
+        let (direction, mut w) = system.direction(&basis[basis.len() - 1], fields)?;
+        let (column, left) = orthogonalise(threads, &mut w, &basis, weight);
+        found.directions.push(direction);
+        let is_sound = triangle.add(column, left);
+        scale(threads, &mut w, if left > 0.0 { 1.0 / left } else { 1.0 });
+        basis.push(w);
+        if !is_sound {
+            found.directions.pop().into_iter().for_each(|direction| direction.give(fields));
             break;
         }
-        let (c, s) = (column[k] / diagonal, left / diagonal);
-        column[k] = diagonal;
-        rotations.push((c, s));
-        columns.push(column);
-        directions.push(direction);
-        let last = rest[k];
-        rest[k] = c * last;
-        rest.push(-s * last);
-        norm = rest[k + 1].abs();
-        if left > 0.0 {
-            w.scale(1.0 / left);
+        norm = triangle.rest[found.directions.len()].abs();
+    }
+    basis.into_iter().for_each(|v| fields.give(v.field));
+    found.y = triangle.solve(found.directions.len());
+    found.left = norm / first;
+    Ok(found)
+}
+
+/// Takes from w what lies along the basis, as modified Gram and Schmidt do; returns the coefficients, and the norm of what is left.
+fn orthogonalise(threads: &Threads, w: &mut Bordered, basis: &[Bordered], weight: f64) -> (Vec<f64>, f64) {
+    let mut column = Vec::with_capacity(basis.len() + 1);
+    let mut along = vectors::dot(threads, &w.field, &basis[0].field);
+    for (j, v) in basis.iter().enumerate() {
+        let h = along + weight * dot(w.border, v.border);
+        w.border = [w.border[0] - h * v.border[0], w.border[1] - h * v.border[1]];
+        along = match basis.get(j + 1) {
+            Some(next) => vectors::add_and_dot(threads, &mut w.field, -h, &v.field, &next.field),
+            None => vectors::add_and_square(threads, &mut w.field, -h, &v.field),
+        };
+        column.push(h);
+    }
+    (column, (along + weight * dot(w.border, w.border)).sqrt())
+}
+
+fn scale(threads: &Threads, v: &mut Bordered, a: f64) {
+    vectors::scale(threads, &mut v.field, a);
+    v.border = v.border.map(|value| a * value);
+}
+
+impl Direction {
+    /// Gives its fields back.
+    pub fn give(self, fields: &mut Fields) {
+        fields.give(self.z.field);
+        fields.give(self.product);
+    }
+}
+
+impl Combination {
+    /// Adds x to `to`, and the product of its field to `product`; gives the directions back.
+    pub fn add_to(self, to: &mut Bordered, product: &mut [Vector], threads: &Threads, fields: &mut Fields) {
+        let Combination { directions, y, .. } = self;
+        let of = |field: fn(&Direction) -> &[Vector]| -> Vec<(f64, &[Vector])> {
+            y.iter().zip(&directions).map(|(y, direction)| (*y, field(direction))).collect()
+        };
+        vectors::add_all(threads, &mut to.field, &of(|direction| &direction.z.field));
+        vectors::add_all(threads, product, &of(|direction| &direction.product));
+        for (y, direction) in y.iter().zip(&directions) {
+            to.border = [to.border[0] + y * direction.z.border[0], to.border[1] + y * direction.z.border[1]];
         }
-        basis.push(w);
+        directions.into_iter().for_each(|direction| direction.give(fields));
     }
-    let count = directions.len();
-    let mut y = rest[..count].to_vec();
-    for i in (0..count).rev() {
-        y[i] /= columns[i][i];
-        let value = y[i];
-        (0..i).for_each(|j| y[j] -= columns[i][j] * value);
+}
+
+impl Triangle {
+    /// Rotates a column into the triangle, `below` its element below the diagonal. False: it is no direction.
+    fn add(&mut self, mut column: Vec<f64>, below: f64) -> bool {
+        let k = column.len() - 1;
+        for (i, &(c, s)) in self.rotations.iter().enumerate() {
+            (column[i], column[i + 1]) = (c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]);
+        }
+        let diagonal = column[k].hypot(below);
+        if !(diagonal > 0.0 && diagonal.is_finite()) {
+            return false;
+        }
+        let (c, s) = (column[k] / diagonal, below / diagonal);
+        column[k] = diagonal;
+        self.rotations.push((c, s));
+        self.columns.push(column);
+        let last = self.rest[k];
+        self.rest[k] = c * last;
+        self.rest.push(-s * last);
+        true
     }
-    (directions, y)
+
+    fn solve(&self, count: usize) -> Vec<f64> {
+        let mut y = self.rest[..count].to_vec();
+        for i in (0..count).rev() {
+            y[i] /= self.columns[i][i];
+            let value = y[i];
+            (0..i).for_each(|j| y[j] -= self.columns[i][j] * value);
+        }
+        y
+    }
 }

@@ -38,7 +38,7 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>()
+        self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>() + self.memory.fields.bytes()
     }
 }
 

@@ -14,10 +14,11 @@
 //! slip:  x_i = t t.(E_i x(ahead of i) + v_i)
 //! ```
 
-use super::problem::{plus, Problem};
+use super::problem::plus;
 use super::tangent::Tangent;
 use super::Vector;
 use crate::grid::Grid;
+use crate::threads::Threads;
 
 /// How far a step of rolling goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,8 +76,23 @@ impl March {
     }
 
     /// Solves for x; `x` holds v on entry. `mixing(i)` is E.
-    pub fn solve(&self, problem: &Problem, tangent: &Tangent, mixing: impl Fn(usize) -> f64, x: &mut [Vector]) {
-        let Grid { mx, my, .. } = problem.grid;
+    pub fn solve(
+        &self,
+        grid: &Grid,
+        tangent: &Tangent,
+        mixing: impl Fn(usize) -> f64 + Sync + Send,
+        threads: &Threads,
+        x: &mut [Vector],
+    ) {
+        match self.ahead[..] {
+            [(1, 0, _)] if self.own == 0.0 => each_row(grid, tangent, mixing, threads, (x, true)),
+            [(-1, 0, _)] if self.own == 0.0 => each_row(grid, tangent, mixing, threads, (x, false)),
+            _ => self.any_direction(grid, tangent, mixing, x),
+        }
+    }
+
+    fn any_direction(&self, grid: &Grid, tangent: &Tangent, mixing: impl Fn(usize) -> f64, x: &mut [Vector]) {
+        let Grid { mx, my, .. } = *grid;
         let factor = 1.0 / (1.0 - self.own);
         let place = |k: usize, m: usize, towards: f64| if towards > 0.0 { m - 1 - k } else { k };
         for row in 0..my {
@@ -84,10 +100,6 @@ impl March {
             for column in 0..mx {
                 let ix = place(column, mx, self.by.0);
                 let i = iy * mx + ix;
-                if !(problem.bound[i] > 0.0) {
-                    x[i] = [0.0; 2];
-                    continue;
-                }
                 let mut ahead = [0.0; 2];
                 for &(in_x, in_y, weight) in &self.ahead {
                     let (jx, jy) = (ix.wrapping_add_signed(in_x), iy.wrapping_add_signed(in_y));
@@ -96,8 +108,28 @@ impl March {
                     }
                 }
                 let sum = plus(x[i], mixing(i), ahead);
-                x[i] = tangent.project(i, [factor * sum[0], factor * sum[1]]);
+                x[i] = tangent.project_inside(i, [factor * sum[0], factor * sum[1]]);
             }
         }
     }
+}
+
+/// By one element along x, `forward` or backward: no row knows of another.
+fn each_row(
+    grid: &Grid,
+    tangent: &Tangent,
+    mixing: impl Fn(usize) -> f64 + Sync + Send,
+    threads: &Threads,
+    (x, forward): (&mut [Vector], bool),
+) {
+    let mx = grid.mx;
+    threads.for_each_row_pair((x, mx), (&mut vec![(); grid.my][..], 1), |iy, row, _| {
+        let mut ahead = [0.0; 2];
+        for k in 0..mx {
+            let ix = if forward { mx - 1 - k } else { k };
+            let i = iy * mx + ix;
+            ahead = tangent.project_inside(i, plus(row[ix], mixing(i), ahead));
+            row[ix] = ahead;
+        }
+    });
 }

@@ -39,6 +39,7 @@ pub struct Operators {
     pub self_influence: f64,
     /// The same without rolling.
     a0: f64,
+    threads: Threads,
     /// Products since the last call of [`Problem::take_products`].
     products: u64,
 }
@@ -71,6 +72,7 @@ impl Operators {
             rolling,
             self_influence: (xx - there[0]).max(yy - there[1]),
             a0: xx.max(yy),
+            threads: threads.clone(),
             products: 0,
         })
     }
@@ -220,6 +222,11 @@ impl Problem {
     /// The elements of C.
     pub fn contact(&self) -> impl Iterator<Item = usize> + '_ {
         self.runs.iter().cloned().flatten().filter(|&i| self.bound[i] > 0.0)
+    }
+
+    /// Those that work on this grid.
+    pub fn threads(&self) -> &Threads {
+        &self.operators.threads
     }
 
     /// Elements of C.

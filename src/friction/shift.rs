@@ -13,6 +13,7 @@
 
 use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
 use super::tangent::{Side, Tangent};
+use super::vectors::Fields;
 use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
@@ -38,6 +39,8 @@ pub struct Memory {
     /// What is multiplied, and z.
     given: Vec<Vector>,
     z: Vec<Vector>,
+    /// Of Newton's method.
+    pub fields: Fields,
 }
 
 /// Why an iteration ended.
@@ -77,6 +80,7 @@ impl Memory {
             debt: field()?,
             given: field()?,
             z: field()?,
+            fields: Fields::default(),
         })
     }
 }
@@ -129,7 +133,7 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
 
 /// One iteration.
 fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &mut Steps) {
-    let Memory { tangent, direction, chord, product, debt, given, z } = memory;
+    let Memory { tangent, direction, chord, product, debt, given, z, .. } = memory;
     let unit = problem.rms_bound();
     tangent.precondition(problem, &tangent.driving, unit, given, z);
     let mut beta = 0.0;

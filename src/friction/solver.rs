@@ -1,11 +1,13 @@
 //! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
 
 use super::certificate::Certificate;
+use super::forces::Forces;
 use super::levels::{interpolate, levels, restrict, Level};
 use super::march::Rolling;
-use super::newton::{self, Forces};
+use super::newton;
 use super::problem::{dot, square, Operators, Problem, Scale};
-use super::shift::{self, End, Goal};
+use super::sensitivity;
+use super::shift::{self, End, Goal, Memory};
 use super::toeplitz::{Toeplitz, Workspace};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
@@ -55,6 +57,9 @@ pub struct Report {
     pub moment: f64,
     /// Creepages: given, or found.
     pub creepage: Vector,
+    /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
+    /// that are found count as given.
+    pub sensitivities: Option<[[f64; 3]; 3]>,
     /// Products of two components on all grids, in products on the finest.
     pub products: f64,
     /// Seconds, with the set-up of operators.
@@ -216,6 +221,10 @@ impl Solver {
             report.products = work.products;
         }
         self.write(friction, pressure, window, &mut report);
+        if friction.sensitivities {
+            report.sensitivities = Some(self.sensitivities(friction, window)?);
+            report.products += self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64;
+        }
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
@@ -379,6 +388,29 @@ impl Solver {
         Ok(End::Converged)
     }
 
+    /// See [`Report::sensitivities`].
+    fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
+        let mut derivatives = [[0.0; 3]; 3];
+        let (Some(window), Some(Level { problem, state, memory })) = (window, self.levels.first_mut()) else {
+            return Ok(derivatives);
+        };
+        for by in 0..3 {
+            let mut change = memory.fields.take(state.q.len())?;
+            for (k, i) in window.elements(&self.grid) {
+                change[k] = friction.rigid_slip_by(&self.grid, i, by);
+            }
+            let Memory { tangent, fields, .. } = memory;
+            sensitivity::solve(problem, state, (tangent, fields), &mut change)?;
+            let changes = window.elements(&self.grid).map(|(k, i)| (i, change[k]));
+            let (force, moment) = resultant(&self.grid, friction.spin_centre, changes);
+            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
+                row[by] = value;
+            }
+            memory.fields.give(change);
+        }
+        Ok(derivatives)
+    }
+
     /// The result on the whole grid, and what is to be said of it.
     fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], window: Option<Window>, report: &mut Report) {
         let Solution { traction, slip, adhesion } = &mut self.solution;
@@ -407,15 +439,22 @@ impl Solver {
                 Prescribed::Force(_) => offset[k] / distance,
             };
         }
-        let Grid { mx, my, dx, dy } = self.grid;
-        let area = self.grid.element_area();
-        for (i, q) in traction.iter().enumerate().filter(|(_, q)| **q != [0.0; 2]) {
-            let x = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * dx - friction.spin_centre[0];
-            let y = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * dy - friction.spin_centre[1];
-            report.force = [report.force[0] + area * q[0], report.force[1] + area * q[1]];
-            report.moment += area * dot([-y, x], *q);
-        }
+        let tractions = traction.iter().copied().enumerate();
+        (report.force, report.moment) = resultant(&self.grid, friction.spin_centre, tractions);
     }
+}
+
+/// The force of tractions, and their moment about `centre`, a place from the middle of the grid.
+fn resultant(grid: &Grid, centre: Vector, tractions: impl Iterator<Item = (usize, Vector)>) -> (Vector, f64) {
+    let (Grid { mx, my, dx, dy }, area) = (*grid, grid.element_area());
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (i, q) in tractions.filter(|(_, q)| *q != [0.0; 2]) {
+        let x = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];
+        let y = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
+        force = [force[0] + area * q[0], force[1] + area * q[1]];
+        moment += area * dot([-y, x], q);
+    }
+    (force, moment)
 }
 
 /// What is counted, and who is told.
@@ -447,7 +486,7 @@ fn one(
         let certified = part == 1.0;
         let goal = Goal { tolerance, limit, certified, watch };
         end = if newton {
-            newton::solve(problem, state, &mut memory.tangent, forces, goal)?
+            newton::solve(problem, state, (&mut memory.tangent, &mut memory.fields), forces, goal)?
         } else {
             shift::solve(problem, state, memory, goal)
         };

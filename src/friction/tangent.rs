@@ -11,6 +11,7 @@
 
 use super::certificate::{relative, rest, scale, ON_THE_CIRCLE};
 use super::problem::{dot, plus, square, Problem, State};
+use super::vectors;
 use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
@@ -70,7 +71,11 @@ impl Tangent {
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Sight {
         let (mut squares, mut excess) = (0.0, 0.0);
         self.slip_count = 0;
-        for i in problem.contact() {
+        for i in 0..problem.bound.len() {
+            if !(problem.bound[i] > 0.0) {
+                (self.side[i], self.curvature[i], self.driving[i]) = (Side::Outside, 0.0, [0.0; 2]);
+                continue;
+            }
             let (q, g, s) = (state.q[i], problem.bound[i], problem.slip_at(i, &state.u));
             let length = square(q).sqrt();
             squares += rest(s, q, length, length >= g * ON_THE_CIRCLE);
@@ -94,6 +99,16 @@ impl Tangent {
         }
     }
 
+    /// P v at element i, 0 outside C.
+    #[inline]
+    pub fn project_inside(&self, i: usize, v: Vector) -> Vector {
+        match self.side[i] {
+            Side::Slip => plus(v, -dot(v, self.normal[i]), self.normal[i]),
+            Side::Stick => v,
+            Side::Outside => [0.0; 2],
+        }
+    }
+
     /// P v at element i of C.
     #[inline]
     pub fn project(&self, i: usize, v: Vector) -> Vector {
@@ -103,17 +118,17 @@ impl Tangent {
         }
     }
 
-    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r: the circulant inverse M of A with
-    /// residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D dominates, its own
-    /// inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
+    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant
+    /// inverse M of A with residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D
+    /// dominates, its own inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let mixing = |i: usize| 1.0 / (1.0 + MIXED * self.curvature[i] / a0);
-        mixed.fill([0.0; 2]);
-        for i in problem.contact() {
+        let threads = problem.threads().clone();
+        vectors::fill(&threads, mixed, |i| {
             let e = mixing(i);
-            mixed[i] = [e * r[i][0], e * r[i][1]];
-        }
+            [e * r[i][0], e * r[i][1]]
+        });
         // The march starts from nothing at each leading edge: what is beside C does not help it.
         let is_continued = problem.operators.rolling.is_none();
         if is_continued {
@@ -123,16 +138,19 @@ impl Tangent {
         if is_continued {
             problem.extension.fold(z);
         }
-        for i in problem.contact() {
+        let own = |i: usize| (1.0 - mixing(i)) / (self.curvature[i] + a0);
+        let Some((_, march)) = &problem.operators.rolling else {
+            vectors::map(&threads, z, |i, z| {
+                let e = mixing(i);
+                plus(self.project_inside(i, [e * z[0], e * z[1]]), own(i), r[i])
+            });
+            return;
+        };
+        vectors::map(&threads, z, |i, z| {
             let e = mixing(i);
-            z[i] = self.project(i, [e * z[i][0], e * z[i][1]]);
-        }
-        if let Some((_, march)) = &problem.operators.rolling {
-            march.solve(problem, self, mixing, z);
-        }
-        for i in problem.contact() {
-            let own = (1.0 - mixing(i)) / (self.curvature[i] + a0);
-            z[i] = plus(z[i], own, r[i]);
-        }
+            self.project_inside(i, [e * z[0], e * z[1]])
+        });
+        march.solve(&problem.grid, self, mixing, &threads, z);
+        vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
     }
 }

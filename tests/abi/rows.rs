@@ -133,6 +133,8 @@ pub const SET_UP: &[Row] = &[
     (&["friction->rolling_distance", "tenth"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e-3); }),
     (&["friction->rolling_distance", "million"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e30); }),
     (&["friction->continues", "2"], INVALID, |c| c.use_friction().continues = 2),
+    (&["friction->sensitivities", "2"], INVALID, |c| c.use_friction().sensitivities = 2),
+    (&["friction->reserved", "1"], INVALID, |c| c.use_friction().reserved = 1),
     (&["friction->prescribed[1]", "-1"], INVALID, |c| c.use_friction().prescribed[1] = -1),
     (&["friction->creepage[0]", "NaN"], NOT_FINITE, |c| c.use_friction().creepage[0] = NAN),
     (&["friction->spin", "inf"], NOT_FINITE, |c| c.use_friction().spin = INF),

@@ -64,6 +64,8 @@ int main(void)
     OFFSET(contact_normal_friction, influence_cx);
     OFFSET(contact_normal_friction, influence_cy);
     OFFSET(contact_normal_friction, influence_scale);
+    OFFSET(contact_normal_friction, sensitivities);
+    OFFSET(contact_normal_friction, reserved);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -187,6 +189,7 @@ int main(void)
     OFFSET(contact_normal_report, slip_count);
     OFFSET(contact_normal_report, tangential_products);
     OFFSET(contact_normal_report, tangential_seconds);
+    OFFSET(contact_normal_report, sensitivities);
     SIZE(contact_normal_friction_results);
     OFFSET(contact_normal_friction_results, struct_size);
     OFFSET(contact_normal_friction_results, force);

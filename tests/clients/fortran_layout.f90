@@ -88,6 +88,8 @@ program fortran_layout
   call show("contact_normal_friction.influence_cx", c_loc(friction%influence_cx))
   call show("contact_normal_friction.influence_cy", c_loc(friction%influence_cy))
   call show("contact_normal_friction.influence_scale", c_loc(friction%influence_scale))
+  call show("contact_normal_friction.sensitivities", c_loc(friction%sensitivities))
+  call show("contact_normal_friction.reserved", c_loc(friction%reserved))
 
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
@@ -223,6 +225,7 @@ program fortran_layout
   call show("contact_normal_report.slip_count", c_loc(report%slip_count))
   call show("contact_normal_report.tangential_products", c_loc(report%tangential_products))
   call show("contact_normal_report.tangential_seconds", c_loc(report%tangential_seconds))
+  call show("contact_normal_report.sensitivities", c_loc(report%sensitivities))
 
   base = place(c_loc(accuracy))
   print '(a, i0)', "contact_normal_accuracy ", c_sizeof(accuracy)

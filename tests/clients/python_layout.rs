@@ -65,7 +65,9 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         influence,
         influence_cx,
         influence_cy,
-        influence_scale
+        influence_scale,
+        sensitivities,
+        reserved
     );
     layout!(ours, "Coating", contact_normal_coating, struct_size, thickness, shear_modulus, poisson_ratio);
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
@@ -193,7 +195,8 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         stick_count,
         slip_count,
         tangential_products,
-        tangential_seconds
+        tangential_seconds,
+        sensitivities
     );
     layout!(
         ours,

@@ -10,6 +10,7 @@ mod rolling;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]
 mod scenes;
+mod sensitivities;
 mod steady;
 mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]

@@ -1,0 +1,56 @@
+//! Tangential forces that are given.
+
+use super::problem::{add, square, Problem};
+use super::vectors;
+use super::Vector;
+
+/// Forces that are given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forces {
+    /// Whether that in x, in y.
+    pub given: [bool; 2],
+    /// `F/(dx dy)` of each.
+    pub sum: Vector,
+}
+
+impl Forces {
+    /// None.
+    pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
+
+    /// Whether there are any.
+    pub fn any(&self) -> bool {
+        self.given[0] || self.given[1]
+    }
+
+    /// The same, a part of it.
+    pub fn times(&self, part: f64) -> Forces {
+        Forces { sum: [part * self.sum[0], part * self.sum[1]], ..*self }
+    }
+
+    /// v in the directions of forces that are given, else 0.
+    pub fn only_given(&self, v: Vector) -> Vector {
+        [if self.given[0] { v[0] } else { 0.0 }, if self.given[1] { v[1] } else { 0.0 }]
+    }
+
+    /// What of the forces is missing, relative to the sum of g.
+    pub fn missing(&self, problem: &Problem, q: &[Vector]) -> f64 {
+        let sum = sum_of(problem, q);
+        let missing = self.only_given([self.sum[0] - sum[0], self.sum[1] - sum[1]]);
+        square(missing).sqrt() / sum_of_bounds(problem)
+    }
+}
+
+/// The sum of a field that is 0 outside C.
+pub fn sum_of(problem: &Problem, field: &[Vector]) -> Vector {
+    vectors::sum(problem.threads(), field.len(), |i| field[i])
+}
+
+/// The sum of g.
+pub fn sum_of_bounds(problem: &Problem) -> f64 {
+    vectors::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i], 0.0])[0]
+}
+
+/// The sum of two fields.
+pub fn sum_of_both(problem: &Problem, v: &[Vector], w: &[Vector]) -> Vector {
+    vectors::sum(problem.threads(), v.len(), |i| add(v[i], w[i]))
+}

@@ -1,0 +1,67 @@
+//! How the forces change with the creepages and the spin: derivatives of the final state, one linear solve each.
+//!
+//! While the elements that slip stay the same, tractions on slip move along their circles, `q = g n`, and the slip stays opposite to them:
+//!
+//! ```text
+//! (P A P + D) dq = -P dw,     D = |s|/g on slip,     dw = dq_r e_x, dq_r e_y, dq_r (-y, x)        dq_r: the length rolled
+//! ```
+//!
+//! with B for A in steady rolling. Sums of dq and of its moments are the derivatives.
+
+use super::fgmres::{self, Bordered};
+use super::forces::Forces;
+use super::problem::{Problem, State};
+use super::system::TangentSystem;
+use super::tangent::Tangent;
+use super::vectors::{self, Fields};
+use super::Vector;
+use crate::error::Result;
+
+/// The residual of the linear solves, relative.
+const TOLERANCE: f64 = 1e-5;
+/// Restarts at most: each takes the directions of one call.
+const MOST_CALLS: usize = 10;
+
+/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.
+pub fn solve(
+    problem: &mut Problem,
+    state: &State,
+    (tangent, fields): (&mut Tangent, &mut Fields),
+    dw: &mut [Vector],
+) -> Result<()> {
+    let slip = problem.rms_slip();
+    let rho = if slip > 0.0 { problem.rms_bound() / slip } else { 1.0 / problem.operators.self_influence };
+    tangent.predict(problem, state, rho.min(1.0 / problem.operators.self_influence));
+    let (n, threads) = (dw.len(), problem.threads().clone());
+    let mut system = TangentSystem::new(problem, tangent, Forces::NONE, fields)?;
+    // Unit tractions: the system is linear, and single precision has a small range.
+    let size = vectors::dot(&threads, dw, dw).sqrt();
+    let scale = system.problem.rms_bound() / size;
+    let mut r = fields.take(n)?;
+    vectors::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
+    let first = vectors::dot(&threads, &r, &r).sqrt();
+    let mut x = Bordered { field: fields.take(n)?, border: [0.0; 2] };
+    x.field.fill([0.0; 2]);
+    let mut product = fields.take(n)?;
+    for _ in 0..MOST_CALLS {
+        let left = vectors::dot(&threads, &r, &r).sqrt();
+        if !(left > TOLERANCE * first) {
+            break;
+        }
+        product.fill([0.0; 2]);
+        let mut gained = Bordered { field: fields.take(n)?, border: [0.0; 2] };
+        gained.field.fill([0.0; 2]);
+        let mut given = fields.take(n)?;
+        given.copy_from_slice(&r);
+        let given = Bordered { field: given, border: [0.0; 2] };
+        let found = fgmres::solve(&mut system, given, (TOLERANCE * first, 0.0), &threads, fields)?;
+        found.add_to(&mut gained, &mut product, &threads, fields);
+        vectors::add_all(&threads, &mut x.field, &[(1.0, &gained.field)]);
+        system.subtract(&gained, &product, &mut r);
+        fields.give(gained.field);
+    }
+    system.give(fields);
+    vectors::fill(&threads, dw, |i| x.field[i].map(|q| q / scale));
+    [r, product, x.field].into_iter().for_each(|field| fields.give(field));
+    Ok(())
+}

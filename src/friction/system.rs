@@ -1,0 +1,144 @@
+//! The linear system of a step of Newton's method: the tangents of the circles, bordered by the creepages where forces are given.
+//!
+//! ```text
+//! (P A P + D) z + sum_k dc_k P e_k = r
+//!                            sum z = f        for each direction k whose force is given
+//! ```
+//!
+//! preconditioned by `y = M r;  dc = S^-1 (sum y - f);  z = y - Y dc` with `Y_k = M P e_k` and `S_jk = sum (Y_k)_j`.
+
+use super::fgmres::{Bordered, Direction, System};
+use super::forces::{sum_of, Forces};
+use super::problem::{add, plus, Problem};
+use super::tangent::Tangent;
+use super::vectors::{self, Fields};
+use super::Vector;
+use crate::error::Result;
+
+/// Eigenvalues of the border below this part of the largest are none.
+const SINGULAR: f64 = 1e-8;
+
+/// The system, at the state that the tangent predicts.
+pub struct TangentSystem<'a> {
+    pub problem: &'a mut Problem,
+    tangent: &'a Tangent,
+    forces: Forces,
+    /// Y, and the inverse of S.
+    border: [Vec<Vector>; 2],
+    inverse: [Vector; 2],
+    scratch: Vec<Vector>,
+}
+
+impl<'a> TangentSystem<'a> {
+    /// With Y and S.
+    pub fn new(
+        problem: &'a mut Problem,
+        tangent: &'a Tangent,
+        forces: Forces,
+        fields: &mut Fields,
+    ) -> Result<TangentSystem<'a>> {
+        let n = problem.bound.len();
+        let (border, inverse, scratch) = ([Vec::new(), Vec::new()], [[0.0; 2]; 2], fields.take(n)?);
+        let mut system = TangentSystem { problem, tangent, forces, border, inverse, scratch };
+        let mut matrix = [[0.0; 2]; 2];
+        for (k, e) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+            if !forces.given[k] {
+                continue;
+            }
+            let mut unit = fields.take(n)?;
+            vectors::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, e));
+            let mut column = fields.take(n)?;
+            system.precondition_field(&unit, &mut column);
+            fields.give(unit);
+            let sum = forces.only_given(sum_of(system.problem, &column));
+            (matrix[0][k], matrix[1][k]) = (sum[0], sum[1]);
+            system.border[k] = column;
+        }
+        system.inverse = pseudo_inverse(matrix);
+        Ok(system)
+    }
+
+    /// Gives its fields back.
+    pub fn give(self, fields: &mut Fields) {
+        fields.give(self.scratch);
+        self.border.into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
+    }
+
+    /// `z = M r`, 0 outside C.
+    pub fn precondition_field(&mut self, r: &[Vector], z: &mut [Vector]) {
+        // r is of the order of the slip here: the unit only keeps single precision in its range.
+        let unit = self.problem.rms_bound();
+        self.tangent.precondition(self.problem, r, unit, &mut self.scratch, z);
+    }
+
+    fn precondition(&mut self, r: &Bordered, fields: &mut Fields) -> Result<Bordered> {
+        let mut z = fields.take(r.field.len())?;
+        self.precondition_field(&r.field, &mut z);
+        if !self.forces.any() {
+            return Ok(Bordered { field: z, border: [0.0; 2] });
+        }
+        let sum = sum_of(self.problem, &z);
+        let rest = self.forces.only_given([sum[0] - r.border[0], sum[1] - r.border[1]]);
+        let [upper, lower] = self.inverse;
+        let c = [upper[0] * rest[0] + upper[1] * rest[1], lower[0] * rest[0] + lower[1] * rest[1]];
+        let terms: Vec<(f64, &[Vector])> =
+            c.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
+        vectors::add_all(self.problem.threads(), &mut z, &terms);
+        Ok(Bordered { field: z, border: c })
+    }
+
+    /// `H` of a vector, whose field was multiplied by A.
+    fn apply(&self, z: &Bordered, product: &[Vector], fields: &mut Fields) -> Result<Bordered> {
+        let tangent = self.tangent;
+        let mut h = fields.take(product.len())?;
+        vectors::fill(self.problem.threads(), &mut h, |i| {
+            let pushed = tangent.project_inside(i, add(product[i], z.border));
+            plus(pushed, tangent.curvature[i], z.field[i])
+        });
+        let border = if self.forces.any() { self.forces.only_given(sum_of(self.problem, &z.field)) } else { [0.0; 2] };
+        Ok(Bordered { field: h, border })
+    }
+
+    /// `r -= H z` of a field, whose product with A is given.
+    pub fn subtract(&self, z: &Bordered, product: &[Vector], r: &mut [Vector]) {
+        let tangent = self.tangent;
+        vectors::map(self.problem.threads(), r, |i, r| {
+            let left = plus(r, -1.0, tangent.project_inside(i, product[i]));
+            plus(left, -tangent.curvature[i], z.field[i])
+        });
+    }
+
+    /// A times a field, to the precision of directions.
+    pub fn multiply(&mut self, field: &[Vector], product: &mut [Vector]) {
+        let unit = self.problem.rms_bound();
+        self.problem.operators.multiply_fast(field, unit, product);
+    }
+}
+
+impl System for TangentSystem<'_> {
+    fn direction(&mut self, v: &Bordered, fields: &mut Fields) -> Result<(Direction, Bordered)> {
+        let z = self.precondition(v, fields)?;
+        let mut product = fields.take(z.field.len())?;
+        self.multiply(&z.field, &mut product);
+        let h = self.apply(&z, &product, fields)?;
+        Ok((Direction { z, product }, h))
+    }
+}
+
+/// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors: where all slips one way, or one force is given, it is singular.
+fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
+    let off = 0.5 * (b + c);
+    let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+    let radius = half.hypot(off);
+    let angle = 0.5 * off.atan2(half);
+    let largest = mean.abs() + radius;
+    let mut inverse = [[0.0; 2]; 2];
+    for (value, v) in [(mean + radius, [angle.cos(), angle.sin()]), (mean - radius, [-angle.sin(), angle.cos()])] {
+        if value.abs() > SINGULAR * largest {
+            for (i, row) in inverse.iter_mut().enumerate() {
+                *row = [row[0] + v[i] * v[0] / value, row[1] + v[i] * v[1] / value];
+            }
+        }
+    }
+    inverse
+}

@@ -1,0 +1,125 @@
+//! Passes over fields of two components, by several threads: sums are taken in blocks of fixed length and order, so that they have the
+//! same bits for any number of threads.
+
+use super::problem::{dot as dot_one, plus};
+use super::Vector;
+use crate::error::Result;
+use crate::memory::unwritten;
+use crate::threads::Threads;
+
+/// Elements of a block: both fields of it stay in the nearest cache.
+const BLOCK: usize = 1024;
+
+/// Fields of one length that are used again.
+#[derive(Default)]
+pub struct Fields {
+    free: Vec<Vec<Vector>>,
+}
+
+impl Fields {
+    /// A field of n elements, which holds anything.
+    pub fn take(&mut self, n: usize) -> Result<Vec<Vector>> {
+        let mut field = self.free.pop().unwrap_or_default();
+        unwritten(&mut field, n, [f64::NAN; 2], "the iteration of Newton's method")?;
+        Ok(field)
+    }
+
+    /// Takes a field back.
+    pub fn give(&mut self, field: Vec<Vector>) {
+        self.free.push(field);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.free.iter().map(|field| field.capacity() * size_of::<Vector>()).sum()
+    }
+}
+
+/// `v . w`.
+pub fn dot(threads: &Threads, v: &[Vector], w: &[Vector]) -> f64 {
+    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((&mut sums[..], 1), (&mut vec![(); v.len().div_ceil(BLOCK)][..], 1), |k, sum, _| {
+        let block = k * BLOCK..((k + 1) * BLOCK).min(v.len());
+        sum[0] = dot_of_block(&v[block.clone()], &w[block]);
+    });
+    sums.iter().sum()
+}
+
+/// `to += a v`, and then `to . w`.
+pub fn add_and_dot(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector], w: &[Vector]) -> f64 {
+    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
+        let block = k * BLOCK..k * BLOCK + to.len();
+        to.iter_mut().zip(&v[block.clone()]).for_each(|(to, v)| *to = plus(*to, a, *v));
+        sum[0] = dot_of_block(to, &w[block]);
+    });
+    sums.iter().sum()
+}
+
+/// `to += a v`, and then `to . to`.
+pub fn add_and_square(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector]) -> f64 {
+    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
+        let block = k * BLOCK..k * BLOCK + to.len();
+        to.iter_mut().zip(&v[block]).for_each(|(to, v)| *to = plus(*to, a, *v));
+        sum[0] = dot_of_block(to, to);
+    });
+    sums.iter().sum()
+}
+
+/// `to += sum of a_j v_j`, in one pass.
+pub fn add_all(threads: &Threads, to: &mut [Vector], terms: &[(f64, &[Vector])]) {
+    let mut none = vec![(); to.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+        for (a, v) in terms {
+            let v = &v[k * BLOCK..k * BLOCK + to.len()];
+            to.iter_mut().zip(v).for_each(|(to, v)| *to = plus(*to, *a, *v));
+        }
+    });
+}
+
+/// `to *= a`.
+pub fn scale(threads: &Threads, to: &mut [Vector], a: f64) {
+    let mut none = vec![(); to.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |_, to, _| {
+        to.iter_mut().for_each(|to| *to = to.map(|value| a * value));
+    });
+}
+
+/// `to = f(i, to)` for each element i.
+pub fn map(threads: &Threads, to: &mut [Vector], f: impl Fn(usize, Vector) -> Vector + Sync + Send) {
+    let mut none = vec![(); to.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+        to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i, *to));
+    });
+}
+
+/// `to = f(i)` for each element i.
+pub fn fill(threads: &Threads, to: &mut [Vector], f: impl Fn(usize) -> Vector + Sync + Send) {
+    let mut none = vec![(); to.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+        to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
+    });
+}
+
+/// The sum of f over n elements.
+pub fn sum(threads: &Threads, n: usize, f: impl Fn(usize) -> Vector + Sync + Send) -> Vector {
+    let mut sums = vec![[0.0; 2]; n.div_ceil(BLOCK)];
+    threads.for_each_row_pair((&mut sums[..], 1), (&mut vec![(); n.div_ceil(BLOCK)][..], 1), |k, sum, _| {
+        sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; 2], |s, v| plus(s, 1.0, v));
+    });
+    sums.iter().fold([0.0; 2], |s, v| plus(s, 1.0, *v))
+}
+
+/// Four sums side by side: one would wait for each addition.
+fn dot_of_block(v: &[Vector], w: &[Vector]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (mut by_four, mut of_w) = (v.chunks_exact(4), w.chunks_exact(4));
+    for (v, w) in (&mut by_four).zip(&mut of_w) {
+        for k in 0..4 {
+            sums[k] += dot_one(v[k], w[k]);
+        }
+    }
+    let rest: f64 = by_four.remainder().iter().zip(of_w.remainder()).map(|(v, w)| dot_one(*v, *w)).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}

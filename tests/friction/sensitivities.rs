@@ -1,0 +1,80 @@
+//! Derivatives of the forces by creepages and spin, against differences; warm starts through a series.
+
+use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+
+use super::steady::rolling;
+use super::steady_scenes::{ellipse, NU};
+use super::support::{run, solver};
+
+#[test]
+fn derivatives_are_those_of_differences() {
+    let (grid, g) = ellipse(0.7, 40);
+    for motion in [Motion::SteadyRolling, Motion::TransientRolling, Motion::Shift] {
+        for (creepage, spin) in [([-0.02, 0.01], 0.0), ([-0.3, 0.2], 0.1), ([-0.8, 0.3], 0.6), ([0.0; 2], 2.0)] {
+            let scale = if motion == Motion::TransientRolling { 5.0 } else { 1.0 };
+            let at = |change: [f64; 3]| {
+                let friction = Friction {
+                    motion,
+                    ..rolling(
+                        [creepage[0] * scale + change[0], creepage[1] * scale + change[1]],
+                        spin * scale + change[2],
+                    )
+                };
+                let (report, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-10);
+                [report.force[0], report.force[1], report.moment]
+            };
+            let friction = Friction {
+                motion,
+                sensitivities: true,
+                ..rolling([creepage[0] * scale, creepage[1] * scale], spin * scale)
+            };
+            let (report, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-8);
+            let found = report.sensitivities.unwrap();
+            let largest = found.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+            // So small a change that hardly an element begins to slip.
+            let step = 1e-5;
+            for by in 0..3 {
+                let mut change = [0.0; 3];
+                change[by] = step;
+                let (up, down) = (at(change), at(change.map(|c| -c)));
+                for k in 0..3 {
+                    let difference = (up[k] - down[k]) / (2.0 * step);
+                    // An element that changes sides: some 1e-3 of the forces of its kind.
+                    assert!(
+                        (found[k][by] - difference).abs() <= 3e-3 * largest,
+                        "{motion:?} {creepage:?} {spin}: {k} by {by}: {} {difference} of {largest}",
+                        found[k][by]
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_series_goes_on_from_the_last_solution() {
+    let (grid, g) = ellipse(1.0, 64);
+    let carried = g.iter().sum::<f64>() * grid.element_area();
+    for forces in [false, true] {
+        let (mut warm, mut products, mut cold) = (solver(&grid, NU), 0.0, 0.0);
+        for k in 0..12 {
+            let part = 0.3 + 0.005 * f64::from(k);
+            let prescribed = match forces {
+                true => [Prescribed::Force(part * carried), Prescribed::Force(0.1 * carried)],
+                false => [Prescribed::Creepage(-part), Prescribed::Creepage(0.1)],
+            };
+            let friction = Friction { prescribed, ..rolling([0.0; 2], 0.2) };
+            let previous = if k == 0 { Previous::None } else { Previous::Kept };
+            let (a, _) = run(&mut warm, &g, &Friction { previous, ..friction }, 1e-6);
+            let (b, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
+            (products, cold) = (products + a.products, cold + b.products);
+            for i in 0..2 {
+                // Errors of the force at this residual (docs/friction.md), twice.
+                assert!((a.force[i] - b.force[i]).abs() <= 1e-6 * carried, "{k}: {:?} {:?}", a.force, b.force);
+                assert!((a.creepage[i] - b.creepage[i]).abs() <= 1e-5, "{k}: {:?} {:?}", a.creepage, b.creepage);
+            }
+        }
+        // The start is nearer than what coarse grids give, and they cost nothing.
+        assert!(products < 0.9 * cold, "{products} {cold}");
+    }
+}
