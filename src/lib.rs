@@ -19,7 +19,7 @@
 //! ```
 //! use contact_normal::grid::Grid;
 //! use contact_normal::scene::{Bodies, Load, Scene};
-//! use contact_normal::solver::{solve, Options, Stop};
+//! use contact_normal::solver::{solve, Options, Outcome};
 //!
 //! // A ball of radius 500 mm on a plane, both of steel (mm, N), pressed by 1000 N.
 //! let grid = Grid::new(32, 32, 0.25, 0.25)?;
@@ -30,8 +30,8 @@
 //!     })
 //!     .collect();
 //! let scene = Scene::new(grid, &h, Bodies::same(82000.0, 0.28), Load::Force(1000.0));
-//! let (solver, stop, report) = solve(&scene, &Options::default())?;
-//! assert_eq!(stop, Stop::Converged);
+//! let (solver, outcome, report) = solve(&scene, &Options::default())?;
+//! assert_eq!(outcome, Outcome::Converged);
 //! assert!((report.measures.force - 1000.0).abs() < 1e-6);
 //! assert!(solver.state().p.iter().all(|p| *p >= 0.0));
 //! # Ok::<(), contact_normal::error::Error>(())

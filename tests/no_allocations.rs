@@ -10,7 +10,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
 use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Solver, Stop};
+use contact_normal::solver::{ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Outcome, Solver};
 
 struct Counting;
 
@@ -90,7 +90,7 @@ fn third_pass(m: usize, shifts: &[f64], table: Option<&Table>, options: &Options
     let mut pass = || {
         for scene in &scenes {
             let (stop, report) = solver.solve(scene, options, guess, None).expect("a solve");
-            assert_eq!(stop, Stop::Converged, "{options:?}");
+            assert_eq!(stop, Outcome::Converged, "{options:?}");
             assert!(report.count.cycles > 0 && !solver.ledger().is_empty(), "something was solved");
         }
     };
@@ -157,7 +157,7 @@ fn a_window_that_moves_allocates_nothing_and_one_of_another_size_does() {
         let mut pass = |load: Load| {
             for scene in &scenes {
                 let scene = Scene { load, ..scene.clone() };
-                assert_eq!(solver.solve(&scene, &options, None, None).expect("a solve").0, Stop::Converged);
+                assert_eq!(solver.solve(&scene, &options, None, None).expect("a solve").0, Outcome::Converged);
             }
         };
         pass(Load::Approach(0.05));

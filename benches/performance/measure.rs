@@ -7,7 +7,7 @@ use std::time::Instant;
 use contact_normal::grid::Grid;
 use contact_normal::operator::{Operator, Workspace};
 use contact_normal::scene::Scene;
-use contact_normal::solver::{solve, Options, Report, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Report};
 use contact_normal::threads::Threads;
 
 /// How long one row of a table may take, and how often at least and at most things are measured for it.
@@ -95,7 +95,7 @@ impl Product {
 }
 
 /// One cold call, set-up and the release of memory included.
-pub fn cold(scene: &Scene<'_>, options: &Options) -> (Stop, Report) {
+pub fn cold(scene: &Scene<'_>, options: &Options) -> (Outcome, Report) {
     let (solver, stop, report) = solve(black_box(scene), options).expect("a solvable scene");
     black_box(solver.state().p.first());
     (stop, report)

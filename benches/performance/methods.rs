@@ -1,6 +1,6 @@
 //! All methods over sizes and threads.
 
-use contact_normal::solver::{Method, Options, Stop};
+use contact_normal::solver::{Method, Options, Outcome};
 
 use crate::case::{ellipse, rough, wheel_rail};
 use crate::measure::{cold, in_turns, median, shown};
@@ -26,7 +26,7 @@ pub fn methods(sizes: &[usize]) {
             let one = Options { method, max_cycles: 3000, ..Options::default() };
             let two = Options { threads: 2, ..one };
             let (stop, report) = cold(&scene, &one);
-            if stop != Stop::Converged {
+            if stop != Outcome::Converged {
                 print!(" {stop:?} |");
                 continue;
             }

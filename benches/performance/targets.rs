@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use contact_normal::scene::{Load, Scene};
-use contact_normal::solver::{InitialGuess, Method, Options, Problem, Solver, Stop};
+use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Problem, Solver};
 
 use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
 use crate::measure::{cold, in_turns, median, seconds, shown, size, Product};
@@ -46,7 +46,7 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     let (scene, options) = (case.scene(), options(threads));
     let mut product = Product::new(&scene, threads);
     let (stop, report) = cold(&scene, &options);
-    assert_eq!(stop, Stop::Converged, "{}", case.name);
+    assert_eq!(stop, Outcome::Converged, "{}", case.name);
     let call = &mut || _ = cold(&scene, &options);
     let times = in_turns(&mut [call, &mut || product.run()]);
     let (call, product) = (median(&times[0]), median(&times[1]));
@@ -83,7 +83,7 @@ pub fn time_steps(threads: usize) {
         let at = |step: i32| case.scene_with(Load::Approach(approach * 1.01f64.powi(step)));
         let solve = |solver: &mut Solver, step: i32| {
             let (stop, _) = solver.solve(&at(step), &next, None, None).expect("a solvable scene");
-            assert_eq!(stop, Stop::Converged, "{}", case.name);
+            assert_eq!(stop, Outcome::Converged, "{}", case.name);
         };
         let mut stepping = Solver::new(&at(0), &next).expect("a solver");
         let mut step = 0;
@@ -218,7 +218,7 @@ pub fn batch() {
     let mut solvers = [1, 2].map(|workers| Solver::new(&case.scene(), &options(workers)).expect("a solver"));
     let solve = |solver: &mut Solver, workers: usize| {
         let stops = solver.solve_batch(&problems, &options(workers), |_, outcome, _| outcome.expect("a solve").0);
-        assert!(stops.expect("a batch").iter().all(|&stop| stop == Stop::Converged));
+        assert!(stops.expect("a batch").iter().all(|&stop| stop == Outcome::Converged));
     };
     let [one, two] = &mut solvers;
     let times = in_turns(&mut [&mut || solve(one, 1), &mut || solve(two, 2)]);
@@ -307,7 +307,7 @@ pub fn solve_once(name: &str, m: usize) {
     std::fs::write("/proc/self/clear_refs", "5").expect("the peak can be reset (Linux)");
     let before = status_of_memory("VmRSS:");
     let (stop, _) = cold(&case.scene(), &options(1));
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     println!("{before} {}", status_of_memory("VmHWM:"));
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_normal::grid::Grid;
 use contact_normal::solver::{
-    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Price, Quantity, Report, Stop, SurfaceCallback,
+    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Outcome, Price, Quantity, Report, SurfaceCallback,
 };
 
 use super::random::Random;
@@ -101,7 +101,7 @@ fn solved(surface: &Surface, m: usize, by_force: bool, options: &Options) -> Rep
     let grid = surface.grid(m);
     let h = surface.distance(&grid);
     let (_, stop, report) = solve(&surface.scene(grid, &h, by_force), options).expect("a solvable scene");
-    assert_eq!(stop, Stop::Converged, "{} {m}", surface.family);
+    assert_eq!(stop, Outcome::Converged, "{} {m}", surface.family);
     report
 }
 
@@ -125,7 +125,7 @@ pub struct Search {
     pub family: &'static str,
     pub by_force: bool,
     pub target: f64,
-    pub stop: Stop,
+    pub stop: Outcome,
     /// True error over the target.
     pub miss: f64,
     /// Columns and rows of contact.

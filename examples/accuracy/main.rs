@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_normal::solver::Stop;
+use contact_normal::solver::Outcome;
 
 #[path = "../../benches/performance/case.rs"]
 #[allow(dead_code)]
@@ -67,7 +67,7 @@ fn estimates(set: &str, surfaces: judge::Surfaces, seeds: u64) {
 
 fn searches(set: &str, surfaces: judge::Surfaces, seeds: u64) {
     let all = judge::searches(surfaces, 0..seeds);
-    let ok: Vec<_> = all.iter().filter(|search| search.stop == Stop::Converged).collect();
+    let ok: Vec<_> = all.iter().filter(|search| search.stop == Outcome::Converged).collect();
     let (beyond, worst) = (ok.iter().filter(|s| s.miss > 1.0).count(), ok.iter().map(|s| s.miss).fold(0.0, f64::max));
     let mut ratios: Vec<f64> = ok.iter().filter_map(|s| Some(s.elements as f64 / s.cheapest? as f64)).collect();
     ratios.sort_by(f64::total_cmp);
@@ -89,7 +89,7 @@ fn searches(set: &str, surfaces: judge::Surfaces, seeds: u64) {
         println!("beyond: {family}, by force: {by_force}, {target:e}: {miss:.2}");
     }
     let mut stops: BTreeMap<(&str, String), usize> = BTreeMap::new();
-    for search in all.iter().filter(|search| search.stop != Stop::Converged) {
+    for search in all.iter().filter(|search| search.stop != Outcome::Converged) {
         let why = search.reason.split(" is in the way").next().unwrap_or_default();
         *stops.entry((search.family, format!("{:?}: {why}", search.stop))).or_default() += 1;
     }

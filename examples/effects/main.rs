@@ -8,7 +8,7 @@ use std::time::Instant;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, RowTables};
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
-use contact_normal::solver::{solve, Options, Report, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Report};
 
 const ROWS: [&str; 10] = [
     "plain",
@@ -87,7 +87,7 @@ impl Arrays {
 fn call(scene: &Scene<'_>) -> (f64, Report) {
     let began = Instant::now();
     let (solver, stop, report) = solve(scene, &Options::default()).expect("a solvable scene");
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     drop(solver);
     (began.elapsed().as_secs_f64(), report)
 }

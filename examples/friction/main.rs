@@ -13,10 +13,10 @@ mod steady;
 mod wheel_on_rail;
 
 use contact_normal::error::Error;
-use contact_normal::friction::{Compliance, End, Report, Request, Solver, Tangential};
+use contact_normal::friction::{Compliance, Report, Request, Solver, Tangential};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 
 fn main() -> Result<(), Error> {
@@ -55,7 +55,7 @@ fn wheel(grids: &[usize]) -> Result<(), Error> {
             found.products,
             found.seconds,
             fine.setup_seconds + fine.solve_seconds,
-            if stop == Stop::Converged { "" } else { "FAILED" }
+            if stop == Outcome::Converged { "" } else { "FAILED" }
         );
     }
     Ok(())
@@ -68,7 +68,7 @@ pub fn tangential(
     g: &[f64],
     friction: &Friction<'_>,
     tolerance: f64,
-) -> Result<(End, Report, Solver), Error> {
+) -> Result<(Outcome, Report, Solver), Error> {
     let compliance = Compliance { shear: 1.0, poisson: nu, unlike: 0.0 };
     let mut solver = Solver::new(grid, Tangential::new(grid.dx, grid.dy, compliance), true, &Threads::One);
     let request = Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false };
@@ -110,7 +110,7 @@ fn rough_surfaces(sizes: &[usize]) -> Result<(), Error> {
             let found = report.friction.unwrap_or_default();
             let carried = 0.3 * report.measures.force;
             let part = found.force[0].hypot(found.force[1]) / carried;
-            let failed = if stop == Stop::Converged { "" } else { "FAILED" };
+            let failed = if stop == Outcome::Converged { "" } else { "FAILED" };
             print!(" {part:.3} {:5.1} {:.3} {failed}", found.products, found.seconds);
         }
         println!();
@@ -130,10 +130,10 @@ fn random(count: u64) -> Result<(), Error> {
                 failures += 1;
                 continue;
             };
-            if end != End::Converged {
+            if end != Outcome::Converged {
                 println!("seed {seed}: {end:?} {:?}", report.certificate);
             }
-            failures += u64::from(end != End::Converged);
+            failures += u64::from(end != Outcome::Converged);
             products.push(report.products);
         }
         products.sort_by(f64::total_cmp);

@@ -1,9 +1,8 @@
 //! Steady rolling: a wheel on a rail, and ellipses of Hertz, with creepages and with forces.
 
 use contact_normal::error::Error;
-use contact_normal::friction::End;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 use super::{scenes, steady, tangential, wheel_on_rail};
 
@@ -45,7 +44,7 @@ fn wheel(grids: &[usize]) -> Result<(), Error> {
                 found.products,
                 seconds[0],
                 seconds[1],
-                if stop == Stop::Converged { "" } else { "FAILED" }
+                if stop == Outcome::Converged { "" } else { "FAILED" }
             );
         }
     }
@@ -81,7 +80,7 @@ fn ellipses(sizes: &[usize]) -> Result<(), Error> {
                 let known = [loose[n], tight[n]].map(f64::from);
                 above += usize::from(products[1] > 1.1 * known[1]);
                 all[usize::from(k >= steady::FIRST_OF_FORCES)].push(products[1]);
-                let failed = if (coarse.0, fine.0) == (End::Converged, End::Converged) { "" } else { "FAILED" };
+                let failed = if (coarse.0, fine.0) == (Outcome::Converged, Outcome::Converged) { "" } else { "FAILED" };
                 line += &format!(" {:4.1}/{:4.1} ({}/{}){failed}", products[0], products[1], known[0], known[1]);
             }
             println!("{line}");
@@ -102,7 +101,7 @@ fn random(count: u64) -> Result<(), Error> {
         for seed in 0..count {
             let case = scenes::Ellipse::random_rolling(seed, 64, forces);
             match tangential(case.grid, case.nu, &case.bound, &case.friction, 1e-6) {
-                Ok((End::Converged, report, _)) => products.push(report.products),
+                Ok((Outcome::Converged, report, _)) => products.push(report.products),
                 other => {
                     failures += 1;
                     println!("seed {seed}: {:?} {:?}", other.map(|(end, report, _)| (end, report)), case.friction);

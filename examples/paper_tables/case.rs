@@ -3,7 +3,7 @@
 use contact_normal::grid::Grid;
 use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Report, Solver};
 
 /// Curvatures in 1/mm, approach in mm.
 pub const CURVATURE: (f64, f64) = (0.0016681, 0.0030671);
@@ -41,7 +41,7 @@ pub fn linear_system(
     smoother: SmootherKind,
     relaxation: f64,
     most: usize,
-) -> (Stop, Report, f64) {
+) -> (Outcome, Report, f64) {
     let h = undeformed_distance(m);
     let scene = scene(m, &h);
     let options = Options {
@@ -60,7 +60,7 @@ pub fn linear_system(
 }
 
 /// Tables 2 and 3: the whole problem by one of the methods.
-pub fn whole_problem(m: usize, method: Method, pre_sweeps: usize, post_sweeps: usize) -> (Stop, Report) {
+pub fn whole_problem(m: usize, method: Method, pre_sweeps: usize, post_sweeps: usize) -> (Outcome, Report) {
     let h = undeformed_distance(m);
     let options = Options {
         method,

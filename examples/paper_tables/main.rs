@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use case::{linear_system, whole_problem, APPROACH};
 use contact_normal::methods::multigrid::transfer;
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
-use contact_normal::solver::{solve, Method, Options, Report, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome, Report};
 
 /// V(n1, n2) of the columns of tables 2 and 3.
 const CYCLES: [(usize, usize); 3] = [(1, 1), (1, 0), (0, 1)];
@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Count, or a dash when the method did not converge.
-fn count(stop: Stop, report: &Report) -> String {
-    if stop == Stop::Converged {
+fn count(stop: Outcome, report: &Report) -> String {
+    if stop == Outcome::Converged {
         report.count.cycles.to_string()
     } else {
         "-".into()
@@ -64,7 +64,7 @@ fn table_1() {
         {
             let (stop, report, factor) = linear_system(m, Method::Multigrid, kind, omega, 100);
             // A dash: not within 100 cycles; with a factor all the same if the residual still falls.
-            let factor = if stop == Stop::Stagnated { "diverges".into() } else { format!("({factor:.4})") };
+            let factor = if stop == Outcome::Stagnated { "diverges".into() } else { format!("({factor:.4})") };
             print!(" {:>width$}", format!("{} {factor}", count(stop, &report)));
         }
         println!();

@@ -4,7 +4,7 @@
 //! approach and by force, with limits of parts of the largest pressure; then the mean, the largest, and how many are above 3.
 
 use contact_normal::scene::{Load, PressureLimit, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 #[path = "../../benches/performance/case.rs"]
 #[allow(dead_code)]
@@ -37,7 +37,7 @@ fn main() {
 fn row(case: &case::Case, load: Load, largest: f64, factors: &mut Vec<f64>) {
     let plain = case.scene_with(load);
     let work = |scene: &Scene<'_>| match solve(scene, &Options::default()) {
-        Ok((_, Stop::Converged, report)) => Some(report.count.work_units),
+        Ok((_, Outcome::Converged, report)) => Some(report.count.work_units),
         Ok((_, stop, _)) => panic!("{}: {stop:?}", case.name),
         Err(_) => None,
     };

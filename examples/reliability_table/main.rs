@@ -8,7 +8,7 @@ mod families;
 
 use contact_normal::error::Error;
 use contact_normal::scene::Load;
-use contact_normal::solver::{Method, Options, Stop};
+use contact_normal::solver::{Method, Options, Outcome};
 use families::certificate::{recompute, run, Found};
 use families::{all, Case};
 
@@ -51,7 +51,7 @@ fn is_solved(case: &Case, outcome: &Result<Found, Error>) -> bool {
     outcome.as_ref().is_ok_and(|found| {
         let measures = recompute(case, found);
         let worst = measures.residual.max(measures.violation).max(measures.complementarity);
-        found.stop == Stop::Converged && worst <= Options::default().tolerance + measures.round_off
+        found.stop == Outcome::Converged && worst <= Options::default().tolerance + measures.round_off
     })
 }
 
@@ -65,10 +65,10 @@ fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
     let numbers = format!("{:.0e}, {:.1}", recompute(case, found).residual, found.report.count.work_units);
     match found.stop {
         _ if is_solved(case, outcome) => numbers,
-        Stop::Converged => format!("**WRONG** {numbers}"),
-        Stop::IterationLimit => format!("**ITERATION_LIMIT** {numbers}"),
-        Stop::Cancelled => format!("**CANCELLED** {numbers}"),
-        Stop::Stagnated => format!("**STAGNATED** {numbers}"),
+        Outcome::Converged => format!("**WRONG** {numbers}"),
+        Outcome::IterationLimit => format!("**ITERATION_LIMIT** {numbers}"),
+        Outcome::Cancelled => format!("**CANCELLED** {numbers}"),
+        Outcome::Stagnated => format!("**STAGNATED** {numbers}"),
     }
 }
 

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::Scene;
-use contact_normal::solver::{ActiveSet, Guess, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{ActiveSet, Guess, Method, Options, Outcome, Report, Solver};
 
 const CYCLES: [(usize, usize); 3] = [(1, 1), (1, 0), (0, 1)];
 const SMOOTHERS: [SmootherKind; 2] = [SmootherKind::GaussSeidel, SmootherKind::Fft];
@@ -23,7 +23,7 @@ const SMOOTHERS: [SmootherKind; 2] = [SmootherKind::GaussSeidel, SmootherKind::F
 struct Run {
     options: Options,
     seconds: Vec<f64>,
-    result: Option<(Stop, Report)>,
+    result: Option<(Outcome, Report)>,
 }
 
 fn main() {
@@ -89,6 +89,6 @@ fn cell(run: &mut Run) -> String {
     run.seconds.sort_by(f64::total_cmp);
     let median = run.seconds[run.seconds.len() / 2];
     let Some((stop, report)) = &run.result else { return String::new() };
-    let cycles = if *stop == Stop::Converged { report.count.cycles.to_string() } else { format!("{stop:?}") };
+    let cycles = if *stop == Outcome::Converged { report.count.cycles.to_string() } else { format!("{stop:?}") };
     format!("{cycles} / {} / {:.1} / {median:.3}", report.count.matrix_products, report.count.work_units)
 }

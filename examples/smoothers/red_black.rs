@@ -4,7 +4,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::operator::Operator;
-use contact_normal::solver::{Method, Stop};
+use contact_normal::solver::{Method, Outcome};
 use contact_normal::threads::Threads;
 
 use super::case::linear_system;
@@ -26,7 +26,7 @@ pub fn study() {
         for omega in OMEGAS {
             let [lexicographic, red_black] = ORDERS.map(|kind| {
                 let (stop, report, factor) = linear_system(m, Method::Multigrid, kind, omega, 200);
-                let cycles = if stop == Stop::Converged { report.count.cycles.to_string() } else { "-".into() };
+                let cycles = if stop == Outcome::Converged { report.count.cycles.to_string() } else { "-".into() };
                 format!("{cycles} ({factor:.3})")
             });
             println!("{m:>6} {omega:>8} {lexicographic:>16} {red_black:>16}");

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{InitialGuess, Options, Solver, Stop};
+use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 const M: usize = 48;
 /// Steps of a lap, after which the wheel is where it was.
@@ -40,7 +40,7 @@ fn lap(grid: &Grid, solver: &mut Solver, options: &Options, h: &mut [f64]) -> Re
         let scene = Scene::new(*grid, h, Bodies::same(82_000.0, 0.28), load);
         let (stop, report) = solver.solve(&scene, options, None, None).map_err(|e| e.to_string())?;
         let certificate = report.measures.certificate;
-        if stop != Stop::Converged || !(certificate.residual <= TOLERANCE && certificate.min_pressure >= 0.0) {
+        if stop != Outcome::Converged || !(certificate.residual <= TOLERANCE && certificate.min_pressure >= 0.0) {
             return Err(format!("step {k}: {stop:?}, {certificate:?}"));
         }
         lap.approaches += report.measures.approach;

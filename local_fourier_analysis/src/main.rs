@@ -13,7 +13,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::methods::multigrid::CycleShape;
 use contact_normal::methods::multigrid::SmootherKind::{self, Fft, GaussSeidel, Jacobi, RedBlack};
-use contact_normal::solver::{Method, Stop};
+use contact_normal::solver::{Method, Outcome};
 use local_fourier_analysis::{measured, Analysis};
 
 /// Sizes of the paper's problem, m x m elements.
@@ -120,7 +120,7 @@ fn relaxation() -> Vec<[f64; 6]> {
             let (by_two, by_three) = (two.convergence_factor(&shape), three.convergence_factor(&shape));
             let measured = if m <= 256 { area.measure(shape) } else { f64::NAN };
             let (stop, report, mean) = case::linear_system(m, Method::Multigrid, GaussSeidel, omega, 100);
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             let asymptotic = if measured.is_nan() { "-".into() } else { text(measured) };
             let cycles = report.count.cycles;
             println!("{m:>5} {omega:>5} {by_two:>7.3} {by_three:>7.3} {asymptotic:>7} {cycles:>4} ({mean:.4})");

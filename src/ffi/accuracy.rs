@@ -9,7 +9,7 @@ use super::options::{self, contact_normal_options};
 use super::outputs::Outputs;
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
-use super::solve::{watcher, Outcome};
+use super::solve::{watcher, Conclusion};
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned};
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
                 solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
             }
         }
-        Outcome { status: outcome.stop.into(), message: outcome.reason }.conclude()
+        Conclusion { status: outcome.stop.into(), message: outcome.reason }.conclude()
     })
 }
 

@@ -8,7 +8,7 @@ use super::options::{self, contact_normal_options};
 use super::outputs::{Buffers, Outputs};
 use super::report::{contact_normal_fields, contact_normal_report};
 use super::scene::{contact_normal_scene, Named};
-use super::solve::{run, Outcome};
+use super::solve::{run, Conclusion};
 use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
@@ -158,14 +158,15 @@ impl Batch {
     }
 
     /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.
-    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Options) -> Outcome {
-        let mut solved = || -> Result<Outcome, Refusal> {
+    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Options) -> Conclusion {
+        let mut solved = || -> Result<Conclusion, Refusal> {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             run(worker, &scene, options, None, outputs, &mut Buffers::default())
         };
-        let outcome = solved().unwrap_or_else(|refusal| Outcome { status: refusal.status, message: refusal.message });
+        let outcome =
+            solved().unwrap_or_else(|refusal| Conclusion { status: refusal.status, message: refusal.message });
         if !self.statuses.is_null() {
             // SAFETY: not null: room for `count` values.
             unsafe { self.statuses.add(i).write(outcome.status) };
@@ -179,11 +180,11 @@ const LINES: usize = 1000;
 
 /// The problems that are not OK: those that were refused before those that stopped early, then by number.
 #[derive(Default)]
-pub(super) struct NotOk(Vec<(usize, Outcome)>);
+pub(super) struct NotOk(Vec<(usize, Conclusion)>);
 
 impl NotOk {
-    pub fn note(&mut self, problem: usize, outcome: Outcome) {
-        let rank = |(problem, outcome): &(usize, Outcome)| (outcome.status > CONTACT_NORMAL_OK, *problem);
+    pub fn note(&mut self, problem: usize, outcome: Conclusion) {
+        let rank = |(problem, outcome): &(usize, Conclusion)| (outcome.status > CONTACT_NORMAL_OK, *problem);
         if outcome.status != CONTACT_NORMAL_OK {
             let noted = (problem, outcome);
             self.0.insert(self.0.partition_point(|other| rank(other) < rank(&noted)), noted);
@@ -192,9 +193,9 @@ impl NotOk {
     }
 
     /// What the call returns: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
-    pub fn outcome(self, each: &str) -> Outcome {
+    pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let lines: Vec<String> = self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
-        Outcome { status, message: lines.join("\n") }
+        Conclusion { status, message: lines.join("\n") }
     }
 }

@@ -10,13 +10,13 @@ use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{explain, watcher, Outcome, Request};
+use super::solve::{explain, watcher, Conclusion, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
 use crate::friction::{Report, Solution};
 use crate::memory::collected;
 use crate::progress::ProgressCallback;
-use crate::solver::{solve_friction_batch, Ended, Entry, Stop};
+use crate::solver::{solve_friction_batch, Ended, Entry, Outcome};
 
 /// Where the results of n entries are written; NULL (the default of each): not wanted.
 #[repr(C)]
@@ -117,11 +117,11 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
         let (stop, normal) = solve_friction_batch(&read, pressure, &table, &options.options, progress, found)?;
         outputs.write_report(&normal, &[])?;
         let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
-        if entries.status != CONTACT_NORMAL_OK || stop == Stop::Converged {
+        if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
             return entries.conclude();
         }
         let message = format!("the normal problem: {}", explain(stop, &normal, options.options.method, None));
-        Outcome { status: stop.into(), message }.conclude()
+        Conclusion { status: stop.into(), message }.conclude()
     })
 }
 
@@ -154,12 +154,12 @@ impl contact_normal_friction_results {
     }
 
     /// Writes how entry i ended, and what was found of it.
-    unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Outcome {
+    unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Conclusion {
         let outcome = match &ended {
-            Ok((stop, report)) => Outcome { status: (*stop).into(), message: said(*stop, report) },
+            Ok((stop, report)) => Conclusion { status: (*stop).into(), message: said(*stop, report) },
             Err(error) => {
                 let refusal = Refusal::from(error.clone());
-                Outcome { status: refusal.status, message: refusal.message }
+                Conclusion { status: refusal.status, message: refusal.message }
             }
         };
         // SAFETY (all): by the caller: NULL or room for all entries.
@@ -199,12 +199,12 @@ unsafe fn put<T>(to: *mut T, i: usize, value: T) {
 }
 
 /// Why an entry is not OK.
-fn said(stop: Stop, found: &Report) -> String {
+fn said(stop: Outcome, found: &Report) -> String {
     let why = match stop {
-        Stop::Converged => return String::new(),
-        Stop::Cancelled => return "the progress callback cancelled".into(),
-        Stop::IterationLimit => "max_cycles was reached",
-        Stop::Stagnated => "no further progress",
+        Outcome::Converged => return String::new(),
+        Outcome::Cancelled => return "the progress callback cancelled".into(),
+        Outcome::IterationLimit => "max_cycles was reached",
+        Outcome::Stagnated => "no further progress",
     };
     format!("{why}; the residual is {:e}", found.certificate.residual)
 }

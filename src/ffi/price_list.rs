@@ -5,7 +5,7 @@ use super::arguments::{count, required, Regions};
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::scene::{contact_normal_scene, Named};
-use super::solve::Outcome;
+use super::solve::Conclusion;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, Versioned};
 use crate::solver::{cost_of_accuracy, Obstacle, Price, Quantity, SurfaceCallback};
@@ -152,6 +152,6 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
             // SAFETY: the caller has n rows.
             unsafe { rows.add(i).write(price.into()) };
         }
-        Outcome { status: stop.into(), message: "the surface callback cancelled".into() }.conclude()
+        Conclusion { status: stop.into(), message: "the surface callback cancelled".into() }.conclude()
     })
 }

@@ -10,7 +10,7 @@ use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
 use crate::contact::State;
 use crate::scene::Scene;
-use crate::solver::{Method, Options, Progress, ProgressCallback, Report, Solver, Stop};
+use crate::solver::{Method, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -66,12 +66,12 @@ impl Request<'_> {
 }
 
 /// How a solve ended, and its message; none after OK.
-pub(super) struct Outcome {
+pub(super) struct Conclusion {
     pub status: contact_normal_status,
     pub message: String,
 }
 
-impl Outcome {
+impl Conclusion {
     /// The end of an export: the message becomes that of this thread.
     pub fn conclude(self) -> Result<contact_normal_status, Refusal> {
         if self.status < CONTACT_NORMAL_OK {
@@ -116,33 +116,33 @@ pub(super) fn run(
     progress: Option<ProgressCallback<'_>>,
     outputs: &Outputs,
     buffers: &mut Buffers,
-) -> Result<Outcome, Refusal> {
+) -> Result<Conclusion, Refusal> {
     let n = scene.grid.len();
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, buffers)?, progress)?;
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;
-    let message = if stop == Stop::Converged {
+    let message = if stop == Outcome::Converged {
         String::new()
     } else {
         explain(stop, &report, options.method, Some(solver.state()))
     };
-    Ok(Outcome { status: stop.into(), message })
+    Ok(Conclusion { status: stop.into(), message })
 }
 
-pub(super) fn explain(stop: Stop, report: &Report, method: Method, state: Option<&State>) -> String {
+pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
     let why = match stop {
-        Stop::Converged => "solved",
-        Stop::IterationLimit => "max_cycles was reached",
-        Stop::Cancelled => "the progress callback cancelled",
-        Stop::Stagnated => "no further progress",
+        Outcome::Converged => "solved",
+        Outcome::IterationLimit => "max_cycles was reached",
+        Outcome::Cancelled => "the progress callback cancelled",
+        Outcome::Stagnated => "no further progress",
     };
     let mut message = format!("{why} after {cycles} cycles; the residual is {residual:e}");
     message += tangential.as_deref().unwrap_or_default();
-    if stop == Stop::Stagnated {
+    if stop == Outcome::Stagnated {
         let (largest, round_off) = state.map_or((0.0, 0.0), round_off);
         // What the products and the distances lose together is some multiples of it.
         if residual <= 100.0 * round_off {

@@ -6,7 +6,7 @@ use std::ffi::{CStr, CString};
 use libc::c_char;
 
 use crate::error::Error;
-use crate::solver::Stop;
+use crate::solver::Outcome;
 
 /// What a call returns: 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
 pub type contact_normal_status = i32;
@@ -80,13 +80,13 @@ impl From<Error> for Refusal {
     }
 }
 
-impl From<Stop> for i32 {
-    fn from(stop: Stop) -> contact_normal_status {
+impl From<Outcome> for i32 {
+    fn from(stop: Outcome) -> contact_normal_status {
         match stop {
-            Stop::Converged => CONTACT_NORMAL_OK,
-            Stop::IterationLimit => CONTACT_NORMAL_ITERATION_LIMIT,
-            Stop::Cancelled => CONTACT_NORMAL_CANCELLED,
-            Stop::Stagnated => CONTACT_NORMAL_STAGNATED,
+            Outcome::Converged => CONTACT_NORMAL_OK,
+            Outcome::IterationLimit => CONTACT_NORMAL_ITERATION_LIMIT,
+            Outcome::Cancelled => CONTACT_NORMAL_CANCELLED,
+            Outcome::Stagnated => CONTACT_NORMAL_STAGNATED,
         }
     }
 }

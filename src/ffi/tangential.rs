@@ -6,9 +6,9 @@ use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::{contact_normal_fields, contact_normal_report};
 use super::scene::contact_normal_scene;
-use super::solve::{explain, watcher, Outcome, Request};
+use super::solve::{explain, watcher, Conclusion, Request};
 use super::status::contact_normal_status;
-use crate::solver::{solve_tangential, ProgressCallback, Stop};
+use crate::solver::{solve_tangential, Outcome, ProgressCallback};
 
 /// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
 /// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
@@ -33,8 +33,11 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
         outputs.write_friction(Some(&solution), scene.grid.len());
         outputs.write_report(&report, &[])?;
-        let message =
-            if stop == Stop::Converged { String::new() } else { explain(stop, &report, options.options.method, None) };
-        Outcome { status: stop.into(), message }.conclude()
+        let message = if stop == Outcome::Converged {
+            String::new()
+        } else {
+            explain(stop, &report, options.options.method, None)
+        };
+        Conclusion { status: stop.into(), message }.conclude()
     })
 }

@@ -35,7 +35,6 @@ mod vectors;
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::Coupling;
-pub use shift::End;
 pub use solver::{Report, Request, Solution, Solver, EXTERIOR, SLIP, STICK};
 pub use toeplitz::{Toeplitz, Workspace};
 

@@ -14,11 +14,12 @@ use super::certificate::scale;
 use super::fgmres::{self, Bordered};
 use super::forces::{sum_of_both, sum_of_bounds, Forces};
 use super::problem::{add, plus, square, Problem, State};
-use super::shift::{End, Goal};
+use super::shift::Goal;
 use super::system::TangentSystem;
 use super::tangent::{Side, Tangent};
 use super::vectors::{self, Fields};
 use crate::error::{Error, Result};
+use crate::progress::Outcome;
 
 /// The inner residual relative to that of the step.
 const INNER: f64 = 0.15;
@@ -53,7 +54,7 @@ pub fn solve(
     (tangent, fields): (&mut Tangent, &mut Fields),
     forces: Forces,
     goal: Goal<'_>,
-) -> Result<End> {
+) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
@@ -68,7 +69,7 @@ pub fn solve(
         let worst = sight.residual.max(sight.excess).max(missing);
         if worst < tolerance {
             if state.is_exact || !certified {
-                return Ok(End::Converged);
+                return Ok(Outcome::Converged);
             }
             problem.refresh(state);
             continue;
@@ -87,16 +88,16 @@ pub fn solve(
             (factor, inner, since, cuts) = (factor * CUT, f64::max(inner * CUT, LEAST_INNER), 0, cuts + 1);
         }
         if cuts > MOST_CUTS || !worst.is_finite() {
-            return Ok(End::Stalled);
+            return Ok(Outcome::Stagnated);
         }
         if iterations >= limit {
-            return Ok(End::Limit);
+            return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(ENOUGH));
         step(problem, state, tangent, (forces, enough), fields)?;
         if !watch(worst) {
-            return Ok(End::Cancelled);
+            return Ok(Outcome::Cancelled);
         }
     }
 }

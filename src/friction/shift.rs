@@ -17,6 +17,7 @@ use super::vectors::Fields;
 use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
+use crate::progress::Outcome;
 
 /// Iterations without a new least residual after which another method takes over.
 const PATIENCE: u32 = 10;
@@ -41,19 +42,6 @@ pub struct Memory {
     z: Vec<Vector>,
     /// Of Newton's method.
     pub fields: Fields,
-}
-
-/// Why an iteration ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The certificate holds.
-    Converged,
-    /// There was no progress.
-    Stalled,
-    /// Iterations were used up.
-    Limit,
-    /// The caller cancelled.
-    Cancelled,
 }
 
 /// What an iteration has to reach.
@@ -94,7 +82,7 @@ struct Steps {
 }
 
 /// Iterates from what the state holds.
-pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> End {
+pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Outcome {
     let Goal { tolerance, limit, watch, .. } = goal;
     let a0 = problem.operators.self_influence;
     let cap = 0.3 / (a0 * (problem.count().max(1) as f64).sqrt());
@@ -107,7 +95,7 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
         let sight = memory.tangent.predict(problem, state, rho);
         if sight.residual < tolerance {
             if state.is_exact {
-                return End::Converged;
+                return Outcome::Converged;
             }
             problem.refresh(state);
             memory.debt.fill([0.0; 2]);
@@ -118,15 +106,15 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
             (least, since) = (sight.residual, 0);
         }
         if since > PATIENCE || !sight.residual.is_finite() {
-            return End::Stalled;
+            return Outcome::Stagnated;
         }
         if iterations >= limit {
-            return End::Limit;
+            return Outcome::IterationLimit;
         }
         iterations += 1;
         step(problem, state, memory, &mut steps);
         if !watch(sight.residual) {
-            return End::Cancelled;
+            return Outcome::Cancelled;
         }
     }
 }

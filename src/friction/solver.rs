@@ -7,13 +7,14 @@ use super::march::Rolling;
 use super::newton;
 use super::problem::{dot, square, Operators, Problem, Scale};
 use super::sensitivity;
-use super::shift::{self, End, Goal, Memory};
+use super::shift::{self, Goal, Memory};
 use super::toeplitz::{Toeplitz, Workspace};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::memory::zeros;
+use crate::progress::Outcome;
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -181,7 +182,11 @@ impl Solver {
     }
 
     /// Solves. `watch(grid, residual)` is told of each iteration, and says whether to go on.
-    pub fn solve(&mut self, request: &Request<'_>, watch: &mut dyn FnMut(&Grid, f64) -> bool) -> Result<(End, Report)> {
+    pub fn solve(
+        &mut self,
+        request: &Request<'_>,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+    ) -> Result<(Outcome, Report)> {
         let began = std::time::Instant::now();
         let Request { pressure, friction, .. } = *request;
         let bound = |i: usize| friction.coefficient.at(i) * pressure[i].max(0.0);
@@ -209,7 +214,7 @@ impl Solver {
             .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
         let window =
             Window::around(&self.grid, |i| pressure[i] > 0.0 || rolling.is_none() && before(kept, i) != [0.0; 2]);
-        let mut end = End::Converged;
+        let mut end = Outcome::Converged;
         let mut report = Report::default();
         if let Some(window) = window {
             self.set_up(window, rolling)?;
@@ -332,7 +337,7 @@ impl Solver {
         (nested, mostly_slips): (bool, bool),
         (tolerance, limit): (f64, u64),
         work: &mut Work<'_>,
-    ) -> Result<End> {
+    ) -> Result<Outcome> {
         let finest = self.levels[0].problem.grid.len() as f64;
         if nested {
             for l in 1..self.levels.len() {
@@ -346,13 +351,13 @@ impl Solver {
                 let forces = forces.times(1.0 / area);
                 if l + 1 == self.levels_count() && forces.any() {
                     let end = self.approach(l, forces, part, work)?;
-                    if end == End::Cancelled {
+                    if end == Outcome::Cancelled {
                         return Ok(end);
                     }
                 }
                 let level = &mut self.levels[l];
                 let end = one(level, forces, forces.any(), (tolerance.max(COARSE), COARSE_LIMIT), part, work)?;
-                if end == End::Cancelled {
+                if end == Outcome::Cancelled {
                     return Ok(end);
                 }
                 let (fine, coarse) = self.levels.split_at_mut(l);
@@ -370,7 +375,7 @@ impl Solver {
     }
 
     /// Forces that are given are brought on in parts, on the coarsest grid.
-    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<End> {
+    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<Outcome> {
         let mut before = 1.0;
         for load in PARTS.into_iter().chain([1.0]) {
             let level = &mut self.levels[l];
@@ -380,12 +385,12 @@ impl Solver {
             before = load;
             if load < 1.0 {
                 let end = one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
-                if end == End::Cancelled {
+                if end == Outcome::Cancelled {
                     return Ok(end);
                 }
             }
         }
-        Ok(End::Converged)
+        Ok(Outcome::Converged)
     }
 
     /// See [`Report::sensitivities`].
@@ -471,14 +476,14 @@ fn one(
     (tolerance, limit): (f64, u64),
     part: f64,
     work: &mut Work<'_>,
-) -> Result<End> {
+) -> Result<Outcome> {
     let Level { problem, state, memory } = level;
     let grid = problem.grid;
-    let mut end = End::Stalled;
+    let mut end = Outcome::Stagnated;
     // Nothing moves, and nothing did.
     if problem.rms_slip() == 0.0 && !forces.any() {
         state.unload();
-        return Ok(End::Converged);
+        return Ok(Outcome::Converged);
     }
     let only_newton = forces.any() || problem.operators.rolling.is_some();
     for newton in [newton_first || only_newton, true, only_newton] {
@@ -490,12 +495,12 @@ fn one(
         } else {
             shift::solve(problem, state, memory, goal)
         };
-        if end != End::Stalled {
+        if end != Outcome::Stagnated {
             break;
         }
         log::info!("tangential problem: no further progress, Newton's method goes on");
     }
-    if end != End::Converged && !state.is_exact && part == 1.0 {
+    if end != Outcome::Converged && !state.is_exact && part == 1.0 {
         problem.refresh(state);
     }
     work.products += part * problem.take_products() as f64;

@@ -57,7 +57,7 @@ impl Goal {
 
 /// Why a loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum Outcome {
     /// The certificate holds.
     Converged,
     /// `max_cycles` was reached.

@@ -5,7 +5,7 @@ mod ledger;
 
 use std::time::Instant;
 
-pub use criterion::{Criterion, Goal, Stop, UPDATE_RESIDUAL};
+pub use criterion::{Criterion, Goal, Outcome, UPDATE_RESIDUAL};
 pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
 
 use crate::contact::{Outline, State, Survey};
@@ -152,12 +152,12 @@ impl<'a> Monitor<'a> {
         self.cancelled
     }
 
-    /// The stop of a loop that ran out of cycles or was cancelled.
-    pub fn interrupted(&self) -> Stop {
+    /// The outcome of a loop that ran out of cycles or was cancelled.
+    pub fn interrupted(&self) -> Outcome {
         if self.cancelled {
-            Stop::Cancelled
+            Outcome::Cancelled
         } else {
-            Stop::IterationLimit
+            Outcome::IterationLimit
         }
     }
 

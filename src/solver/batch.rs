@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::{Guess, InitialGuess, Options, Report, Solver, Stop};
+use super::{Guess, InitialGuess, Options, Outcome, Report, Solver};
 use crate::contact::State;
 use crate::error::{invalid, Result};
 use crate::scene::Scene;
@@ -31,7 +31,7 @@ impl Solver {
         &mut self,
         problems: &[Problem<'_>],
         options: &Options,
-        found: impl Fn(usize, Result<(Stop, Report)>, &State) -> R + Sync + Send,
+        found: impl Fn(usize, Result<(Outcome, Report)>, &State) -> R + Sync + Send,
     ) -> Result<Vec<R>> {
         self.check_batch(options)?;
         let results: Vec<Mutex<Option<R>>> = problems.iter().map(|_| Mutex::new(None)).collect();

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::tangential::{check_pressures, measures, Tangent, Turn};
-use super::{Options, Progress, ProgressCallback, Report, Solver, Stop};
+use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects::{Effect, Previous};
 use crate::error::{invalid, Result};
 use crate::friction::{self, Solution};
@@ -50,16 +50,16 @@ impl Entry {
     }
 }
 
-/// How the entry of a table ended, and what was found; `Stop::Cancelled`: it was not solved.
-pub type Ended = Result<(Stop, friction::Report)>;
+/// How the entry of a table ended, and what was found; `Outcome::Cancelled`: it was not solved.
+pub type Ended = Result<(Outcome, friction::Report)>;
 
 /// Solves the tangential problem of a scene for each of the entries, with pressures `[my][mx]` that are given, or with those of the
 /// scene's normal problem, which is solved once. `found(i, ended, solution)` is called for each entry, on the thread that solved it and
-/// in no particular order, with a solution where there is one. Returns the stop and the report of the normal problem.
+/// in no particular order, with a solution where there is one. Returns the outcome and the report of the normal problem.
 ///
 /// An entry that is refused does not keep the others from being solved. Of unlike bodies the pressures displace the surfaces sideways,
 /// but tractions do not change the pressures. `progress` is told on the calling thread: of the normal problem, and then of entries that
-/// are done, which count as cycles. When it cancels, entries that are not done end as `Stop::Cancelled`.
+/// are done, which count as cycles. When it cancels, entries that are not done end as `Outcome::Cancelled`.
 pub fn solve_friction_batch(
     scene: &Scene<'_>,
     pressure: Option<&[f64]>,
@@ -67,7 +67,7 @@ pub fn solve_friction_batch(
     options: &Options,
     mut progress: Option<ProgressCallback<'_>>,
     found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
-) -> Result<(Stop, Report)> {
+) -> Result<(Outcome, Report)> {
     scene.check()?;
     options.check()?;
     let Some(friction) = &scene.friction else {
@@ -82,7 +82,7 @@ pub fn solve_friction_batch(
         Some(pressure) => {
             check_pressures(&scene.grid, pressure)?;
             let measures = measures(&scene.grid, pressure);
-            (Stop::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, pressure)
+            (Outcome::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, pressure)
         }
         None => {
             let normal = Scene { friction: None, ..scene.clone() };
@@ -98,14 +98,14 @@ pub fn solve_friction_batch(
     let contact = pressure.iter().filter(|p| **p > 0.0).count() as f64 * scene.grid.element_area();
     let radius = (contact / std::f64::consts::PI).sqrt();
     let table = Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() };
-    if stop == Stop::Cancelled {
+    if stop == Outcome::Cancelled {
         table.done.cancelled.store(true, Ordering::Relaxed);
     }
     let began = std::time::Instant::now();
     table.solve(&threads, progress, &found)?;
     report.solve_seconds += began.elapsed().as_secs_f64();
     let cancelled = table.done.cancelled.into_inner();
-    Ok((if cancelled { Stop::Cancelled } else { stop }, report))
+    Ok((if cancelled { Outcome::Cancelled } else { stop }, report))
 }
 
 /// What all workers read, and where they say what is done.
@@ -177,9 +177,9 @@ impl Table<'_> {
             let mut warm = false;
             for i in first..(first + RUN).min(self.entries.len()) {
                 let ended = self.entry(i, tangent, warm && self.is_near(i));
-                warm = matches!(ended, Ok((Stop::Converged, _)));
+                warm = matches!(ended, Ok((Outcome::Converged, _)));
                 let residual = ended.as_ref().map_or(-1.0, |(_, report)| report.certificate.residual);
-                let has_solution = matches!(ended, Ok((stop, _)) if stop != Stop::Cancelled);
+                let has_solution = matches!(ended, Ok((stop, _)) if stop != Outcome::Cancelled);
                 if let Ok((_, report)) = &ended {
                     *self.done.products.lock().unwrap_or_else(PoisonError::into_inner) += report.products;
                 }
@@ -218,7 +218,7 @@ impl Table<'_> {
     /// Solves entry i; `warm`: from the result of the one before.
     fn entry(&self, i: usize, tangent: &mut Tangent, warm: bool) -> Ended {
         if self.is_cancelled() {
-            return Ok((Stop::Cancelled, friction::Report::default()));
+            return Ok((Outcome::Cancelled, friction::Report::default()));
         }
         let friction = self.entries[i].friction(self.friction);
         friction.check(&self.scene.grid)?;
@@ -227,7 +227,7 @@ impl Table<'_> {
         let mut spent = 0.0;
         if warm {
             if let Ok((stop, report)) = self.step(tangent, &turn, true, &mut watch) {
-                if stop == Stop::Converged || stop == Stop::Cancelled {
+                if stop == Outcome::Converged || stop == Outcome::Cancelled {
                     return Ok((stop, report));
                 }
                 spent = report.products;

@@ -17,14 +17,14 @@ use super::task::Task;
 use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Survey};
 use crate::error::{Error, Result};
 use crate::methods::{Change, Step};
-use crate::progress::Stop;
+use crate::progress::Outcome;
 
 /// Runs one method from what the state holds. Unless it converges, `best` knows the best iterate.
 pub fn iterate<S: AdmissibleSet>(
     method: &mut dyn Step<S>,
     task: &mut Task<'_, '_, S>,
     best: &mut Best,
-) -> Result<Stop> {
+) -> Result<Outcome> {
     let habits = method.habits();
     let (set, goal) = (task.set, task.goal);
     method.begin(task.state)?;
@@ -37,7 +37,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 2. p = 0 in E. 3. A step of the method on C.
         let change = step(method, task)?;
         if change.gives_up && task.state.u_is != Freshness::Exact {
-            return Ok(Stop::Stagnated);
+            return Ok(Outcome::Stagnated);
         }
 
         // (4.1), the certificate, (4.2)
@@ -62,7 +62,7 @@ pub fn iterate<S: AdmissibleSet>(
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
                 task.monitor.survey = Some(survey).filter(|_| entered == 0);
-                return Ok(Stop::Converged);
+                return Ok(Outcome::Converged);
             }
         }
         if task.state.u_is == Freshness::Exact {
@@ -73,7 +73,7 @@ pub fn iterate<S: AdmissibleSet>(
             (least, since) = (violation, 0);
         }
         if since > habits.patience || change.gives_up || habits.step_is_cycle && !violation.is_finite() {
-            return Ok(Stop::Stagnated);
+            return Ok(Outcome::Stagnated);
         }
     }
     Ok(task.monitor.interrupted())

@@ -14,7 +14,7 @@ use crate::methods::multigrid::CycleShape;
 use crate::methods::norm::Norm;
 use crate::methods::projected_cg::ProjectedCg;
 use crate::methods::{Start, Step};
-use crate::progress::{Stop, UPDATE_RESIDUAL};
+use crate::progress::{Outcome, UPDATE_RESIDUAL};
 
 /// A guess, or a stalled iterate, whose violation is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
@@ -62,15 +62,15 @@ impl Methods {
         from: Start,
         stages: &[Stage],
         error_ratio: f64,
-    ) -> Result<Stop> {
+    ) -> Result<Outcome> {
         self.best.forget();
         let has_direct = self.direct.is_some();
-        let (mut stop, mut first) = (Stop::Stagnated, true);
+        let (mut stop, mut first) = (Outcome::Stagnated, true);
         for &stage in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct) {
             let from_nothing = match std::mem::take(&mut first) {
                 true => match self.take_over(stage, task, from)? {
                     Some(from_nothing) => from_nothing,
-                    None => return Ok(Stop::Converged),
+                    None => return Ok(Outcome::Converged),
                 },
                 false => self.hand_over(stage, task),
             };
@@ -84,13 +84,13 @@ impl Methods {
                 }
             }
             stop = self.run(stage, task)?;
-            if stop != Stop::Stagnated {
+            if stop != Outcome::Stagnated {
                 break;
             }
         }
-        if stop != Stop::Converged {
+        if stop != Outcome::Converged {
             let indefinite =
-                stop == Stop::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state);
+                stop == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state);
             self.best.restore(task);
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
@@ -163,12 +163,12 @@ impl Methods {
         }
     }
 
-    fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Stop> {
+    fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
         let mut cycles = None;
         let method: &mut dyn Step<S> = match stage {
             Stage::Direct => match &mut self.direct {
                 Some(direct) => direct,
-                None => return Ok(Stop::Stagnated),
+                None => return Ok(Outcome::Stagnated),
             },
             Stage::ProjectedCg => &mut self.projected_cg,
             Stage::VCycles | Stage::FullMultigrid => {

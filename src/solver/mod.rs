@@ -23,13 +23,13 @@ use std::time::Instant;
 
 pub use crate::operator::Precision;
 pub use crate::progress::{
-    Counters, Criterion, DiscretisationError, LedgerRow, Measures, Progress, ProgressCallback, Stop,
+    Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
 pub use batch::Problem;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use refinement::{
-    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Outcome, Price, Quantity, SurfaceCallback,
+    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Quantity, Refinement, SurfaceCallback,
 };
 pub use report::{Halving, Limit, Report};
 pub use tangential::solve_tangential;
@@ -105,7 +105,7 @@ struct SetUp {
 }
 
 /// Solves one scene.
-pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Stop, Report)> {
+pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, Report)> {
     let mut solver = Solver::new(scene, options)?;
     let (stop, report) = solver.solve(scene, options, None, None)?;
     Ok((solver, stop, report))
@@ -157,7 +157,7 @@ impl Solver {
         options: &Options,
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Stop, Report)> {
+    ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, guess)?;
         let given_contact = guess.filter(|_| options.is_fixed());
@@ -189,7 +189,7 @@ impl Solver {
         options: &Options,
         guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, f64)> {
+    ) -> Result<(Outcome, f64)> {
         let n = self.state.p.len();
         if self.state.at_limit.is_empty() {
             self.state.at_limit = zeros(n, "elements at their limit")?;
@@ -211,7 +211,7 @@ impl Solver {
             let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
             !(0..n).any(|i| self.state.at_limit[i] && held(i))
         };
-        let converged = matches!(outcome, Ok((Stop::Converged, _)));
+        let converged = matches!(outcome, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
             monitor.ledger.rows.clear();
@@ -235,7 +235,7 @@ impl Solver {
         options: &Options,
         guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, f64)> {
+    ) -> Result<(Outcome, f64)> {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
@@ -250,11 +250,11 @@ impl Solver {
         let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
         let mut task = Task { problem, state, set, goal: options.goal(), monitor };
         let stop = if take_over::is_without_contact(task.state, S::FIXED) {
-            Stop::Converged
+            Outcome::Converged
         } else {
             methods.solve(&mut task, from, stages, options.error_ratio)?
         };
-        let stop = if task.monitor.is_cancelled() { Stop::Cancelled } else { stop };
+        let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
         *has_result = true;
         task.monitor.close_grid(task.state);
         Ok((stop, task.goal.tolerance))
@@ -267,7 +267,7 @@ impl Solver {
         options: &Options,
         guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, f64)> {
+    ) -> Result<(Outcome, f64)> {
         match scene.pressure_limit {
             _ if options.is_fixed() => self.run(scene, Fixed, options, guess, monitor),
             None => self.run(scene, NonNegative, options, guess, monitor),
@@ -281,9 +281,9 @@ impl Solver {
         &mut self,
         scene: &Scene<'_>,
         options: &Options,
-        stop: Stop,
+        stop: Outcome,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, Option<friction::Report>)> {
+    ) -> Result<(Outcome, Option<friction::Report>)> {
         let mut kept = self.friction.take();
         let Some(friction) = scene.friction.as_ref() else {
             if let Some(before) = &mut kept {
@@ -310,16 +310,16 @@ impl Solver {
         &mut self,
         tangent: &mut Tangent,
         turn: &Turn<'_>,
-        mut stop: Stop,
+        mut stop: Outcome,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, friction::Report)> {
+    ) -> Result<(Outcome, friction::Report)> {
         let (mut tangential_stop, mut found) = tangent.solve(turn, &self.state.p, false, monitor)?;
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
         for _ in 0..MOST_TURNS {
             let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
                 return Ok((worse(stop, tangential_stop), found));
             };
-            if change <= turn.options.tolerance || worse(stop, tangential_stop) != Stop::Converged {
+            if change <= turn.options.tolerance || worse(stop, tangential_stop) != Outcome::Converged {
                 return Ok((worse(stop, tangential_stop), found));
             }
             monitor.ledger.rows.pop();
@@ -331,7 +331,7 @@ impl Solver {
             (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
         }
         log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");
-        Ok((worse(Stop::Stagnated, tangential_stop), found))
+        Ok((worse(Outcome::Stagnated, tangential_stop), found))
     }
 
     /// Tractions, slip and stick area of the last result; none if its scene had no friction.
@@ -407,8 +407,8 @@ impl Solver {
 }
 
 /// What is to be said of two solves.
-fn worse(one: Stop, other: Stop) -> Stop {
-    if one == Stop::Converged {
+fn worse(one: Outcome, other: Outcome) -> Outcome {
+    if one == Outcome::Converged {
         other
     } else {
         one

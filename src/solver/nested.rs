@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::memory::blank;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
-use crate::progress::{Goal, Monitor, Stop};
+use crate::progress::{Goal, Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -113,7 +113,7 @@ impl FullMultigrid {
         } else {
             iterate(&mut Cycles { multigrid, level: l + 1, workspace }, &mut task, best)?
         };
-        if stop != Stop::Converged {
+        if stop != Outcome::Converged {
             best.restore(&mut task);
         }
         Ok(())

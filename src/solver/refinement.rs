@@ -10,7 +10,7 @@ pub use next_grid::Accuracy;
 pub use outlook::Quantity;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
-use super::{InitialGuess, Options, Progress, ProgressCallback, Report, Solver, Stop};
+use super::{InitialGuess, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
@@ -23,10 +23,10 @@ use outlook::Outlook;
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
 
 /// What asking for an accuracy led to.
-pub struct Outcome {
+pub struct Refinement {
     /// Converged: the target is met. IterationLimit: a limit is in the way of the next grid. Cancelled: by the surface or the
     /// progress callback. Stagnated: the target is below round-off, or no estimate is to be had.
-    pub stop: Stop,
+    pub stop: Outcome,
     /// Why, and the best that was reached, in words.
     pub reason: String,
     /// The solver of the grid that was used, with its result and ledger; `None` when cancelled before there was one.
@@ -47,7 +47,7 @@ struct Solved {
 }
 
 /// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
-type OnGrid = std::result::Result<Solved, (Stop, String, Option<Solved>)>;
+type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
 /// nothing, until the estimated relative errors are at most the targets on 32 elements across the contact in both directions. `surface`
@@ -61,7 +61,7 @@ pub fn solve_to_accuracy(
     accuracy: &Accuracy,
     mut surface: Option<SurfaceCallback<'_>>,
     mut progress: Option<ProgressCallback<'_>>,
-) -> Result<Outcome> {
+) -> Result<Refinement> {
     let began = Instant::now();
     accuracy.check()?;
     check(scene, options, surface.is_some())?;
@@ -74,11 +74,11 @@ pub fn solve_to_accuracy(
         let solved = match on_grid(scene, &options, doublings, &mut surface, &mut progress, &late) {
             Ok(Ok(solved)) => solved,
             Ok(Err((stop, why, unfinished))) => {
-                let counts = stop == Stop::IterationLimit || best.is_none();
+                let counts = stop == Outcome::IterationLimit || best.is_none();
                 best = better(best, unfinished.filter(|_| counts), accuracy);
                 break (stop, why);
             }
-            Err(Error::OutOfMemory(message)) if !is_first => break (Stop::IterationLimit, message),
+            Err(Error::OutOfMemory(message)) if !is_first => break (Outcome::IterationLimit, message),
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
@@ -92,12 +92,12 @@ pub fn solve_to_accuracy(
         }
         match accuracy.next(&past) {
             Next::Refine(more) => doublings += more as i32,
-            Next::Limit(why) => break (Stop::IterationLimit, why),
+            Next::Limit(why) => break (Outcome::IterationLimit, why),
         }
         log::info!("on {} x {}: {past}; refining", past.grid.mx, past.grid.my);
         before = Some(past);
     };
-    Ok(Outcome::of(best, stop, why, began.elapsed().as_secs_f64()))
+    Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
 /// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
@@ -114,20 +114,20 @@ fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy)
     }
 }
 
-impl Outcome {
-    fn of(best: Option<Solved>, stop: Stop, why: String, seconds: f64) -> Outcome {
+impl Refinement {
+    fn of(best: Option<Solved>, stop: Outcome, why: String, seconds: f64) -> Refinement {
         let Some(Solved { solver, report, outlook }) = best else {
             let reason = format!("{why}; nothing was solved");
-            return Outcome { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
+            return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
         // Without contact there is nothing to be off.
-        let without = report.measures.contact_count == 0 && stop == Stop::Converged;
+        let without = report.measures.contact_count == 0 && stop == Outcome::Converged;
         let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
         let grid = solver.problem.grid;
         let reason = format!("{why}; the best reached is {number} on {} x {} elements", grid.mx, grid.my);
         log::info!("{stop:?}: {reason}");
-        Outcome { stop, reason, solver: Some(solver), report, reached, seconds }
+        Refinement { stop, reason, solver: Some(solver), report, reached, seconds }
     }
 }
 
@@ -189,7 +189,7 @@ fn on_grid(
             // What the callback leaves out is refused.
             h.fill(f64::NAN);
             if surface(&grid, &mut h) {
-                return Ok(Err((Stop::Cancelled, on("the surface callback cancelled"), None)));
+                return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));
             }
             h
         }
@@ -213,10 +213,10 @@ fn on_grid(
     let outlook = Outlook::of(&solver, &report, scene.load);
     let solved = Solved { solver, report, outlook };
     Ok(match stop {
-        Stop::Converged => Ok(solved),
-        Stop::Cancelled if is_late => Err((Stop::IterationLimit, on("max_seconds was reached"), Some(solved))),
-        Stop::Cancelled => Err((stop, on("the progress callback cancelled"), Some(solved))),
-        Stop::IterationLimit => Err((stop, on("max_cycles was reached"), Some(solved))),
-        Stop::Stagnated => Err((stop, on("the solver made no further progress"), Some(solved))),
+        Outcome::Converged => Ok(solved),
+        Outcome::Cancelled if is_late => Err((Outcome::IterationLimit, on("max_seconds was reached"), Some(solved))),
+        Outcome::Cancelled => Err((stop, on("the progress callback cancelled"), Some(solved))),
+        Outcome::IterationLimit => Err((stop, on("max_cycles was reached"), Some(solved))),
+        Outcome::Stagnated => Err((stop, on("the solver made no further progress"), Some(solved))),
     })
 }

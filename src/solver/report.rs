@@ -3,7 +3,7 @@
 use super::Method;
 use crate::friction;
 use crate::grid::Grid;
-use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Stop};
+use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
 
 /// What limits the accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,7 +66,7 @@ impl Report {
     }
 
     /// Says in the log how a solve went.
-    pub(super) fn log(&self, method: Method, grid: &Grid, stop: Stop) {
+    pub(super) fn log(&self, method: Method, grid: &Grid, stop: Outcome) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
         let Counters { cycles, work_units, .. } = self.count;
         log::info!(

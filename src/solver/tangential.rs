@@ -1,10 +1,10 @@
 //! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
 
-use super::{Measures, Options, ProgressCallback, Stop};
+use super::{Measures, Options, Outcome, ProgressCallback};
 use crate::contact::State;
 use crate::effects::Previous;
 use crate::error::{invalid, Error, Result};
-use crate::friction::{Compliance, Coupling, End, Report, Request, Solution, Solver, Tangential, Vector};
+use crate::friction::{Compliance, Coupling, Report, Request, Solution, Solver, Tangential, Vector};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::operator::Precision;
@@ -89,7 +89,7 @@ impl Tangent {
         pressure: &[f64],
         again: bool,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Stop, Report)> {
+    ) -> Result<(Outcome, Report)> {
         let Tangent { solver, coupled } = self;
         if let Some(coupled) = coupled {
             coupled.displace(turn, pressure)?;
@@ -102,14 +102,7 @@ impl Tangent {
             sideways: coupled.as_ref().map(|coupled| &coupled.sideways[..]),
             again,
         };
-        let (end, report) = solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))?;
-        let stop = match end {
-            End::Converged => Stop::Converged,
-            End::Stalled => Stop::Stagnated,
-            End::Limit => Stop::IterationLimit,
-            End::Cancelled => Stop::Cancelled,
-        };
-        Ok((stop, report))
+        solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
     }
 
     /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,
@@ -145,7 +138,7 @@ pub fn solve_tangential(
     pressure: &[f64],
     options: &Options,
     progress: Option<ProgressCallback<'_>>,
-) -> Result<(Stop, Solution, super::Report)> {
+) -> Result<(Outcome, Solution, super::Report)> {
     scene.check()?;
     options.check()?;
     let Some(friction) = &scene.friction else {

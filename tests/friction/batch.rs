@@ -8,7 +8,7 @@ use contact_normal::friction::{Report, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{
-    solve, solve_friction_batch, solve_tangential, Ended, Entry, Options, Progress, ProgressCallback, Stop, RUN,
+    solve, solve_friction_batch, solve_tangential, Ended, Entry, Options, Outcome, Progress, ProgressCallback, RUN,
 };
 
 const M: usize = 24;
@@ -70,7 +70,7 @@ fn batch(
     entries: &[Entry],
     options: &Options,
     progress: Option<ProgressCallback<'_>>,
-) -> (Stop, Vec<Found>) {
+) -> (Outcome, Vec<Found>) {
     let found: Mutex<Vec<Option<Found>>> = Mutex::new(entries.iter().map(|_| None).collect());
     let (stop, _) = solve_friction_batch(scene, pressure, entries, options, progress, |i, ended, solution| {
         let tractions = solution.map(|solution| solution.traction.clone());
@@ -82,7 +82,7 @@ fn batch(
 
 fn report(ended: &Ended) -> Report {
     let (stop, report) = ended.as_ref().expect("an entry that is solved");
-    assert_eq!(*stop, Stop::Converged);
+    assert_eq!(*stop, Outcome::Converged);
     *report
 }
 
@@ -96,7 +96,7 @@ fn each_entry_is_what_a_solve_of_its_own_finds() {
         let scene = Scene { bodies, ..scene(&h, friction) };
         let entries = table(&friction);
         let (stop, found) = batch(&scene, Some(&p), &entries, &options(1), None);
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         for (entry, (ended, tractions)) in entries.iter().zip(&found) {
             let mut alone = friction;
             alone.spin = entry.spin;
@@ -108,7 +108,7 @@ fn each_entry_is_what_a_solve_of_its_own_finds() {
             }
             let one = Scene { friction: Some(alone), ..scene.clone() };
             let (stop, solution, single) = solve_tangential(&one, &p, &options(1), None).unwrap();
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             let (found, single) = (report(ended), single.friction.unwrap());
             assert!(found.certificate.residual <= 1e-6);
             // A residual of 1e-6 leaves errors of some 1e-7 in the forces and 1e-5 in the tractions of a shift (docs/friction.md).
@@ -227,18 +227,18 @@ fn progress_is_told_on_the_calling_thread_and_may_cancel() {
             progress.cycles >= cancel_at
         };
         let (stop, found) = batch(&scene, Some(&p), &entries, &options(threads), Some(&mut watch));
-        let cancelled = found.iter().filter(|(ended, _)| matches!(ended, Ok((Stop::Cancelled, _)))).count();
+        let cancelled = found.iter().filter(|(ended, _)| matches!(ended, Ok((Outcome::Cancelled, _)))).count();
         let done = entries.len() - cancelled;
         found.iter().for_each(|(ended, tractions)| {
             let (stop, _) = ended.as_ref().unwrap();
-            assert_eq!(tractions.is_some(), *stop == Stop::Converged);
+            assert_eq!(tractions.is_some(), *stop == Outcome::Converged);
         });
         if cancel_at == u64::MAX {
-            assert_eq!((stop, cancelled), (Stop::Converged, 0));
+            assert_eq!((stop, cancelled), (Outcome::Converged, 0));
             assert!(told >= 1, "{told}");
         } else {
             // Another worker may have come to the end of one entry more.
-            assert_eq!(stop, Stop::Cancelled);
+            assert_eq!(stop, Outcome::Cancelled);
             assert!(done as u64 >= cancel_at && done < entries.len(), "{done} {cancel_at}");
             assert!(threads > 1 || done as u64 == cancel_at, "{done} {cancel_at}");
         }

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 use super::scenes::Cattaneo;
 use super::support::{run, solver};
@@ -47,7 +47,7 @@ fn contacts_cattaneo_is_met() {
     let scene =
         Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(200.0, 0.42), Load::Force(force)) };
     let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     let found = report.friction.unwrap();
     // The digits printed.
     assert!((report.measures.approach - 1.998e-2).abs() <= 5e-6, "{}", report.measures.approach);

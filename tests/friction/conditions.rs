@@ -1,8 +1,9 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
-use contact_normal::friction::{End, Request};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Prescribed, Previous};
+use contact_normal::solver::Outcome;
 
 use super::scenes::Ellipse;
 use super::support::{residual, run, solver};
@@ -112,12 +113,12 @@ fn forces_that_friction_cannot_carry_are_refused() {
     }
     for part in [0.0, 1e-9, 0.5, 0.999] {
         let (end, report) = solve(&with(part)).unwrap();
-        assert_eq!(end, End::Converged, "{part}");
+        assert_eq!(end, Outcome::Converged, "{part}");
         assert!((report.force[0] - part * carried).abs() <= 1e-6 * carried);
     }
     // Against much spin it takes a large shift.
     let (end, report) = solve(&Friction { spin: 50.0, ..with(0.9) }).unwrap();
-    assert_eq!(end, End::Converged);
+    assert_eq!(end, Outcome::Converged);
     assert!((report.force[0] - 0.9 * carried).abs() <= 1e-6 * carried && report.creepage[0] < -50.0 * 0.5);
 }
 
@@ -160,7 +161,7 @@ fn a_callback_cancels_wherever_it_is_told() {
                 told < last
             })
             .unwrap();
-        assert_eq!((end, told), (End::Cancelled, last));
+        assert_eq!((end, told), (Outcome::Cancelled, last));
         // What is there is feasible.
         let solution = solver.solution().unwrap();
         assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g));

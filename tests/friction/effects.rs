@@ -6,7 +6,7 @@ use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{
     Bodies, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene,
 };
-use contact_normal::solver::{solve, Options, Solver, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Solver};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 
@@ -50,7 +50,7 @@ fn each_effect_changes_the_tractions_or_is_refused() {
             continue;
         }
         let (solver, stop, _) = solve(&scene, &Options::default()).unwrap();
-        assert_eq!(stop, Stop::Converged, "{name}");
+        assert_eq!(stop, Outcome::Converged, "{name}");
         let found = &solver.friction().unwrap().traction;
         let change = found.iter().zip(&alone).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
         // Of pressures of some 1000.
@@ -96,7 +96,7 @@ fn any_number_of_threads_finds_the_same_bits() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
         let found = |threads: usize| {
             let (solver, stop, _) = solve(&scene, &Options { threads, ..Options::default() }).unwrap();
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             solver.friction().unwrap().traction.clone()
         };
         let one = found(1);
@@ -128,7 +128,7 @@ fn the_precisions_agree() {
     let found = |precision| {
         let options = Options { precision, tolerance: 1e-9, ..Options::default() };
         let (solver, stop, report) = solve(&scene, &options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert!(report.friction.unwrap().certificate.residual <= 1e-9);
         solver.friction().unwrap().traction.clone()
     };

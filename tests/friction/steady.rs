@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use contact_normal::friction::{Report, Solution};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 use super::scenes::Ellipse;
 use super::steady_scenes::{ellipse, Rolling, KNOWN, NU, RATIOS, SIZES};
@@ -25,7 +25,7 @@ fn carter(m: usize) -> (Report, usize, f64) {
     let steel = Bodies::same(82000.0, 0.28);
     let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, steel, Load::Force(35780.0)) };
     let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     if m == 55 {
         assert!((report.measures.approach - 0.00649156).abs() <= 5e-9, "{}", report.measures.approach);
         assert!((report.measures.max_pressure - 113.8908).abs() <= 5e-5, "{}", report.measures.max_pressure);
@@ -187,7 +187,7 @@ fn unlike_cylinders_roll_as_contact_says() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(16201.9)) };
         let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
         let found = report.friction.unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         // The digits printed.
         assert!((found.creepage[0] - creepage).abs() <= 5e-8, "{mu} {part}: {:?}", found.creepage);
         assert_eq!((found.certificate.stick_count, report.measures.contact_count), (sticks, in_contact), "{mu} {part}");

@@ -1,8 +1,9 @@
 //! Steady rolling where it is hard: extreme creepages and forces, gaps, one row, many patches; cancelled anywhere.
 
-use contact_normal::friction::{End, Request};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+use contact_normal::solver::Outcome;
 
 use super::conditions::disc;
 use super::steady::rolling;
@@ -146,10 +147,10 @@ fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
             assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g), "{cancel}");
             let left = residual((&grid, NU), &g, &friction, &[], (&report, solution));
             assert!((left - report.certificate.residual).abs() <= 1e-9 * (1.0 + left), "{cancel}: {left} {report:?}");
-            if end == End::Converged {
+            if end == Outcome::Converged {
                 break;
             }
-            assert_eq!((end, calls), (End::Cancelled, cancel + 1));
+            assert_eq!((end, calls), (Outcome::Cancelled, cancel + 1));
         }
         assert!(calls > 10);
     }

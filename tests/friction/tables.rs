@@ -8,7 +8,7 @@ use contact_normal::friction::{Compliance, Solution, Tangential};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene, TangentialInfluence};
-use contact_normal::solver::{solve, Options, Solver, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Solver};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 /// Columns and rows of the tables beyond those of the grid.
@@ -53,7 +53,7 @@ fn solved<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>, tolerance
     let step = |friction: Friction<'a>| {
         let scene = Scene { friction: Some(Friction { influence: own, ..friction }), ..scene.clone() };
         let (stop, _) = solver.solve(&scene, &options, None, None).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         solver.friction().unwrap().clone()
     };
     steps().into_iter().map(step).collect()

@@ -6,7 +6,7 @@ use contact_normal::friction::{cross, dense, Compliance, Tangential};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel};
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Previous, Scene};
-use contact_normal::solver::{solve, Options, Solver, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Solver};
 
 /// The integrals of `x/r^2` and `y/r^2` over an element by the midpoint rule in squares that halve towards the singular point.
 fn by_quadrature(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
@@ -77,7 +77,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
         Friction { prescribed: [Prescribed::Creepage(-0.005), Prescribed::Creepage(0.0)], ..Friction::new(0.3) };
     let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, RIGID_ON_SOFT, Load::Approach(0.05)) };
     let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     let (state, solution) = (solver.state(), solver.friction().unwrap());
     let compliance = Compliance::of(&RIGID_ON_SOFT);
     // 1/G = 1/2, and K/G = (1 - 0)/4.
@@ -139,7 +139,7 @@ fn an_indentation_with_friction_is_similar_at_all_loads() {
         let previous = if stage == 1 { Previous::None } else { Previous::Kept };
         let friction = Friction { previous, ..Friction::new(0.3) };
         let (stop, report) = solver.solve(&scene(force, friction), &Options::default(), None, None).unwrap();
-        assert_eq!(stop, Stop::Converged, "{stage}");
+        assert_eq!(stop, Outcome::Converged, "{stage}");
         let found = report.friction.unwrap();
         assert!(found.certificate.residual <= 1e-6);
         assert!((found.force[0].hypot(found.force[1])) <= 1e-6 * force, "{:?}", found.force);

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};
-use contact_normal::solver::{solve, Options, Report, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Report};
 
 use super::wheel_on_rail::{rolling, rolling_with_forces, shift, surface};
 
@@ -11,7 +11,7 @@ fn solved(k: usize, tolerance: f64, friction: impl Fn(&Grid) -> Friction<'static
     let steel = Bodies::same(82000.0, 0.28);
     let scene = Scene { friction: Some(friction(&grid)), ..Scene::new(grid, &h, steel, Load::Approach(0.02084)) };
     let (_, stop, report) = solve(&scene, &Options { tolerance, ..Options::default() }).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     report
 }
 

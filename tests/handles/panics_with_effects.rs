@@ -7,7 +7,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, RowTables};
 use contact_normal::panics::BLOCKS;
 use contact_normal::scene::{Bodies, Layer, Load, Patches, Scene};
-use contact_normal::solver::{Options, Solver, Stop};
+use contact_normal::solver::{Options, Outcome, Solver};
 
 #[test]
 fn after_a_panic_the_next_solve_is_right_with_every_effect() {
@@ -37,7 +37,7 @@ fn after_a_panic_the_next_solve_is_right_with_every_effect() {
         let options = Options { threads: 1, ..Options::default() };
         let mut solver = Solver::new(&scene, &options).unwrap();
         let (stop, _) = solver.solve(&scene, &options, None, None).unwrap();
-        assert_eq!(stop, Stop::Converged, "{name}");
+        assert_eq!(stop, Outcome::Converged, "{name}");
         let expected = solver.state().p.clone();
         let mut panics = 0;
         for block in 0.. {
@@ -50,7 +50,7 @@ fn after_a_panic_the_next_solve_is_right_with_every_effect() {
             panics += 1;
             let next = catch_unwind(AssertUnwindSafe(|| solver.solve(&scene, &options, None, None)));
             let (stop, _) = next.unwrap_or_else(|_| panic!("{name}, block {block}: the next solve panics")).unwrap();
-            assert_eq!((stop, &solver.state().p), (Stop::Converged, &expected), "{name}, block {block}");
+            assert_eq!((stop, &solver.state().p), (Outcome::Converged, &expected), "{name}, block {block}");
         }
         assert!(panics > 4, "{name}: {panics} panics");
     }

@@ -3,7 +3,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Load, Scene};
-use contact_normal::solver::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Options, Quantity, Stop};
+use contact_normal::solver::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Options, Outcome, Quantity};
 
 use crate::judge::{self, estimates, prices, searches, QUANTITIES, TARGETS};
 use crate::random::Random;
@@ -43,8 +43,8 @@ fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     let (mut missed, mut ratios) = (0, Vec::new());
     for search in &all {
         let what = format!("{} by force: {}, {:e}: {}", search.family, search.by_force, search.target, search.reason);
-        if search.stop != Stop::Converged {
-            assert!(search.stop == Stop::IterationLimit && search.family.starts_with("flat punch"), "{what}");
+        if search.stop != Outcome::Converged {
+            assert!(search.stop == Outcome::IterationLimit && search.family.starts_with("flat punch"), "{what}");
             continue;
         }
         assert!(search.miss <= 1.5, "{what}: {} of the target", search.miss);
@@ -76,7 +76,7 @@ fn surface(name: &str) -> Surface {
     all.into_iter().find(|surface| surface.family == name).expect("the surface")
 }
 
-fn outcome_of(surface: &Surface, accuracy: &Accuracy) -> contact_normal::solver::Outcome {
+fn outcome_of(surface: &Surface, accuracy: &Accuracy) -> contact_normal::solver::Refinement {
     let scene = surface.scene(surface.grid(16), &[], false);
     let mut write = |grid: &Grid, h: &mut [f64]| {
         surface.write(grid, h);
@@ -91,7 +91,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
         let surface = surface(name);
         let asked = Accuracy { max_pressure_target: 3e-4, contact_area_target: 3e-3, ..Accuracy::new(1e-2) };
         let outcome = outcome_of(&surface, &asked);
-        assert_eq!(outcome.stop, Stop::Converged, "{name}: {}", outcome.reason);
+        assert_eq!(outcome.stop, Outcome::Converged, "{name}: {}", outcome.reason);
         let measures = outcome.report.measures;
         let off = |found: f64, exact: f64| (found / exact - 1.0).abs();
         let peak = surface.max_pressure.expect("a finite peak");
@@ -109,7 +109,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
         );
     }
     let cone = outcome_of(&surface("cone"), &Accuracy { max_pressure_target: 1e-2, ..Accuracy::new(1e-2) });
-    assert_eq!(cone.stop, Stop::Stagnated, "{}", cone.reason);
+    assert_eq!(cone.stop, Outcome::Stagnated, "{}", cone.reason);
     assert!(cone.reason.contains("estimate"), "{}", cone.reason);
 }
 
@@ -191,5 +191,5 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
     assert_eq!(grids(&from_array), grids(&from_callback));
     let mut cancels = |_: &Grid, _: &mut [f64]| true;
     let (stop, rows) = list(Some(&mut cancels)).expect("rows");
-    assert_eq!((stop, rows.len(), rows[0].grid), (Stop::Cancelled, TARGETS.len(), None));
+    assert_eq!((stop, rows.len(), rows[0].grid), (Outcome::Cancelled, TARGETS.len(), None));
 }

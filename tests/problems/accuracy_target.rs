@@ -6,7 +6,7 @@ use crate::paper as case;
 use contact_normal::analytic::{hertz, hertz_by_force, Hertz};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve_to_accuracy, Accuracy, Method, Options, Outcome, Stop};
+use contact_normal::solver::{solve_to_accuracy, Accuracy, Method, Options, Outcome, Refinement};
 
 /// True error over the target at most, where the target is met: the estimate may be too small by this (the effectivity that
 /// error estimates are judged by).
@@ -19,22 +19,22 @@ fn exact() -> Hertz {
 }
 
 /// The ellipse on 16 x 16 elements, and what is finer.
-fn solved(load: Load, accuracy: Accuracy, options: &Options) -> Outcome {
+fn solved(load: Load, accuracy: Accuracy, options: &Options) -> Refinement {
     let h = case::undeformed_distance(START);
     let scene = Scene { load, ..case::scene(START, &h) };
     solve_to_accuracy(&scene, options, &accuracy, None, None).expect("a solvable scene")
 }
 
-fn grid_of(outcome: &Outcome) -> Grid {
+fn grid_of(outcome: &Refinement) -> Grid {
     *outcome.solver.as_ref().expect("a result").grid()
 }
 
-fn by_approach(accuracy: Accuracy) -> Outcome {
+fn by_approach(accuracy: Accuracy) -> Refinement {
     solved(Load::Approach(case::APPROACH), accuracy, &Options::default())
 }
 
 /// A result that is solved, on 16 x 16 elements.
-fn assert_start_is_kept(outcome: &Outcome) {
+fn assert_start_is_kept(outcome: &Refinement) {
     assert_eq!(grid_of(outcome).mx, START, "{}", outcome.reason);
     // 16 x 16 elements have the force to some percent (tests/problems/hertz.rs); a wrong one would be off by more than a tenth.
     assert!((outcome.report.measures.force / exact().force - 1.0).abs() < 0.1);
@@ -49,7 +49,7 @@ fn the_true_error_meets_the_target() {
     for target in [1e-2, 1e-3, 1e-4] {
         for load in [Load::Approach(case::APPROACH), Load::Force(exact.force)] {
             let outcome = solved(load, Accuracy::new(target), &Options::default());
-            assert_eq!(outcome.stop, Stop::Converged, "{target:e}, {load:?}: {}", outcome.reason);
+            assert_eq!(outcome.stop, Outcome::Converged, "{target:e}, {load:?}: {}", outcome.reason);
             let measures = &outcome.report.measures;
             let error = match load {
                 Load::Approach(_) => (measures.force / exact.force - 1.0).abs(),
@@ -91,7 +91,7 @@ fn a_surface_callback_gives_what_a_refined_parabola_gives() {
     let scene = case::scene(START, &[]);
     let outcome =
         solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a solvable scene");
-    assert_eq!((outcome.stop, grid_of(&outcome)), (Stop::Converged, grid_of(&array)));
+    assert_eq!((outcome.stop, grid_of(&outcome)), (Outcome::Converged, grid_of(&array)));
     assert_eq!((asked.first(), asked.last()), (Some(&START), Some(&grid_of(&outcome).mx)));
     let (found, other) = (outcome.report.measures.force, array.report.measures.force);
     // Twice the tolerance 1e-6 of the residual.
@@ -108,12 +108,12 @@ fn limits_end_it_with_the_best_result() {
     ];
     for (accuracy, limit) in at_start {
         let outcome = by_approach(accuracy);
-        assert_eq!(outcome.stop, Stop::IterationLimit, "{}", outcome.reason);
+        assert_eq!(outcome.stop, Outcome::IterationLimit, "{}", outcome.reason);
         assert!(outcome.reason.contains(limit) && outcome.reason.contains("16 x 16"), "{}", outcome.reason);
         assert_start_is_kept(&outcome);
     }
     let outcome = by_approach(Accuracy { max_elements: 64 * 64, ..far });
-    assert_eq!((outcome.stop, grid_of(&outcome).mx), (Stop::IterationLimit, 64), "{}", outcome.reason);
+    assert_eq!((outcome.stop, grid_of(&outcome).mx), (Outcome::IterationLimit, 64), "{}", outcome.reason);
     assert!(outcome.reached.is_some_and(|reached| reached > 1e-6));
 }
 
@@ -127,18 +127,18 @@ fn callbacks_cancel_and_what_was_solved_is_kept() {
         grid.mx > START
     };
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, Some(&mut surface), None).expect("a solvable scene");
-    assert_eq!(outcome.stop, Stop::Cancelled);
+    assert_eq!(outcome.stop, Outcome::Cancelled);
     assert!(outcome.reason.contains("surface") && outcome.reason.contains("16 x 16"), "{}", outcome.reason);
     assert_start_is_kept(&outcome);
 
     let mut at_once = |_: &Grid, _: &mut [f64]| true;
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, Some(&mut at_once), None).expect("a solvable scene");
-    assert!(outcome.stop == Stop::Cancelled && outcome.solver.is_none() && outcome.reached.is_none());
+    assert!(outcome.stop == Outcome::Cancelled && outcome.solver.is_none() && outcome.reached.is_none());
 
     // 16 x 16 elements are a coarser grid of the next solve: what ends is a solve on more.
     let mut progress = |told: &contact_normal::solver::Progress| told.mx > START;
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, None, Some(&mut progress)).expect("a solvable scene");
-    assert_eq!(outcome.stop, Stop::Cancelled);
+    assert_eq!(outcome.stop, Outcome::Cancelled);
     assert!(outcome.reason.contains("progress"), "{}", outcome.reason);
     assert_start_is_kept(&outcome);
 }
@@ -146,7 +146,7 @@ fn callbacks_cancel_and_what_was_solved_is_kept() {
 #[test]
 fn a_target_below_round_off_says_the_best_reached() {
     let outcome = by_approach(Accuracy::new(1e-15));
-    assert_eq!(outcome.stop, Stop::Stagnated);
+    assert_eq!(outcome.stop, Outcome::Stagnated);
     let reached = outcome.reached.expect("an estimate");
     let said = ["round-off", "16 x 16", &format!("{reached:.2e}")].iter().all(|word| outcome.reason.contains(word));
     assert!(said, "{}", outcome.reason);
@@ -157,7 +157,7 @@ fn a_target_below_round_off_says_the_best_reached() {
 fn a_solve_that_does_not_converge_ends_it() {
     let options = Options { max_cycles: 1, method: Method::Norm, ..Options::default() };
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
-    assert_eq!(outcome.stop, Stop::IterationLimit);
+    assert_eq!(outcome.stop, Outcome::IterationLimit);
     assert!(outcome.reason.contains("max_cycles was reached on 16 x 16"), "{}", outcome.reason);
     // What the residual hides is part of it.
     let residual = outcome.report.measures.certificate.residual;
@@ -168,7 +168,7 @@ fn a_solve_that_does_not_converge_ends_it() {
 fn no_contact_is_no_error() {
     for load in [Load::Approach(-1.0), Load::Force(0.0)] {
         let outcome = solved(load, Accuracy::new(1e-3), &Options::default());
-        assert_eq!((outcome.stop, outcome.reached), (Stop::Converged, Some(0.0)), "{load:?}: {}", outcome.reason);
+        assert_eq!((outcome.stop, outcome.reached), (Outcome::Converged, Some(0.0)), "{load:?}: {}", outcome.reason);
         assert_eq!((outcome.report.measures.force, outcome.report.measures.contact_count), (0.0, 0));
     }
 }
@@ -206,7 +206,7 @@ fn a_solve_that_takes_too_long_is_dropped() {
     let accuracy = Accuracy { max_seconds: seconds, ..Accuracy::new(1e-6) };
     let outcome =
         solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a solvable scene");
-    assert_eq!(outcome.stop, Stop::IterationLimit);
+    assert_eq!(outcome.stop, Outcome::IterationLimit);
     assert!(outcome.reason.contains("max_seconds"), "{}", outcome.reason);
     assert_start_is_kept(&outcome);
 }
@@ -223,7 +223,7 @@ fn without_an_estimate_it_is_given_up() {
     let scene = Scene { load: Load::Approach(0.5), ..case::scene(START, &[]) };
     let outcome = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-2), Some(&mut surface), None)
         .expect("a scene");
-    assert_eq!((outcome.stop, outcome.reached), (Stop::Stagnated, None), "{}", outcome.reason);
+    assert_eq!((outcome.stop, outcome.reached), (Outcome::Stagnated, None), "{}", outcome.reason);
     // 16 x 16 does not count, 32 and finer ones do.
     assert_eq!(grid_of(&outcome).mx, 128);
     assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);

@@ -8,7 +8,7 @@ use contact_normal::error::Error;
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{ActiveSet, Guess, InitialGuess, Method, Options, Problem, Solver, Stop};
+use contact_normal::solver::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver};
 
 /// Large enough for windows.
 const M: usize = 72;
@@ -40,9 +40,9 @@ fn load(k: usize) -> Load {
 }
 
 /// Everything that a solve finds, in bits.
-type Found = (Stop, Vec<u64>, Vec<u64>, Vec<bool>, u64, u64);
+type Found = (Outcome, Vec<u64>, Vec<u64>, Vec<bool>, u64, u64);
 
-fn found(state: &State, stop: Stop, cycles: u64) -> Found {
+fn found(state: &State, stop: Outcome, cycles: u64) -> Found {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
     (stop, bits(&state.p), bits(&state.u), state.contact.clone(), state.approach.to_bits(), cycles)
 }
@@ -82,7 +82,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
         let forwards: Vec<usize> = (0..count).collect();
         let backwards: Vec<usize> = (0..count).rev().collect();
         let expected = one_by_one(&problems, &options, &forwards);
-        assert!(expected.iter().all(|found| found.0 == Stop::Converged), "{options:?}");
+        assert!(expected.iter().all(|found| found.0 == Outcome::Converged), "{options:?}");
         assert!(one_by_one(&problems, &options, &backwards) == expected, "the order changes results: {options:?}");
         for threads in [1, 2, 3] {
             let options = Options { threads, ..options };

@@ -8,7 +8,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Transfer};
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
-use contact_normal::solver::{Method, Options, Solver, Stop};
+use contact_normal::solver::{Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
 use crate::support::{assert_conditions, run};
@@ -409,7 +409,7 @@ fn a_handle_refuses_another_coating_and_tables() {
     let scene = Scene { coating: Some(soft_and_stiff()), ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
     let mut solver = Solver::new(&scene, &Options::default()).unwrap();
     let (stop, _) = solver.solve(&scene, &Options::default(), None, None).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     let mut other = scene.clone();
     other.coating = Some(Coating::of_body_1(0.3, 0.2, 0.4));
     let refused = solver.solve(&other, &Options::default(), None, None).unwrap_err();

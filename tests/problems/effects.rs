@@ -7,7 +7,7 @@ use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{radial, Coated, CoatedBody, HalfSpace, Kernel, Periodic, RowTables, Table};
 use contact_normal::scene::{Bodies, Coating, Layer, Load, Patches, Period, PressureLimit, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 const EFFECTS: [&str; 8] =
     ["influence", "layer", "pressure_limit", "period", "patches", "row_tables", "excluded elements", "coating"];
@@ -113,7 +113,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
     };
     let solved = |names: [&str; 2]| {
         let (solver, stop, _) = solve(&with(names), &Options::default()).unwrap_or_else(|e| panic!("{names:?}: {e}"));
-        assert_eq!(stop, Stop::Converged, "{names:?}");
+        assert_eq!(stop, Outcome::Converged, "{names:?}");
         let state = solver.state();
         assert_conditions(&with(names), state, &coefficient, &names);
         state.p.clone()

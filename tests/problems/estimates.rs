@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use contact_normal::analytic::hertz;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, DiscretisationError, LedgerRow, Limit, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, DiscretisationError, LedgerRow, Limit, Method, Options, Outcome, Report, Solver};
 
 use crate::performance as case;
 
@@ -96,7 +96,7 @@ impl Exact {
         let h: Vec<f64> = (0..m * m).map(|i| (self.h)(centre(i % m, grid.dx), centre(i / m, grid.dy))).collect();
         let load = if by_force { Load::Force(self.force) } else { Load::Approach(self.approach) };
         let (solver, stop, report) = solve(&Scene::new(grid, &h, self.bodies, load), options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         (solver, report)
     }
 

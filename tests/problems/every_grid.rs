@@ -4,7 +4,7 @@
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Method, Options, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome};
 
 #[test]
 fn every_small_grid_is_solved_by_every_method() {
@@ -26,7 +26,7 @@ fn every_small_grid_is_solved_by_every_method() {
         for (method, scene) in methods.into_iter().flat_map(|method| [(method, &plain), (method, &own)]) {
             let options = Options { method, ..Options::default() };
             let (_, stop, report) = solve(scene, &options).expect("a valid scene");
-            assert_eq!(stop, Stop::Converged, "{mx} x {my} by {method:?}");
+            assert_eq!(stop, Outcome::Converged, "{mx} x {my} by {method:?}");
             forces.push(report.measures.force);
         }
         // The force is a functional of the solution with an error of the order of the residual's, tolerance 1e-6 (energy

@@ -11,7 +11,7 @@ use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::good_length;
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Report, Solver};
 use contact_normal::threads::Threads;
 
 use crate::families::case::Random;
@@ -30,7 +30,7 @@ fn norm() -> Options {
     Options { method: Method::Norm, tolerance: 1e-2 * TOLERANCE, max_cycles: 50_000, ..Options::default() }
 }
 
-fn on_contact(scene: &Scene<'_>, options: Options, contact: &[bool]) -> (Solver, Stop, Report) {
+fn on_contact(scene: &Scene<'_>, options: Options, contact: &[bool]) -> (Solver, Outcome, Report) {
     let options = Options { active_set: ActiveSet::Fixed, ..options };
     let guess = Guess { pressure: &vec![0.0; contact.len()], contact };
     let mut solver = Solver::new(scene, &options).unwrap();
@@ -52,8 +52,8 @@ fn assert_same_pressures(a: &Solver, b: &Solver, what: &str) {
     assert!(difference <= condition * 1.01 * TOLERANCE * size, "{what}: pressures differ by {:e}", difference / size);
 }
 
-fn assert_converged(stop: Stop, report: &Report, what: &str) {
-    assert_eq!(stop, Stop::Converged, "{what}: residual {:e}", report.measures.certificate.residual);
+fn assert_converged(stop: Outcome, report: &Report, what: &str) {
+    assert_eq!(stop, Outcome::Converged, "{what}: residual {:e}", report.measures.certificate.residual);
     assert!(report.measures.certificate.residual <= TOLERANCE, "{what}");
 }
 
@@ -62,7 +62,7 @@ fn the_linear_system_of_the_paper_takes_no_more_cycles_than_with_gauss_seidel() 
     for m in [64, 128, 256] {
         let run = |smoother| case::linear_system(m, Method::Multigrid, smoother, 0.0, 100);
         let ((stop, fft, _), (_, gauss_seidel, _)) = (run(SmootherKind::Fft), run(SmootherKind::GaussSeidel));
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert!(
             fft.count.cycles <= gauss_seidel.count.cycles,
             "{m}: {} for {}",
@@ -102,7 +102,7 @@ fn the_rough_surface_is_solved() {
         let h = rough::undeformed_distance(m);
         let scene = rough::scene(m, &h);
         let (reference, stop, norm_report) = solve(&scene, &norm()).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         let by_approach = Scene { load: Load::Approach(norm_report.measures.approach), ..scene.clone() };
         for scene in [&scene, &by_approach] {
             for method in [Method::Multigrid, Method::FullMultigrid] {
@@ -147,7 +147,7 @@ fn scattered_spots_are_solved_as_norm_does() {
             for load in [Load::Approach(1.0), Load::Force(20.0)] {
                 let scene = Scene::new(grid, &h, BODIES, load);
                 let (reference, stop, _) = on_contact(&scene, norm(), &contact);
-                assert_eq!(stop, Stop::Converged);
+                assert_eq!(stop, Outcome::Converged);
                 for (pre_sweeps, post_sweeps) in [(1, 1), (1, 0), (0, 1)] {
                     let what = format!("{mx} x {my}, {fill}, {load:?}, V({pre_sweeps},{post_sweeps})");
                     let fft = options(Method::Multigrid);
@@ -319,9 +319,9 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                 dense::apply(&influence, &grid, &state.p, &mut u);
                 let e = |i: usize| h[i] - state.approach + u[i];
                 // Symmetric positive definite tables converge without M as well; the others may give up.
-                assert!(what != "waves" || stop == Stop::Converged, "{what}, {load:?}, {method:?}: {stop:?}");
+                assert!(what != "waves" || stop == Outcome::Converged, "{what}, {load:?}, {method:?}: {stop:?}");
                 assert!(state.p.iter().all(|p| p.is_finite() && *p >= 0.0));
-                if stop == Stop::Converged {
+                if stop == Outcome::Converged {
                     let (mut rr, mut hh) = (0.0, 0.0);
                     for (i, distance) in h.iter().enumerate() {
                         if state.contact[i] {

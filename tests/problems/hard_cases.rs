@@ -6,7 +6,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{
-    solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Precision, Solver, Stop,
+    solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Outcome, Precision, Solver,
 };
 use contact_normal::threads::Threads;
 
@@ -30,7 +30,7 @@ fn paraboloid(grid: &Grid, curvature: f64) -> Vec<f64> {
 
 fn certified(scene: &Scene<'_>, options: &Options) -> Solver {
     let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?} {:?} on {:?}", options.method, scene.load, scene.grid);
+    assert_eq!(stop, Outcome::Converged, "{:?} {:?} on {:?}", options.method, scene.load, scene.grid);
     let certificate = report.measures.certificate;
     assert!(certificate.residual <= options.tolerance && certificate.min_pressure >= 0.0, "{certificate:?}");
     assert!(solver.state().p.iter().all(|p| p.is_finite()));
@@ -195,7 +195,11 @@ fn very_tight_tolerances_end() {
             assert!(solver.state().p.iter().all(|p| p.is_finite()));
             // Round-off of a product is about 1e-15 of u; a status OK must be true all the same.
             assert!(residual <= 1e-12, "{method:?} {tolerance}: {residual} after {stop:?}");
-            assert_eq!(stop == Stop::Converged, residual <= tolerance, "{method:?} {tolerance}: {residual} {stop:?}");
+            assert_eq!(
+                stop == Outcome::Converged,
+                residual <= tolerance,
+                "{method:?} {tolerance}: {residual} {stop:?}"
+            );
         }
     }
 }
@@ -319,7 +323,7 @@ fn a_fixed_contact_area_is_solved_with_pressures_of_either_sign() {
             let mut solver = Solver::new(&scene, &options).unwrap();
             let guess = Guess { pressure: &zero, contact: &contact };
             let (stop, report) = solver.solve(&scene, &options, Some(guess), None).unwrap();
-            assert_eq!(stop, Stop::Converged, "{method:?} {load:?}");
+            assert_eq!(stop, Outcome::Converged, "{method:?} {load:?}");
             assert!(report.measures.certificate.min_pressure < 0.0);
             assert_eq!(solver.state().contact, contact);
             pressures.push(solver.state().p.clone());
@@ -347,7 +351,7 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
             let guess = Guess { pressure: &p, contact: &contact };
             let (stop, report) = solver.solve(&scene, &given, Some(guess), None).unwrap();
             assert!(
-                stop == Stop::Converged && report.count.cycles <= 3,
+                stop == Outcome::Converged && report.count.cycles <= 3,
                 "{method:?} {load:?}: {} cycles",
                 report.count.cycles
             );
@@ -356,7 +360,7 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
             let corner: Vec<bool> = (0..grid.len()).map(|i| i % 60 < 7).collect();
             let guess = Guess { pressure: &nonsense, contact: &corner };
             let (stop, _) = solver.solve(&scene, &given, Some(guess), None).unwrap();
-            assert_eq!(stop, Stop::Converged, "{method:?} {load:?}");
+            assert_eq!(stop, Outcome::Converged, "{method:?} {load:?}");
             let size = p.iter().copied().fold(0.0, f64::max);
             for (a, b) in solver.state().p.iter().zip(&p) {
                 // residual 1e-6, times the condition of A on the contact area (below 100)
@@ -383,7 +387,7 @@ fn the_update_criterion_costs_no_round_of_its_own_in_double_precision() {
             };
             let (_, stop, report) = solve(&Scene::new(grid, &h, rigid_on(1.0), load), &options).unwrap();
             let (products, cycles) = (report.count.matrix_products, report.count.cycles);
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             assert!(products <= cycles + 4, "{load:?}, {tolerance:e}: {products} products for {cycles} iterations");
         }
     }
@@ -399,7 +403,7 @@ fn the_update_criterion_means_the_last_change_of_the_pressures() {
             solve(&Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.2)), &options).unwrap();
         let state = solver.state();
         let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / state.contact_count() as f64).sqrt();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert!(report.count.update <= 1e-5 * rms, "{method:?}: {} of {rms}", report.count.update);
         // a stop by updates leaves an error of the size of an update over (1 - convergence factor)
         assert!(report.measures.certificate.residual <= 1e-4);
@@ -416,7 +420,7 @@ fn an_error_ratio_stops_at_a_part_of_the_discretisation_error() {
             let run = |error_ratio| {
                 let options = Options { method, tolerance: 1e-9, error_ratio, estimates: true, ..Options::default() };
                 let (_, stop, report) = solve(&scene, &options).unwrap();
-                assert_eq!(stop, Stop::Converged);
+                assert_eq!(stop, Outcome::Converged);
                 report
             };
             let (exact, enough) = (run(0.0), run(0.1));
@@ -444,7 +448,7 @@ fn limits_and_cancellation_return_the_best_iterate() {
     for method in METHODS {
         let options = Options { method, tolerance: 1e-10, max_cycles: 2, ..Options::default() };
         let (solver, stop, report) = solve(&scene, &options).unwrap();
-        assert_eq!((stop, report.count.cycles), (Stop::IterationLimit, 2), "{method:?}");
+        assert_eq!((stop, report.count.cycles), (Outcome::IterationLimit, 2), "{method:?}");
         assert!(solver.state().p.iter().all(|p| *p >= 0.0));
 
         for after in [1, 3, 8] {
@@ -456,7 +460,7 @@ fn limits_and_cancellation_return_the_best_iterate() {
                 calls == after
             };
             let (stop, _) = solver.solve(&scene, &options, None, Some(&mut cancel)).unwrap();
-            assert_eq!((stop, calls), (Stop::Cancelled, after), "{method:?}");
+            assert_eq!((stop, calls), (Outcome::Cancelled, after), "{method:?}");
             assert!(solver.state().p.iter().all(|p| *p >= 0.0));
             assert!(
                 (solver.state().force() - 1.0).abs() <= 1e-12,
@@ -488,7 +492,7 @@ fn few_elements_are_solved_directly() {
     let options = Options { tolerance: 1e-2, ..Options::default() };
     for load in [Load::Approach(0.06), Load::Force(0.1)] {
         let (solver, stop, report) = solve(&Scene::new(grid, &h, rigid_on(3.0), load), &options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert!(solver.state().contact_count() > 1);
         // The direct solve leaves round-off, the iteration would stop at the tolerance.
         let residual = report.measures.certificate.residual;
@@ -515,7 +519,7 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
         for step in 0..5 {
             let scene = Scene::new(grid, &h, rigid_on(3.0), load(step));
             let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             let (from_nothing, _, reference) = solve(&scene, &cold).unwrap();
             let scale = reference.measures.max_pressure;
             let pairs = solver.state().p.iter().zip(&from_nothing.state().p);
@@ -530,7 +534,7 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
         // The same once more: nothing is left to do, and no product is needed to see that.
         let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
         let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
-        assert_eq!((stop, report.count.cycles, report.count.matrix_products), (Stop::Converged, 0, 0));
+        assert_eq!((stop, report.count.cycles, report.count.matrix_products), (Outcome::Converged, 0, 0));
         assert!(report.measures.certificate.residual <= 1e-6);
     }
 }

@@ -4,7 +4,7 @@ use crate::paper as case;
 
 use contact_normal::analytic::{hertz, hertz_by_force};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 fn close(value: f64, exact: f64, tolerance: f64) {
     assert!((value / exact - 1.0).abs() <= tolerance, "{value} for {exact}");
@@ -57,7 +57,7 @@ fn the_numerical_solution_converges_to_the_exact_one() {
     for m in [16, 64, 256] {
         let h = case::undeformed_distance(m);
         let (_, stop, report) = solve(&case::scene(m, &h), &Options::default()).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         let error = (report.measures.force / exact.force - 1.0).abs();
         // At least first order in the element size: a factor 4 between these grids; the force is better than that.
         assert!(error <= last / 4.0, "{m} x {m}: force off by {error}, before {last}");
@@ -74,7 +74,7 @@ fn prescribing_the_force_finds_the_approach_and_the_reverse() {
     let (by_approach, _, report) = solve(&case::scene(m, &h), &tight).unwrap();
     let scene = Scene { load: Load::Force(report.measures.force), ..case::scene(m, &h) };
     let (by_force, stop, again) = solve(&scene, &tight).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     // The residual, relative, is 1e-10; the approach and the force inherit it within a small factor.
     close(again.measures.approach, case::APPROACH, 1e-9);
     close(again.measures.force, report.measures.force, 1e-12);

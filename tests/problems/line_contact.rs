@@ -4,7 +4,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 
 fn grid(mx: usize, my: usize) -> Grid {
@@ -34,7 +34,7 @@ fn own_coefficients_on_one_row_or_column_keep_the_preconditioner() {
             for factor in factors {
                 let scene = Scene { influence: Some(table(&grid, &bodies, factor)), ..plain.clone() };
                 let (solver, stop, own) = solve(&scene, &Options::default()).unwrap();
-                assert_eq!(stop, Stop::Converged, "{mx} x {my} {load:?}");
+                assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
                 // The preconditioner's circulant is that of the same coefficients but for what lies beyond the grid.
                 let allowed = report.count.cycles + 4;
                 assert!(

@@ -4,7 +4,7 @@ use crate::paper as case;
 
 use case::{linear_system, whole_problem};
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
-use contact_normal::solver::{Method, Stop};
+use contact_normal::solver::{Method, Outcome};
 
 /// Grid, omega, the paper's count and factor (4 digits).
 const TABLE_1: [(usize, f64, u64, f64); 6] = [
@@ -28,7 +28,7 @@ const NORM: [(usize, u64, u64); 4] = [(32, 77, 5), (64, 130, 7), (128, 193, 8), 
 fn table_1_counts_and_factors_are_the_printed_ones() {
     for (m, omega, count, factor) in TABLE_1 {
         let (stop, report, measured) = linear_system(m, Method::Multigrid, GaussSeidel, omega, 100);
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert_eq!(report.count.cycles, count, "{m} x {m}, omega {omega}");
         // printed to four digits
         assert!((measured - factor).abs() <= 0.5e-4, "{m} x {m}, omega {omega}: {measured} for {factor}");
@@ -39,7 +39,7 @@ fn counts(method: Method, table: &[(usize, [u64; 3])]) {
     for &(m, most) in table {
         for ((pre, post), most) in [(1, 1), (1, 0), (0, 1)].into_iter().zip(most) {
             let (stop, report) = whole_problem(m, method, pre, post);
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             assert!(
                 report.count.cycles <= most,
                 "{m} x {m}, V({pre},{post}): {} cycles, at most {most}",
@@ -65,7 +65,7 @@ fn table_3_full_multigrid_needs_no_more_cycles() {
 fn table_2_norm_needs_the_measured_iterations() {
     for (m, iterations, steps) in NORM {
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
-        assert_eq!((stop, report.count.active_set_steps), (Stop::Converged, steps));
+        assert_eq!((stop, report.count.active_set_steps), (Outcome::Converged, steps));
         let off = (report.count.cycles as f64 / iterations as f64 - 1.0).abs();
         assert!(off <= 0.03, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);
     }
@@ -75,7 +75,7 @@ fn table_2_norm_needs_the_measured_iterations() {
 fn jacobi_does_not_converge_on_a_fine_grid() {
     for omega in [1.0, 0.5] {
         let (stop, report, _) = linear_system(128, Method::Multigrid, Jacobi, omega, 100);
-        assert_ne!(stop, Stop::Converged, "omega {omega}");
+        assert_ne!(stop, Outcome::Converged, "omega {omega}");
         // the best iterate is returned, and it is far from a solution
         assert!(report.measures.certificate.residual > 1e-6 && report.measures.certificate.residual.is_finite());
     }

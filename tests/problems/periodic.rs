@@ -7,7 +7,7 @@ use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic};
 use contact_normal::methods::multigrid::coarsen;
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Load, Period, Scene};
-use contact_normal::solver::{solve, Method, Options, Solver, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
 use crate::families::case::Random;
@@ -166,7 +166,7 @@ fn westergaard(m: usize, share: f64, along_x: bool) -> (f64, f64) {
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let (solver, stop, report) =
         solve(&scene(grid, &h, (true, true), Load::Force(mean * length * length)), &options).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     let edge = share.sqrt().asin() * length / PI;
     let (mut error, mut size) = (0.0, 0.0);
     for (i, p) in solver.state().p.iter().enumerate() {
@@ -211,7 +211,7 @@ fn full_contact_of_a_wavy_surface() {
     for method in [Method::Auto, Method::ProjectedCg, Method::Norm] {
         let (solver, stop, report) =
             solve(&scene, &Options { method, tolerance: 1e-10, ..Options::default() }).unwrap();
-        assert_eq!(stop, Stop::Converged, "{method:?}");
+        assert_eq!(stop, Outcome::Converged, "{method:?}");
         assert_eq!(report.measures.contact_count, grid.len());
         // The mean plane does not move: the approach is the mean distance. To the tolerance of the residual, relative to d.
         assert!(
@@ -232,7 +232,7 @@ fn full_contact_of_a_wavy_surface() {
     // changes of the approach are large ones of the force.
     let by_approach = Scene { load: Load::Approach(report.measures.approach), ..partial };
     let (_, stop, again) = solve(&by_approach, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
-    assert_eq!(stop, Stop::Converged);
+    assert_eq!(stop, Outcome::Converged);
     let change = again.measures.force / report.measures.force - 1.0;
     assert!(change.abs() <= 1e-4, "{change}");
 }
@@ -258,7 +258,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
     let largest = free.state().p.iter().copied().fold(0.0, f64::max);
     for directions in [(true, true), (true, false), (false, true)] {
         let (found, stop, _) = solve(&scene(grid, &h, directions, load), &options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         for (a, b) in found.state().p.iter().zip(&free.state().p) {
             // At the edge of contact the pressure is a root: elements there may change by the root of that error.
             assert!(
@@ -300,9 +300,9 @@ fn moving_the_origin_moves_the_solution_and_no_count_of_elements_is_refused() {
         for load in [Load::Force(0.05 * grid.len() as f64), Load::Approach(0.6 * lowest)] {
             let options = Options { tolerance: 1e-9, ..Options::default() };
             let (solver, stop, report) = solve(&scene(grid, &h, (true, true), load), &options).unwrap();
-            assert_eq!(stop, Stop::Converged, "{mx} x {my} {load:?}");
+            assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
             let (again, stop, _) = solve(&scene(grid, &moved, (true, true), load), &options).unwrap();
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             // A relative residual of 1e-9 in displacements: pressures of the shortest waves are off by up to that times the
             // condition number, about the count of elements across; 1e-6 leaves a factor.
             for i in 0..h.len() {
@@ -324,7 +324,7 @@ fn the_iteration_needs_no_more_products_than_without_a_period() {
     for share in [0.02, 0.2, 1.0] {
         let (_, stop, report) =
             solve(&scene(grid, &h, (true, true), Load::Force(share * grid.len() as f64)), &Options::default()).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert!(report.count.matrix_products <= 24, "{share}: {} products", report.count.matrix_products);
     }
 }
@@ -377,7 +377,7 @@ fn what_a_period_cannot_do_is_refused_by_name() {
     hole[27] = f64::INFINITY;
     let (_, stop, report) =
         solve(&scene(grid, &hole, (true, true), Load::Approach(mean + 0.1)), &Options::default()).unwrap();
-    assert_eq!((stop, report.measures.contact_count), (Stop::Converged, 63));
+    assert_eq!((stop, report.measures.contact_count), (Outcome::Converged, 63));
     // A handle keeps its period.
     let mut solver = Solver::new(&by_force, &Options::default()).unwrap();
     assert!(solver.solve(&by_force, &Options::default(), None, None).is_ok());

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 /// A random surface of all waves up to `m/part`, their amplitudes falling as `k^-1.8`.
 fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
@@ -67,7 +67,7 @@ fn approaches_near_the_mean_are_solved() {
                 };
                 let what = format!("{m} x {m}, waves to m/{part}, {share} of the mean");
                 let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
-                assert_eq!(stop, Stop::Converged, "{what}");
+                assert_eq!(stop, Outcome::Converged, "{what}");
                 assert!(report.count.work_units <= 200.0, "{what}: {} work units", report.count.work_units);
                 let p = &solver.state().p;
                 let u = displacements(&scene, p);
@@ -87,10 +87,10 @@ fn a_single_element_has_its_own_distance_for_an_approach() {
     };
     for below in [0.2, 0.3 - 1e-9] {
         let (solver, stop, _) = solve(&scene(below), &Options::default()).unwrap();
-        assert_eq!((stop, &solver.state().p[..]), (Stop::Converged, &[0.0][..]));
+        assert_eq!((stop, &solver.state().p[..]), (Outcome::Converged, &[0.0][..]));
     }
     match solve(&scene(0.3), &Options::default()) {
-        Ok((solver, stop, _)) => assert_eq!((stop, &solver.state().p[..]), (Stop::Converged, &[0.0][..])),
+        Ok((solver, stop, _)) => assert_eq!((stop, &solver.state().p[..]), (Outcome::Converged, &[0.0][..])),
         Err(refused) => assert!(refused.to_string().contains("contact is full"), "{refused}"),
     }
 }

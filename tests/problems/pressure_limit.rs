@@ -5,7 +5,7 @@ use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
-use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Report, Solver};
 
 fn ball(grid: &Grid) -> Vec<f64> {
     let (mx, my) = (grid.mx, grid.my);
@@ -185,11 +185,11 @@ fn every_method_and_a_handle_find_the_same() {
     let plain = Scene { pressure_limit: None, ..scene.clone() };
     let previous = Options { initial_guess: InitialGuess::Previous, ..tight(Method::Auto) };
     let (stop, _) = solver.solve(&plain, &previous, None, None).unwrap();
-    assert!(stop == Stop::Converged && !solver.state().at_limit.contains(&true));
+    assert!(stop == Outcome::Converged && !solver.state().at_limit.contains(&true));
     assert!(solver.state().p.iter().copied().fold(0.0, f64::max) > 0.13);
     for options in [&previous, &tight(Method::Auto)] {
         let (stop, report) = solver.solve(&scene, options, None, None).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         assert_holds(&scene, &solver, &report, "handle");
         assert!(close(&solver.state().p));
     }
@@ -200,7 +200,7 @@ fn every_method_and_a_handle_find_the_same() {
             (s, stop, r)
         })
         .unwrap();
-    assert_eq!(stop, Stop::IterationLimit);
+    assert_eq!(stop, Outcome::IterationLimit);
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn a_limit_costs_at_most_three_times_the_plain_scene() {
         for h in [ball(&grid), rough(&grid)].into_iter().take(if m < 512 { 2 } else { 1 }) {
             let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.3));
             let (_, stop, found) = solve(&plain, &Options::default()).unwrap();
-            assert_eq!(stop, Stop::Converged);
+            assert_eq!(stop, Outcome::Converged);
             for load in [plain.load, Load::Force(found.measures.force)] {
                 let scene = Scene { load, ..plain.clone() };
                 let (_, _, alone) = solve(&scene, &Options::default()).unwrap();
@@ -250,7 +250,7 @@ fn a_limit_costs_at_most_three_times_the_plain_scene() {
                     let (solver, stop, report) = solve(&limited, &Options::default()).unwrap();
                     let what =
                         format!("{m}, {load:?}, {share}: {} for {}", report.count.work_units, alone.count.work_units);
-                    assert_eq!(stop, Stop::Converged, "{what}");
+                    assert_eq!(stop, Outcome::Converged, "{what}");
                     assert!(solver.state().at_limit.contains(&true), "{what}: no limit is reached");
                     assert!(report.count.work_units <= 3.0 * alone.count.work_units, "{what}");
                 }

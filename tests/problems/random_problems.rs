@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Method, Options, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome};
 
 use crate::families::case::Random;
 
@@ -87,7 +87,7 @@ fn auto_and_norm_agree_on_200_random_problems() {
         let run = |scene: &Scene<'_>, method, tolerance| {
             let options = Options { method, tolerance, max_cycles: 20_000, ..Options::default() };
             let (solver, stop, report) = solve(scene, &options).unwrap();
-            assert_eq!(stop, Stop::Converged, "problem {number}, {method:?}, {:?} on {grid:?}", scene.load);
+            assert_eq!(stop, Outcome::Converged, "problem {number}, {method:?}, {:?} on {grid:?}", scene.load);
             (solver, report)
         };
         // NORM, whose residual is rich in the short waves that A hardly sees, is the reference: solved further.

@@ -4,7 +4,7 @@
 use crate::performance as case;
 
 use contact_normal::scene::Load;
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 /// At an approach the coarse grids find another force than the fine one has, so that the first iterations change all of the pressures
 /// and truncate very many. Measured: 1.4 times the work of a prescribed force; where directions that are held back are not dropped
@@ -15,10 +15,10 @@ fn the_approach_that_a_force_leads_to_costs_about_as_much_as_that_force() {
         let case = case::rough(m);
         let options = Options::default();
         let (by_force, stop, forced) = solve(&case.scene(), &options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         let scene = case.scene_with(Load::Approach(forced.measures.approach));
         let (by_approach, stop, approached) = solve(&scene, &options).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         let (approached, forced) = (approached.count.work_units, forced.count.work_units);
         assert!(approached <= 2.0 * forced, "{m}: {approached} work units by approach, {forced} by force");
         let pairs = by_force.state().contact.iter().zip(&by_approach.state().contact);

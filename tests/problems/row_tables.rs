@@ -6,7 +6,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, RowTables};
 use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
-use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Solver, Stop};
+use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
@@ -280,7 +280,7 @@ fn a_fixed_contact_area_and_handles() {
     // A later scene may name the tables again, or not: they belong to the set-up.
     for scene in [&scene, &plain] {
         let (stop, _) = solver.solve(scene, &fixed, guess, None).unwrap();
-        assert_eq!(stop, Stop::Converged);
+        assert_eq!(stop, Outcome::Converged);
         for (a, b) in solver.state().p.iter().zip(&free.state().p) {
             assert!((a - b).abs() <= 1e-7, "{a} {b}");
         }

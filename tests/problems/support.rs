@@ -1,12 +1,12 @@
 //! A solve that must converge.
 
 use contact_normal::scene::Scene;
-use contact_normal::solver::{solve, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, Options, Outcome, Report, Solver};
 
 /// The solver with its result, and the report.
 pub fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
     let (solver, stop, report) = solve(scene, options).unwrap();
-    assert_eq!(stop, Stop::Converged, "{:?} {:?}", options.method, scene.load);
+    assert_eq!(stop, Outcome::Converged, "{:?} {:?}", options.method, scene.load);
     (solver, report)
 }
 

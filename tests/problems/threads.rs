@@ -6,7 +6,7 @@ use crate::performance as case;
 use case::{ellipse, rough, wheel_rail, Case};
 use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Load, Scene};
-use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Precision, Solver, Stop};
+use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Outcome, Precision, Solver};
 
 /// What a solve found, to the last bit: p, u and the approach; the contact area; cycles.
 type Found = (Vec<u64>, Vec<bool>, u64);
@@ -20,7 +20,7 @@ fn found(solver: &Solver, cycles: u64) -> Found {
 /// Of a cold solve, and of a next one from its result with 1 % more load.
 fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     let (mut solver, stop, report) = solve(scene, options).expect("a solve");
-    assert_eq!(stop, Stop::Converged, "{options:?}");
+    assert_eq!(stop, Outcome::Converged, "{options:?}");
     let cold = found(&solver, report.count.cycles);
     let load = match scene.load {
         Load::Approach(approach) => Load::Approach(1.01 * approach),

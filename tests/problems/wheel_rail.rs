@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Method, Options, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome};
 
 struct Case {
     grid: Grid,
@@ -42,7 +42,7 @@ fn every_method_finds_contacts_pressures_and_contact_area() {
                 let scene = Scene::new(case.grid, &case.h, case.bodies, load);
                 let options = Options { method, tolerance: 1e-9, ..Options::default() };
                 let (solver, stop, report) = solve(&scene, &options).unwrap();
-                assert_eq!(stop, Stop::Converged, "{name}, {method:?}");
+                assert_eq!(stop, Outcome::Converged, "{name}, {method:?}");
                 assert_eq!(solver.state().contact, case.contact, "{name}, {method:?}");
                 // CONTACT stopped at relative updates of 1e-7; with its convergence factors its error is a few times that.
                 for (a, b) in solver.state().p.iter().zip(&case.pressure) {

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Options, Stop};
+use contact_normal::solver::{solve, Options, Outcome};
 
 /// Uniform in [0, 1): splitmix64.
 fn noise(m: usize, border: usize, seed: u64) -> Vec<f64> {
@@ -104,7 +104,7 @@ fn work_units(m: usize, border: usize, approach: f64, h: &[f64]) -> f64 {
     let scene = Scene::new(grid, h, Bodies::same(1.0, 0.0), Load::Approach(approach));
     let what = format!("{m} x {m}, border {border}, approach {approach}");
     let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
-    assert_eq!(stop, Stop::Converged, "{what}");
+    assert_eq!(stop, Outcome::Converged, "{what}");
     let p = &solver.state().p;
     let u = displacements(m, p);
     assert_conditions(h, approach, p, &u, &what);

@@ -24,7 +24,7 @@ fn scene(load: Load, wave: f64) -> (Problem, State) {
     (problem, state)
 }
 
-fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Stop {
+fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Outcome {
     let goal = Goal { criterion: Criterion::Residual, tolerance: 1e-9, max_cycles: cycles };
     let (mut best, mut monitor) = (Best::default(), Monitor::silent());
     best.forget();
@@ -45,7 +45,7 @@ fn every_cycle_of_descent_lowers_the_energy_until_the_conditions_hold() {
             let distance = |i: usize| state.h[i] - if let Load::Approach(a) = load { a } else { 0.0 };
             let energy: f64 = (0..state.p.len()).map(|i| state.p[i] * (0.5 * state.u[i] + distance(i))).sum();
             assert!(state.p.iter().all(|p| *p >= 0.0));
-            if stop == Stop::Converged {
+            if stop == Outcome::Converged {
                 break;
             }
             // Some round-off of sums of 154 terms where the decrease is below that.
@@ -63,7 +63,7 @@ fn descent_takes_over_from_any_pressures() {
     for start in [0.0, -1.0, 1e6, f64::NAN] {
         let (mut problem, mut state) = scene(Load::Force(0.05), 2.1);
         state.p.fill(start);
-        assert_eq!(descend(&mut problem, &mut state, 1000), Stop::Converged, "from {start}");
+        assert_eq!(descend(&mut problem, &mut state, 1000), Outcome::Converged, "from {start}");
         // Sums of 154 pressures.
         assert!((state.force() - 0.05).abs() <= 1e-15);
     }

@@ -44,7 +44,7 @@ fn there_are_enough_elements_across_the_contact() {
         assert!(!past.is_resolved() && accuracy.end(&past, 0, 0).is_none(), "{across:?}");
         assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{across:?}");
     }
-    assert_eq!(accuracy.end(&past(by_four(0.9)), 0, 0).map(|end| end.0), Some(Stop::Converged));
+    assert_eq!(accuracy.end(&past(by_four(0.9)), 0, 0).map(|end| end.0), Some(Outcome::Converged));
 }
 
 #[test]

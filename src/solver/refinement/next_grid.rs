@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::outlook::{across, Falling, Quantity};
-use super::{Solved, Stop};
+use super::{Outcome, Solved};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::solver::estimates::SECONDS_EXPONENT;
@@ -181,18 +181,24 @@ impl Accuracy {
     }
 
     /// Whether and why it ends here.
-    pub(super) fn end(&self, past: &Past, without_contact: usize, without_estimate: usize) -> Option<(Stop, String)> {
+    pub(super) fn end(
+        &self,
+        past: &Past,
+        without_contact: usize,
+        without_estimate: usize,
+    ) -> Option<(Outcome, String)> {
         let least = self.targets().into_iter().map(|(_, target)| target).fold(f64::INFINITY, f64::min);
         if least < ROUND_OFF {
-            return Some((Stop::Stagnated, format!("target is {least:e}, below round-off")));
+            return Some((Outcome::Stagnated, format!("target is {least:e}, below round-off")));
         }
         if past.is_resolved() && past.worst().is_some_and(|worst| worst <= 1.0) {
-            return Some((Stop::Converged, "the target is met".into()));
+            return Some((Outcome::Converged, "the target is met".into()));
         }
         if without_contact == MOST_WITHOUT {
-            return Some((Stop::Converged, "there is no contact on three grids".into()));
+            return Some((Outcome::Converged, "there is no contact on three grids".into()));
         }
-        (without_estimate == MOST_WITHOUT).then(|| (Stop::Stagnated, "no estimate of the error can be trusted".into()))
+        (without_estimate == MOST_WITHOUT)
+            .then(|| (Outcome::Stagnated, "no estimate of the error can be trusted".into()))
     }
 
     /// The next grid: the one that is predicted to meet the target, or as many doublings towards it as the limits allow.

@@ -11,7 +11,7 @@ use super::{check, on_grid, scaled, Accuracy, Quantity, Solved, SurfaceCallback}
 use crate::error::{require, Result};
 use crate::grid::Grid;
 use crate::scene::Scene;
-use crate::solver::{Options, Progress, Stop};
+use crate::solver::{Options, Outcome, Progress};
 
 /// What keeps an accuracy from being had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +103,7 @@ pub fn cost_of_accuracy(
     accuracy: &Accuracy,
     (quantity, targets): (Quantity, &[f64]),
     mut surface: Option<SurfaceCallback<'_>>,
-) -> Result<(Stop, Vec<Price>)> {
+) -> Result<(Outcome, Vec<Price>)> {
     accuracy.check()?;
     check(scene, options, surface.is_some())?;
     for &target in targets {
@@ -122,7 +122,7 @@ pub fn cost_of_accuracy(
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, &mut surface)? {
             Taken::Sample(sample) => sample,
-            Taken::Cancelled => return Ok((Stop::Cancelled, list(&samples, 1.0))),
+            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
             Taken::Unsolved => break,
         };
         let next = sample.seconds * NEXT;
@@ -145,7 +145,7 @@ pub fn cost_of_accuracy(
             speed_up = (last.seconds / again.seconds).max(1.0);
         }
     }
-    Ok((Stop::Converged, list(&samples, speed_up)))
+    Ok((Outcome::Converged, list(&samples, speed_up)))
 }
 
 /// Doublings, or with a sign halvings, from the scene's grid to the first sample.
@@ -199,7 +199,7 @@ impl Sample {
         let Solved { solver, report, outlook } =
             match on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)? {
                 Ok(solved) => solved,
-                Err((Stop::Cancelled, ..)) => return Ok(Taken::Cancelled),
+                Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
                 Err(_) => return Ok(Taken::Unsolved),
             };
         let seconds = began.elapsed().as_secs_f64();

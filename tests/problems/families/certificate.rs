@@ -5,7 +5,7 @@ use contact_normal::error::Result;
 use contact_normal::influence::Coefficients;
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::Load;
-use contact_normal::solver::{solve, Method, Options, Report, Solver, Stop};
+use contact_normal::solver::{solve, Method, Options, Outcome, Report, Solver};
 use contact_normal::threads::Threads;
 
 use super::case::Case;
@@ -15,7 +15,7 @@ const SUMMED: usize = 1600;
 
 /// What a solve returned.
 pub struct Found {
-    pub stop: Stop,
+    pub stop: Outcome,
     pub report: Report,
     pub p: Vec<f64>,
     pub contact: Vec<bool>,
@@ -23,7 +23,7 @@ pub struct Found {
 }
 
 impl Found {
-    pub fn of(stop: Stop, report: Report, state: &State) -> Found {
+    pub fn of(stop: Outcome, report: Report, state: &State) -> Found {
         Found { stop, report, p: state.p.clone(), contact: state.contact.clone(), approach: state.approach }
     }
 }
@@ -56,7 +56,7 @@ pub fn run_with(case: &Case, options: &Options) -> Result<Found> {
 }
 
 /// What a solver holds.
-pub fn found(solver: &Solver, stop: Stop, report: Report) -> Found {
+pub fn found(solver: &Solver, stop: Outcome, report: Report) -> Found {
     Found::of(stop, report, solver.state())
 }
 
@@ -135,7 +135,7 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
 
 /// What status OK promises: residual, violation and complementarity are at most `tolerance`.
 pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) -> Recomputed {
-    assert_eq!(found.stop, Stop::Converged, "{}, {what}: {:?}", case.name, found.report);
+    assert_eq!(found.stop, Outcome::Converged, "{}, {what}: {:?}", case.name, found.report);
     let measures = assert_sound(case, what, found);
     let allowed = tolerance + measures.round_off;
     let worst = measures.residual.max(measures.violation).max(measures.complementarity);
@@ -148,7 +148,7 @@ pub fn assert_solved_or_told(cases: &[Case]) {
     for case in cases {
         for method in [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm] {
             let found = run(case, method).unwrap_or_else(|e| panic!("{}, {method:?}: {e}", case.name));
-            if found.stop == Stop::Converged || method == Method::Auto {
+            if found.stop == Outcome::Converged || method == Method::Auto {
                 assert_certified(case, &format!("{method:?}"), &found, Options::default().tolerance);
             } else {
                 assert_sound(case, &format!("{method:?}"), &found);

@@ -89,7 +89,7 @@ mod promises {
     use super::*;
     use contact_normal::error::Error;
     use contact_normal::influence::Table;
-    use contact_normal::solver::{Method, Options, Stop};
+    use contact_normal::solver::{Method, Options, Outcome};
 
     #[test]
     fn coefficients_of_elastic_bodies() {
@@ -105,7 +105,7 @@ mod promises {
                     let options = Options { method, max_cycles, ..Options::default() };
                     let what = format!("{method:?}");
                     match run_with(&case, &options) {
-                        Ok(found) if found.stop == Stop::Converged => {
+                        Ok(found) if found.stop == Outcome::Converged => {
                             assert_certified(&case, &what, &found, options.tolerance);
                         }
                         Ok(found) => {

@@ -46,7 +46,7 @@ mod promises {
     use super::super::certificate::{assert_certified, assert_solved_or_told, displace, run_with, Found};
     use super::*;
     use contact_normal::error::Error;
-    use contact_normal::solver::{Method, Options, Stop};
+    use contact_normal::solver::{Method, Options, Outcome};
 
     /// Solves on C by elimination: `A p = 1 - h` there.
     fn solve_on(case: &Case, contact: &[bool]) -> Vec<f64> {
@@ -118,7 +118,7 @@ mod promises {
             let definite = is_definite(&coefficients);
             let what = format!("row {number}, definite: {definite}, {load:?}");
             match run_with(&case, &Options::default()) {
-                Ok(found) if found.stop == Stop::Converged => {
+                Ok(found) if found.stop == Outcome::Converged => {
                     assert_certified(&case, &what, &found, 1e-6);
                     solved += 1;
                 }

@@ -14,7 +14,7 @@ pub fn cases() -> Vec<Case> {
 mod promises {
     use super::super::certificate::{assert_certified, assert_sound, found, recompute, run_with};
     use super::*;
-    use contact_normal::solver::{Criterion, Method, Options, Progress, Solver, Stop};
+    use contact_normal::solver::{Criterion, Method, Options, Outcome, Progress, Solver};
 
     const METHODS: [Method; 5] =
         [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm, Method::ProjectedCg];
@@ -32,8 +32,8 @@ mod promises {
                     // A product rounds to about 1e-15 of u; a few hundred of them, and p a hundred times more by the
                     // condition of A.
                     assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
-                    let floor_or_exact = found.stop == Stop::Stagnated
-                        || criterion == Criterion::Update && found.stop == Stop::Converged;
+                    let floor_or_exact = found.stop == Outcome::Stagnated
+                        || criterion == Criterion::Update && found.stop == Outcome::Converged;
                     assert!(floor_or_exact, "{what}: {:?} after {}", found.stop, found.report.count.cycles);
                 }
             }
@@ -52,8 +52,13 @@ mod promises {
             let found = run_with(&case, &options).expect("a solve");
             let measures = assert_sound(&case, "NORM below round-off", &found);
             // Contacts of few elements are solved to the last bit.
-            assert!([Stop::Stagnated, Stop::Converged].contains(&found.stop), "{}: {:?}", case.name, found.report);
-            stagnated += usize::from(found.stop == Stop::Stagnated);
+            assert!(
+                [Outcome::Stagnated, Outcome::Converged].contains(&found.stop),
+                "{}: {:?}",
+                case.name,
+                found.report
+            );
+            stagnated += usize::from(found.stop == Outcome::Stagnated);
             assert!(measures.residual <= 1e-12 && measures.violation <= 1e-12, "{}: {measures:?}", case.name);
         }
         assert!(stagnated > 40, "{stagnated} stagnated");
@@ -76,7 +81,7 @@ mod promises {
                     assert!(energy - last <= 1e-5 * energy.abs(), "{}: {last} to {energy}", case.name);
                 }
                 last = energy;
-                if found.stop != Stop::IterationLimit {
+                if found.stop != Outcome::IterationLimit {
                     break;
                 }
             }
@@ -95,7 +100,7 @@ mod promises {
                     let found = run_with(&case, &options).expect("a solve");
                     assert_eq!(
                         (found.stop, found.report.count.cycles),
-                        (Stop::IterationLimit, max_cycles as u64),
+                        (Outcome::IterationLimit, max_cycles as u64),
                         "{method:?}"
                     );
                     assert_sound(&case, &format!("{method:?}, {max_cycles} cycles"), &found);
@@ -129,10 +134,10 @@ mod promises {
                     assert_eq!(calls, at, "{method:?}: called after the cancellation");
                     let (what, found) = (format!("{method:?}, cancelled at {at}"), found(&solver, stop, report));
                     // What was all but done may turn out to be solved.
-                    if stop == Stop::Converged {
+                    if stop == Outcome::Converged {
                         assert_certified(&case, &what, &found, options.tolerance);
                     } else {
-                        assert_eq!(stop, Stop::Cancelled, "{what}");
+                        assert_eq!(stop, Outcome::Cancelled, "{what}");
                         assert_sound(&case, &what, &found);
                     }
                 }
