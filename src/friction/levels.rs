@@ -11,7 +11,8 @@
 
 use super::certificate::ON_THE_CIRCLE;
 use super::extension::neighbours;
-use super::problem::{add, onto_disc, plus, square, Operators, Problem, State};
+use super::operators::Operators;
+use super::problem::{add, onto_disc, plus, square, Problem, State};
 use super::shift::Memory;
 use super::Vector;
 use crate::error::Result;

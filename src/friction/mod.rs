@@ -3,14 +3,16 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`coefficients`] | influence of tangential tractions |
-//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`], `spectrum`, [`dense`] | products of two components, by FFT and by direct summation |
+//! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
 //! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift` | projected conjugate gradients on discs, for motions that are given |
-//! | `newton`, `fgmres` | semismooth Newton, for forces that are given and where the gradients stall |
+//! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
+//! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `solver` | nested iteration, and the whole solve |
+//! | `levels`, `nested`, `solver` | coarser grids, nested iteration, and the whole solve |
 
 mod certificate;
 pub mod coefficients;
@@ -21,21 +23,27 @@ mod fgmres;
 mod forces;
 mod levels;
 mod march;
+mod nested;
 mod newton;
+mod operators;
 mod problem;
 mod sensitivity;
 mod shift;
+mod solution;
 mod solver;
+mod spectrum;
 mod system;
 mod tables;
 mod tangent;
 mod toeplitz;
 mod vectors;
+mod window;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::Coupling;
-pub use solver::{Report, Request, Solution, Solver, EXTERIOR, SLIP, STICK};
+pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
+pub use solver::{Request, Solver};
 pub use toeplitz::{Toeplitz, Workspace};
 
 /// A vector of the plane: `[x, y]`.

@@ -13,10 +13,8 @@
 
 use std::ops::Range;
 
-use super::coefficients::Tangential;
 use super::extension::Extension;
-use super::march::{March, Rolling};
-use super::toeplitz::{unit_of, Toeplitz, Workspace};
+use super::operators::Operators;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -25,100 +23,6 @@ use crate::threads::Threads;
 
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
-
-/// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
-pub struct Operators {
-    /// The coefficients.
-    pub tangential: Tangential,
-    exact: (Toeplitz<f64>, Workspace<f64>),
-    fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
-    inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
-    /// Of steady rolling: the step, of which B is made, and the way to undo it.
-    pub rolling: Option<(Rolling, March)>,
-    /// What a traction on one element displaces itself by, in steady rolling in a step: the larger of both directions.
-    pub self_influence: f64,
-    /// The same without rolling.
-    a0: f64,
-    threads: Threads,
-    /// Products since the last call of [`Problem::take_products`].
-    products: u64,
-}
-
-impl Operators {
-    /// On a grid. `single`: whether directions may be multiplied in single precision.
-    pub fn new(
-        tangential: &Tangential,
-        grid: &Grid,
-        rolling: Option<Rolling>,
-        single: bool,
-        threads: &Threads,
-    ) -> Result<Operators> {
-        let threads = &threads.suited_to(grid.len());
-        let exact = match rolling {
-            Some(rolling) => Toeplitz::rolling(tangential, grid, rolling.by, threads)?,
-            None => Toeplitz::new(tangential, grid, threads)?,
-        };
-        let fast = single.then(|| exact.in_precision()).transpose()?;
-        let inverse = Toeplitz::inverse(tangential, grid, threads)?;
-        let [xx, yy, _] = tangential.at(0.0, 0.0);
-        let rolling = rolling.map(|rolling| (rolling, March::new(&rolling)));
-        // Between the centres as the march has it.
-        let there = rolling.as_ref().map_or([0.0; 2], |(_, march)| march.ahead_of(|x, y| tangential.at(x, y)));
-        Ok(Operators {
-            tangential: tangential.clone(),
-            exact: with_workspace(exact)?,
-            fast: fast.map(with_workspace).transpose()?,
-            inverse: inverse.map(with_workspace).transpose()?,
-            rolling,
-            self_influence: (xx - there[0]).max(yy - there[1]),
-            a0: xx.max(yy),
-            threads: threads.clone(),
-            products: 0,
-        })
-    }
-
-    /// The step of steady rolling.
-    pub fn step(&self) -> Option<Rolling> {
-        self.rolling.as_ref().map(|(rolling, _)| *rolling)
-    }
-
-    /// `u = A q` in double precision, or B q.
-    pub fn multiply(&mut self, q: &[Vector], u: &mut [Vector]) {
-        let (operator, workspace) = &mut self.exact;
-        operator.apply(q, 1.0, u, workspace);
-        self.products += 1;
-    }
-
-    /// The same to single precision, for q of the order of `unit`.
-    pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
-        match &mut self.fast {
-            Some((operator, workspace)) => operator.apply(q, unit_of(unit), u, workspace),
-            None => self.exact.0.apply(q, 1.0, u, &mut self.exact.1),
-        }
-        self.products += 1;
-    }
-
-    /// About `q = A^-1 u`, for tractions of the order of `unit`.
-    pub fn precondition(&mut self, u: &[Vector], unit: f64, q: &mut [Vector]) {
-        let a0 = self.a0;
-        match &mut self.inverse {
-            Some((operator, workspace)) => operator.apply(u, unit_of(unit * a0), q, workspace),
-            None => q.iter_mut().zip(u).for_each(|(q, u)| *q = [u[0] / a0, u[1] / a0]),
-        }
-    }
-
-    /// Bytes of the spectra.
-    pub fn bytes(&self) -> usize {
-        let single =
-            |of: &Option<(Toeplitz<f32>, Workspace<f32>)>| of.as_ref().map_or(0, |(operator, _)| operator.bytes());
-        self.exact.0.bytes() + single(&self.fast) + single(&self.inverse)
-    }
-}
-
-fn with_workspace<T: crate::operator::fft::Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Workspace<T>)> {
-    let workspace = operator.workspace()?;
-    Ok((operator, workspace))
-}
 
 /// What residuals are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

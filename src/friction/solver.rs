@@ -2,13 +2,15 @@
 
 use super::certificate::Certificate;
 use super::forces::Forces;
-use super::levels::{interpolate, levels, restrict, Level};
+use super::levels::{levels, Level};
 use super::march::Rolling;
-use super::newton;
-use super::problem::{dot, square, Operators, Problem, Scale};
+use super::nested::{self, Work};
+use super::operators::Operators;
+use super::problem::{square, Problem, Scale};
 use super::sensitivity;
-use super::shift::{self, Goal, Memory};
-use super::toeplitz::{Toeplitz, Workspace};
+use super::shift::Memory;
+use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
+use super::window::{displaced, Displaced, Window};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Error, Result};
@@ -19,53 +21,8 @@ use crate::threads::Threads;
 
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
-/// Coarser grids are solved to this residual: what they leave wrong costs more on the finest.
-const COARSE: f64 = 1e-3;
-/// Iterations at most on each of them.
-const COARSE_LIMIT: u64 = 60;
-/// With forces given, the coarsest grid is solved with these parts of the load first, to this residual.
-const PARTS: [f64; 2] = [0.5, 0.8];
-const PART: f64 = 3e-2;
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
-
-/// What an element does: see [`Solution::adhesion`].
-pub const EXTERIOR: i32 = 0;
-/// It sticks.
-pub const STICK: i32 = 1;
-/// It slips.
-pub const SLIP: i32 = 2;
-
-/// Fields on the whole grid.
-#[derive(Clone, Debug, Default)]
-pub struct Solution {
-    /// q, on body 1: 0 outside C.
-    pub traction: Vec<Vector>,
-    /// s of the step, body 1 over body 2, a length: 0 outside C.
-    pub slip: Vec<Vector>,
-    /// Of each element: exterior 0, stick 1, slip 2.
-    pub adhesion: Vec<i32>,
-}
-
-/// What a solve found and what it cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Report {
-    /// How well the conditions hold.
-    pub certificate: Certificate,
-    /// `sum of q dx dy`, on body 1.
-    pub force: Vector,
-    /// `sum of (x qy - y qx) dx dy` about the centre of spin.
-    pub moment: f64,
-    /// Creepages: given, or found.
-    pub creepage: Vector,
-    /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
-    /// that are found count as given.
-    pub sensitivities: Option<[[f64; 3]; 3]>,
-    /// Products of two components on all grids, in products on the finest.
-    pub products: f64,
-    /// Seconds, with the set-up of operators.
-    pub seconds: f64,
-}
 
 /// What is asked of a solve.
 pub struct Request<'a> {
@@ -99,47 +56,6 @@ pub struct Solver {
     /// The creepages found, times the length rolled.
     offset: Vector,
     has_solution: bool,
-}
-
-/// `A q` at places between the centres.
-struct Displaced {
-    by: (f64, f64),
-    grid: Grid,
-    operator: Toeplitz<f64>,
-    workspace: Workspace<f64>,
-}
-
-/// A box of elements: the first column and row, and behind the last.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Window {
-    x: (usize, usize),
-    y: (usize, usize),
-}
-
-impl Window {
-    /// Around the elements that are `inside`; none if there is none.
-    fn around(grid: &Grid, inside: impl Fn(usize) -> bool) -> Option<Window> {
-        let mut window: Option<Window> = None;
-        for iy in 0..grid.my {
-            let row = iy * grid.mx;
-            let Some(first) = (0..grid.mx).find(|ix| inside(row + ix)) else { continue };
-            let last = (0..grid.mx).rfind(|ix| inside(row + ix)).unwrap_or(first);
-            let Window { x, y } = window.unwrap_or(Window { x: (first, last + 1), y: (iy, iy + 1) });
-            window = Some(Window { x: (x.0.min(first), x.1.max(last + 1)), y: (y.0, iy + 1) });
-        }
-        window
-    }
-
-    fn grid(&self, grid: &Grid) -> Grid {
-        Grid { mx: self.x.1 - self.x.0, my: self.y.1 - self.y.0, ..*grid }
-    }
-
-    /// Of each element of the window its index, and that on the whole grid.
-    fn elements(self, grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
-        let (mx, width) = (grid.mx, self.x.1 - self.x.0);
-        let count = width * (self.y.1 - self.y.0);
-        (0..count).map(move |k| (k, (self.y.0 + k / width) * mx + self.x.0 + k % width))
-    }
 }
 
 impl Solver {
@@ -222,7 +138,7 @@ impl Solver {
             let goal = (request.tolerance, request.limit);
             let mut work = Work { products: 0.0, watch };
             let nested = from_rest && !request.again;
-            end = self.run(forces, (nested, had_slip), goal, &mut work)?;
+            end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
             report.products = work.products;
         }
         self.write(friction, pressure, window, &mut report);
@@ -331,68 +247,6 @@ impl Solver {
         Ok(())
     }
 
-    fn run(
-        &mut self,
-        forces: Forces,
-        (nested, mostly_slips): (bool, bool),
-        (tolerance, limit): (f64, u64),
-        work: &mut Work<'_>,
-    ) -> Result<Outcome> {
-        let finest = self.levels[0].problem.grid.len() as f64;
-        if nested {
-            for l in 1..self.levels.len() {
-                let (fine, coarse) = self.levels.split_at_mut(l);
-                restrict(&fine[l - 1].problem, &mut coarse[0]);
-            }
-            for l in (1..self.levels.len()).rev() {
-                let level = &mut self.levels[l];
-                let part = level.problem.grid.len() as f64 / finest;
-                let area = level.problem.grid.element_area() / self.grid.element_area();
-                let forces = forces.times(1.0 / area);
-                if l + 1 == self.levels_count() && forces.any() {
-                    let end = self.approach(l, forces, part, work)?;
-                    if end == Outcome::Cancelled {
-                        return Ok(end);
-                    }
-                }
-                let level = &mut self.levels[l];
-                let end = one(level, forces, forces.any(), (tolerance.max(COARSE), COARSE_LIMIT), part, work)?;
-                if end == Outcome::Cancelled {
-                    return Ok(end);
-                }
-                let (fine, coarse) = self.levels.split_at_mut(l);
-                interpolate(&coarse[0], &mut fine[l - 1])?;
-                let Level { problem, state, .. } = &mut fine[l - 1];
-                problem.refresh(state);
-            }
-        }
-        let level = &mut self.levels[0];
-        one(level, forces, forces.any() || mostly_slips, (tolerance, limit), 1.0, work)
-    }
-
-    fn levels_count(&self) -> usize {
-        self.levels.len()
-    }
-
-    /// Forces that are given are brought on in parts, on the coarsest grid.
-    fn approach(&mut self, l: usize, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<Outcome> {
-        let mut before = 1.0;
-        for load in PARTS.into_iter().chain([1.0]) {
-            let level = &mut self.levels[l];
-            let scale = |v: &mut Vector| *v = v.map(|v| v * (load / before));
-            level.problem.slip.iter_mut().for_each(scale);
-            level.problem.rigid.iter_mut().for_each(scale);
-            before = load;
-            if load < 1.0 {
-                let end = one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
-                if end == Outcome::Cancelled {
-                    return Ok(end);
-                }
-            }
-        }
-        Ok(Outcome::Converged)
-    }
-
     /// See [`Report::sensitivities`].
     fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
         let mut derivatives = [[0.0; 3]; 3];
@@ -446,83 +300,5 @@ impl Solver {
         }
         let tractions = traction.iter().copied().enumerate();
         (report.force, report.moment) = resultant(&self.grid, friction.spin_centre, tractions);
-    }
-}
-
-/// The force of tractions, and their moment about `centre`, a place from the middle of the grid.
-fn resultant(grid: &Grid, centre: Vector, tractions: impl Iterator<Item = (usize, Vector)>) -> (Vector, f64) {
-    let (Grid { mx, my, dx, dy }, area) = (*grid, grid.element_area());
-    let (mut force, mut moment) = ([0.0; 2], 0.0);
-    for (i, q) in tractions.filter(|(_, q)| *q != [0.0; 2]) {
-        let x = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];
-        let y = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
-        force = [force[0] + area * q[0], force[1] + area * q[1]];
-        moment += area * dot([-y, x], q);
-    }
-    (force, moment)
-}
-
-/// What is counted, and who is told.
-struct Work<'a> {
-    products: f64,
-    watch: &'a mut dyn FnMut(&Grid, f64) -> bool,
-}
-
-/// Solves one grid from what it holds: by gradients, and where they stall or forces are given by Newton's method.
-fn one(
-    level: &mut Level,
-    forces: Forces,
-    newton_first: bool,
-    (tolerance, limit): (f64, u64),
-    part: f64,
-    work: &mut Work<'_>,
-) -> Result<Outcome> {
-    let Level { problem, state, memory } = level;
-    let grid = problem.grid;
-    let mut end = Outcome::Stagnated;
-    // Nothing moves, and nothing did.
-    if problem.rms_slip() == 0.0 && !forces.any() {
-        state.unload();
-        return Ok(Outcome::Converged);
-    }
-    let only_newton = forces.any() || problem.operators.rolling.is_some();
-    for newton in [newton_first || only_newton, true, only_newton] {
-        let watch = &mut |residual: f64| (work.watch)(&grid, residual);
-        let certified = part == 1.0;
-        let goal = Goal { tolerance, limit, certified, watch };
-        end = if newton {
-            newton::solve(problem, state, (&mut memory.tangent, &mut memory.fields), forces, goal)?
-        } else {
-            shift::solve(problem, state, memory, goal)
-        };
-        if end != Outcome::Stagnated {
-            break;
-        }
-        log::info!("tangential problem: no further progress, Newton's method goes on");
-    }
-    if end != Outcome::Converged && !state.is_exact && part == 1.0 {
-        problem.refresh(state);
-    }
-    work.products += part * problem.take_products() as f64;
-    Ok(end)
-}
-
-/// Products displaced by so many elements, set up where they are not there.
-fn displaced<'a>(
-    kept: &'a mut Option<Displaced>,
-    tangential: &Tangential,
-    grid: Grid,
-    by: (f64, f64),
-    threads: &Threads,
-) -> Result<&'a mut Displaced> {
-    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid) {
-        *kept = None;
-        let operator = Toeplitz::displaced(tangential, &grid, by, &threads.suited_to(grid.len()))?;
-        let workspace = operator.workspace()?;
-        *kept = Some(Displaced { by, grid, operator, workspace });
-    }
-    match kept {
-        Some(kept) => Ok(kept),
-        None => invalid("no displaced operator".into()),
     }
 }

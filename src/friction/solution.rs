@@ -1,0 +1,57 @@
+//! What a tangential solve returns.
+
+use super::certificate::Certificate;
+use super::problem::dot;
+use super::Vector;
+use crate::grid::Grid;
+
+/// What an element does: see [`Solution::adhesion`].
+pub const EXTERIOR: i32 = 0;
+/// It sticks.
+pub const STICK: i32 = 1;
+/// It slips.
+pub const SLIP: i32 = 2;
+
+/// Fields on the whole grid.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// q, on body 1: 0 outside C.
+    pub traction: Vec<Vector>,
+    /// s of the step, body 1 over body 2, a length: 0 outside C.
+    pub slip: Vec<Vector>,
+    /// Of each element: exterior 0, stick 1, slip 2.
+    pub adhesion: Vec<i32>,
+}
+
+/// What a solve found and what it cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// How well the conditions hold.
+    pub certificate: Certificate,
+    /// `sum of q dx dy`, on body 1.
+    pub force: Vector,
+    /// `sum of (x qy - y qx) dx dy` about the centre of spin.
+    pub moment: f64,
+    /// Creepages: given, or found.
+    pub creepage: Vector,
+    /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
+    /// that are found count as given.
+    pub sensitivities: Option<[[f64; 3]; 3]>,
+    /// Products of two components on all grids, in products on the finest.
+    pub products: f64,
+    /// Seconds, with the set-up of operators.
+    pub seconds: f64,
+}
+
+/// The force of tractions, and their moment about `centre`, a place from the middle of the grid.
+pub fn resultant(grid: &Grid, centre: Vector, tractions: impl Iterator<Item = (usize, Vector)>) -> (Vector, f64) {
+    let (Grid { mx, my, dx, dy }, area) = (*grid, grid.element_area());
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (i, q) in tractions.filter(|(_, q)| *q != [0.0; 2]) {
+        let x = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];
+        let y = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
+        force = [force[0] + area * q[0], force[1] + area * q[1]];
+        moment += area * dot([-y, x], q);
+    }
+    (force, moment)
+}

@@ -1,0 +1,69 @@
+//! The box around C, on which the operators are, and products between the centres of its elements.
+
+use super::toeplitz::{Toeplitz, Workspace};
+use super::Tangential;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
+use crate::threads::Threads;
+
+/// A box of elements: the first column and row, and behind the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    pub x: (usize, usize),
+    pub y: (usize, usize),
+}
+
+impl Window {
+    /// Around the elements that are `inside`; none if there is none.
+    pub fn around(grid: &Grid, inside: impl Fn(usize) -> bool) -> Option<Window> {
+        let mut window: Option<Window> = None;
+        for iy in 0..grid.my {
+            let row = iy * grid.mx;
+            let Some(first) = (0..grid.mx).find(|ix| inside(row + ix)) else { continue };
+            let last = (0..grid.mx).rfind(|ix| inside(row + ix)).unwrap_or(first);
+            let Window { x, y } = window.unwrap_or(Window { x: (first, last + 1), y: (iy, iy + 1) });
+            window = Some(Window { x: (x.0.min(first), x.1.max(last + 1)), y: (y.0, iy + 1) });
+        }
+        window
+    }
+
+    /// Its grid.
+    pub fn grid(&self, grid: &Grid) -> Grid {
+        Grid { mx: self.x.1 - self.x.0, my: self.y.1 - self.y.0, ..*grid }
+    }
+
+    /// Of each element of the window its index, and that on the whole grid.
+    pub fn elements(self, grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
+        let (mx, width) = (grid.mx, self.x.1 - self.x.0);
+        let count = width * (self.y.1 - self.y.0);
+        (0..count).map(move |k| (k, (self.y.0 + k / width) * mx + self.x.0 + k % width))
+    }
+}
+
+/// `A q` at places between the centres.
+pub struct Displaced {
+    by: (f64, f64),
+    grid: Grid,
+    pub operator: Toeplitz<f64>,
+    pub workspace: Workspace<f64>,
+}
+
+/// Products displaced by so many elements, set up where they are not there.
+pub fn displaced<'a>(
+    kept: &'a mut Option<Displaced>,
+    tangential: &Tangential,
+    grid: Grid,
+    by: (f64, f64),
+    threads: &Threads,
+) -> Result<&'a mut Displaced> {
+    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid) {
+        *kept = None;
+        let operator = Toeplitz::displaced(tangential, &grid, by, &threads.suited_to(grid.len()))?;
+        let workspace = operator.workspace()?;
+        *kept = Some(Displaced { by, grid, operator, workspace });
+    }
+    match kept {
+        Some(kept) => Ok(kept),
+        None => invalid("no displaced operator".into()),
+    }
+}
