@@ -13,8 +13,8 @@
 !   * Where C takes NULL, the argument is optional.
 !   * Arrays are attached to structures by the contact_normal_set_... subroutines. They must have the TARGET or POINTER
 !     attribute and be contiguous, which the compiler checks, and live as long as the structure is used.
-!   * norm_solve, at the end, is one call with plain arrays that needs none of this; it is there as a module procedure
-!     and, for programs that do not use the module, as an external subroutine.
+!   * norm_solve and tang_solve, at the end, are one call each with plain arrays that needs none of this; they are there as
+!     module procedures and, for programs that do not use the module, as external subroutines.
 module contact_normal
   use, intrinsic :: iso_c_binding
   implicit none
@@ -441,3 +441,18 @@ subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, ep
   integer(c_int32_t), intent(out) :: ierror
   call solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
 end subroutine norm_solve
+
+! tang_solve for such programs: the same arguments. Since 0.2.
+subroutine tang_solve(mx, my, dx, dy, gg, poiss, ps, mus, motion, force, cksi, ceta, cphi, fx, fy, dq, chi, px, py, igs, &
+    ssx, ssy, eps, maxit, err, ierror)
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_double
+  use contact_normal, only: solve => tang_solve
+  implicit none
+  integer(c_int32_t), intent(in) :: mx, my, motion, force, maxit
+  real(c_double), intent(in) :: dx, dy, gg(2), poiss(2), ps(*), mus(*), cphi, dq, chi, eps
+  real(c_double), intent(inout) :: cksi, ceta, fx, fy, px(*), py(*), ssx(*), ssy(*), err
+  integer(c_int32_t), intent(inout) :: igs(*)
+  integer(c_int32_t), intent(out) :: ierror
+  call solve(mx, my, dx, dy, gg, poiss, ps, mus, motion, force, cksi, ceta, cphi, fx, fy, dq, chi, px, py, igs, &
+             ssx, ssy, eps, maxit, err, ierror)
+end subroutine tang_solve

@@ -169,6 +169,15 @@ fn the_optional_arguments_of_norm_solve_do_what_they_say() {
 }
 
 #[test]
+fn tang_solve_without_the_module_is_that_of_the_module() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O3", "-ffast-math"]].into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_tang_solve_{i}"));
+        let program = compile("tests/clients/tang_solve_external.f90", flags, &folder);
+        assert_eq!(run_linked(&program, &[], &folder), "the same bits\n", "{flags:?}");
+    }
+}
+
+#[test]
 fn the_wrappers_of_the_module_work() {
     let folder = scratch("fortran_module");
     let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);

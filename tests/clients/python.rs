@@ -134,6 +134,11 @@ fn the_creep_force_table_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_friction_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("friction");
+}
+
+#[test]
 fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_wheel_rail");
     let example = root().join("python_examples/wheel_rail.py");

@@ -1,0 +1,66 @@
+! tang_solve from a code that knows neither the module nor an interface, beside that of the module.
+program tang_solve_external
+  use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
+  use contact_normal, only: tang_solve
+  implicit none
+  integer, parameter :: dp = c_double
+  integer(c_int32_t), parameter :: MX = 20, MY = 14
+  real(dp), parameter :: DX = 0.12_dp, DY = 0.15_dp, G(2) = 82000.0_dp, NU(2) = 0.28_dp, PHI = 1e-4_dp, EPS = 1e-8_dp
+  real(dp) :: ps(MX, MY), mus(MX, MY), x, y, q(MX, MY, 2, 2), s(MX, MY, 2, 2), xi(2), eta(2), fx(2), fy(2), err(2)
+  integer(c_int32_t) :: igs(MX, MY, 2), ierror(2)
+  integer :: ix, iy, motion
+  external :: old_code
+
+  do iy = 1, MY
+    do ix = 1, MX
+      x = (ix - 0.5_dp*(MX + 1))*DX
+      y = (iy - 0.5_dp*(MY + 1))*DY
+      ps(ix, iy) = 1000*sqrt(max(0.0_dp, 1 - x*x - y*y))
+    end do
+  end do
+  mus = 0.3_dp
+  q = 0
+  ! A shift by a given force, then a step of rolling from it, then steady rolling.
+  do motion = 0, 2
+    xi = -7
+    eta = 1e-4_dp
+    fx = 0.15_dp*sum(ps)*DX*DY
+    fy = -7
+    igs = -7
+    s = -7
+    err = -7
+    ierror = -7
+    call tang_solve(MX, MY, DX, DY, G, NU, ps, mus, motion, 1, xi(1), eta(1), PHI, fx(1), fy(1), DX, 0.0_dp, &
+      q(:, :, 1, 1), q(:, :, 2, 1), igs(:, :, 1), s(:, :, 1, 1), s(:, :, 2, 1), EPS, 1000, err(1), ierror(1))
+    call old_code(MX, MY, DX, DY, G, NU, ps, mus, motion, xi(2), eta(2), PHI, fx(2), fy(2), &
+      q(:, :, 1, 2), q(:, :, 2, 2), igs(:, :, 2), s(:, :, 1, 2), s(:, :, 2, 2), EPS, err(2), ierror(2))
+    if (any(ierror /= 0)) error stop "not solved"
+    if (.not. (err(2) <= EPS .and. err(2) >= 0)) error stop "residual"
+    if (count(igs(:, :, 2) == 1) == 0 .or. count(igs(:, :, 2) == 2) == 0) error stop "stick and slip"
+    if (any(igs(:, :, 1) /= igs(:, :, 2))) error stop "codes"
+    if (any(bits(q(:, :, :, 1)) /= bits(q(:, :, :, 2))) .or. any(bits(s(:, :, :, 1)) /= bits(s(:, :, :, 2)))) &
+      error stop "tractions or slip"
+    if (any(bits([xi(1), eta(1), fx(1), fy(1), err(1)]) /= bits([xi(2), eta(2), fx(2), fy(2), err(2)]))) error stop "numbers"
+    if (abs(sum(q(:, :, 1, 2))*DX*DY/fx(2) - 1) > 1e-12_dp) error stop "force"
+  end do
+  print '(a)', "the same bits"
+
+contains
+
+  elemental function bits(value) result(found)
+    use, intrinsic :: iso_c_binding, only: c_int64_t
+    real(dp), intent(in) :: value
+    integer(c_int64_t) :: found
+    found = transfer(value, found)
+  end function
+
+end program tang_solve_external
+
+subroutine old_code(mx, my, dx, dy, g, nu, ps, mus, motion, xi, eta, phi, fx, fy, px, py, igs, ssx, ssy, eps, err, ierror)
+  implicit none
+  integer :: mx, my, motion, igs(*), ierror
+  double precision :: dx, dy, g(2), nu(2), ps(*), mus(*), xi, eta, phi, fx, fy, px(*), py(*), ssx(*), ssy(*), eps, err
+  external :: tang_solve
+  call tang_solve(mx, my, dx, dy, g, nu, ps, mus, motion, 1, xi, eta, phi, fx, fy, dx, 0d0, px, py, igs, ssx, ssy, &
+    eps, 1000, err, ierror)
+end subroutine old_code
