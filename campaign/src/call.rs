@@ -136,6 +136,11 @@ pub struct Canceller {
     pub at: u32,
 }
 
+/// Counts its calls, and cancels.
+///
+/// # Safety
+///
+/// `user` is a canceller that no one else uses.
 pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
     // SAFETY: `user` is the canceller of this call.
     let canceller = unsafe { &mut *user.cast::<Canceller>() };

@@ -149,6 +149,8 @@ pub struct Case {
     pub place: Place,
     pub slide: Slide,
     pub stop: Stop,
+    /// mu N of the same scene without friction.
+    pub carried: f64,
 }
 
 /// mu of the elements, and what motions go by: extremes do not say what moves.
@@ -226,7 +228,17 @@ impl Case {
         if random.chance(0.1) {
             stop.cancel_at = Some(random.integer(1, 30) as u32);
         }
-        Case { place, slide, stop }
+        Case { place, slide, stop, carried: normal }
+    }
+
+    /// Forces beyond mu N, or less where something else takes a part of it: what a spin leaves is not known here.
+    pub fn may_be_infeasible(&self) -> bool {
+        let Slide { prescribed, amount, spin, rigid, previous, .. } = &self.slide;
+        let given = |k: usize| prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
+        let force = [0, 1].map(|k| if given(k) { amount[k] } else { 0.0 });
+        let else_moves = *spin != 0.0 || rigid.is_some() || previous.is_some();
+        let moves = else_moves || (0..2).any(|k| !given(k) && amount[k] != 0.0);
+        self.slide.has_forces() && (force[0].hypot(force[1]) >= 0.99 * self.carried || moves || !self.place.is_alike())
     }
 
     /// What the motion is called.
