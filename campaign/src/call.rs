@@ -11,7 +11,7 @@ use crate::effects::{Effects, OwnCoefficients, Values};
 use crate::grid::Load;
 
 /// What outputs hold before a call.
-const SENTINEL: f64 = -12345.678;
+pub const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
 
 /// A struct as its `_init` fills it.
@@ -131,12 +131,17 @@ impl Scene {
 }
 
 /// Cancels in a given call.
-struct Canceller {
-    calls: u32,
-    at: u32,
+pub struct Canceller {
+    pub calls: u32,
+    pub at: u32,
 }
 
-unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
+/// Counts its calls, and cancels.
+///
+/// # Safety
+///
+/// `user` is a canceller that no one else uses.
+pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
     // SAFETY: `user` is the canceller of this call.
     let canceller = unsafe { &mut *user.cast::<Canceller>() };
     canceller.calls += 1;
@@ -219,7 +224,8 @@ impl Drop for Handle {
     }
 }
 
-fn last_error() -> String {
+/// What the last call that was refused said.
+pub fn last_error() -> String {
     // SAFETY: never NULL, valid until the next call.
     unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_string_lossy().into_owned()
 }

@@ -164,7 +164,8 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
     Grid { mx, my, dx, dy }
 }
 
-fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
+/// What is prescribed, by the size of the scene.
+pub fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
     if random.chance(0.5) {
         let part = match random.uniform() {
             u if u < 0.05 => -0.1,

@@ -2,7 +2,8 @@
 //!
 //! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
 //! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and
-//! what failed. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`. Nothing of
+//! what failed. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`,
+//! `friction`. Nothing of
 //! the library is used but the C ABI's functions: a change of its core does not touch this.
 
 pub mod account;
@@ -13,6 +14,9 @@ pub mod call;
 pub mod case;
 pub mod coating;
 pub mod effects;
+pub mod friction;
+pub mod friction_call;
+pub mod friction_case;
 pub mod grid;
 pub mod half_space;
 pub mod operator;
@@ -72,6 +76,7 @@ fn beside(case: &Case) -> Vec<Failure> {
         u if u < 0.05 => accuracy::check(random),
         u if u < 0.10 => batch::run(case, random),
         u if u < 0.15 => set_influence::run(case, random),
+        u if u < 0.25 => friction::check(random).2,
         _ => Vec::new(),
     }
 }

@@ -1,0 +1,147 @@
+//! Calls of the C ABI with friction.
+
+use std::ptr::{null, null_mut};
+
+use contact_normal::ffi::*;
+
+use crate::call::{cancel, initialised, last_error, Canceller, SENTINEL};
+use crate::friction_case::{Case, Place, Slide, Stop};
+use crate::grid::Load;
+
+/// What a call returned.
+pub struct Found {
+    pub status: i32,
+    pub message: String,
+    pub p: Vec<f64>,
+    /// Displacements along the normal.
+    pub u: Vec<f64>,
+    pub q: Vec<[f64; 2]>,
+    pub slip: Vec<[f64; 2]>,
+    pub adhesion: Vec<i32>,
+    pub report: contact_normal_report,
+    /// Whether something was written.
+    pub written: bool,
+}
+
+impl Found {
+    /// Bits that have to be the same where the same is asked for twice.
+    pub fn bits(&self) -> Vec<u64> {
+        let vectors = self.q.iter().chain(&self.slip).flatten();
+        let numbers = self.p.iter().chain(&self.u).chain(vectors).map(|value| value.to_bits());
+        numbers.chain(self.adhesion.iter().map(|&a| a as u64)).chain([self.status as u64]).collect()
+    }
+}
+
+fn scene(place: &Place) -> contact_normal_scene {
+    let mut scene = initialised(contact_normal_scene_init);
+    (scene.mx, scene.my) = (place.grid.mx as i32, place.grid.my as i32);
+    (scene.dx, scene.dy) = (place.grid.dx, place.grid.dy);
+    scene.undeformed_distance = place.h.as_ptr();
+    (scene.shear_modulus, scene.poisson_ratio) = (place.shear_modulus, place.poisson_ratio);
+    match place.load {
+        Load::Approach(approach) => (scene.load, scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, approach),
+        Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
+    }
+    scene
+}
+
+/// `continues`: from what the handle holds.
+fn friction(slide: &Slide, continues: bool) -> contact_normal_friction {
+    let mut friction = initialised(contact_normal_friction_init);
+    if slide.uniform {
+        friction.coefficient = slide.mu[0];
+    } else {
+        friction.coefficients = slide.mu.as_ptr();
+    }
+    (friction.motion, friction.prescribed) = (slide.motion, slide.prescribed);
+    (friction.creepage, friction.force) = (slide.amount, slide.amount);
+    (friction.spin, friction.spin_centre) = (slide.spin, slide.spin_centre);
+    (friction.rolling_distance, friction.rolling_direction) = (slide.distance, slide.direction);
+    let pointers = |arrays: &Option<[Vec<f64>; 2]>| {
+        arrays.as_ref().map_or([null(); 2], |arrays| [arrays[0].as_ptr(), arrays[1].as_ptr()])
+    };
+    friction.rigid_slip = pointers(&slide.rigid);
+    friction.continues = i32::from(continues);
+    if !continues {
+        friction.previous_traction = pointers(&slide.previous);
+    }
+    friction
+}
+
+fn options(stop: &Stop, canceller: &mut Canceller) -> contact_normal_options {
+    let mut options = initialised(contact_normal_options_init);
+    (options.tolerance, options.precision, options.threads) = (stop.tolerance, stop.precision, stop.threads);
+    options.max_cycles = stop.max_cycles;
+    if let Some(at) = stop.cancel_at {
+        *canceller = Canceller { calls: 0, at };
+        options.progress = Some(cancel);
+        options.user = (&raw mut *canceller).cast();
+    }
+    options
+}
+
+/// Calls with outputs full of sentinels.
+fn run(n: usize, call: impl FnOnce(*mut contact_normal_fields, *mut contact_normal_report) -> i32) -> Found {
+    let mut numbers = vec![vec![SENTINEL; n]; 6];
+    let mut adhesion = vec![-77; n];
+    let mut report = initialised(contact_normal_report_init);
+    report.force = SENTINEL;
+    let mut fields = initialised(contact_normal_fields_init);
+    let at: Vec<*mut f64> = numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
+    (fields.pressure, fields.displacement) = (at[0], at[1]);
+    (fields.traction, fields.slip, fields.adhesion) = ([at[2], at[3]], [at[4], at[5]], adhesion.as_mut_ptr());
+    let status = call(&mut fields, &mut report);
+    let written = numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
+        || adhesion.iter().any(|&a| a != -77)
+        || report.force.to_bits() != SENTINEL.to_bits();
+    let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
+    let pairs = |x: usize| numbers[x].iter().zip(&numbers[x + 1]).map(|(x, y)| [*x, *y]).collect();
+    let (q, slip) = (pairs(2), pairs(4));
+    let (p, u) = (numbers[0].clone(), numbers[1].clone());
+    Found { status, message, p, u, q, slip, adhesion, report, written }
+}
+
+/// The same without friction.
+pub fn frictionless(place: &Place, stop: &Stop) -> Found {
+    let mut canceller = Canceller { calls: 0, at: 0 };
+    let (scene, options) = (scene(place), options(stop, &mut canceller));
+    run(place.grid.len(), |fields, report| {
+        // SAFETY: structs with the arrays that they declare.
+        unsafe { contact_normal_solve(&scene, &options, fields, report) }
+    })
+}
+
+/// Solves a case: once on its own, or twice with a handle, from what it holds then.
+pub fn call(case: &Case, twice: bool) -> Vec<Found> {
+    let n = case.place.grid.len();
+    let mut canceller = Canceller { calls: 0, at: 0 };
+    let (mut scene, first) = (scene(&case.place), friction(&case.slide, false));
+    scene.friction = &first;
+    let options = options(&case.stop, &mut canceller);
+    if !twice {
+        // SAFETY: structs with the arrays that they declare.
+        return vec![run(n, |fields, report| unsafe { contact_normal_solve(&scene, &options, fields, report) })];
+    }
+    let mut handle = null_mut();
+    // SAFETY: as above.
+    let status = unsafe { contact_normal_solver_new(&scene, &options, &mut handle) };
+    if status != CONTACT_NORMAL_OK {
+        return vec![run(n, |_, _| status)];
+    }
+    // SAFETY: as above, and a handle that no one else uses.
+    let found =
+        run(n, |fields, report| unsafe { contact_normal_solver_solve(handle, &scene, &options, fields, report) });
+    if found.status < 0 {
+        // SAFETY: made above.
+        unsafe { contact_normal_solver_free(handle) };
+        return vec![found];
+    }
+    let continued = friction(&case.slide, true);
+    scene.friction = &continued;
+    // SAFETY: as above.
+    let next =
+        run(n, |fields, report| unsafe { contact_normal_solver_solve(handle, &scene, &options, fields, report) });
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+    vec![found, next]
+}
