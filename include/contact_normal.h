@@ -1111,7 +1111,7 @@ typedef struct contact_normal_report {
   double tangential_seconds;
   /*
    If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-   creepages in x and y and by the spin; [3][3], row by row. Creepages that are found count as given.
+   creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
    */
   double sensitivities[9];
 } contact_normal_report;

@@ -209,7 +209,7 @@ pub struct contact_normal_report {
     /// Seconds of the tangential problem, which are part of `solve_seconds`.
     pub tangential_seconds: f64,
     /// If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-    /// creepages in x and y and by the spin; [3][3], row by row. Creepages that are found count as given.
+    /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
     pub sensitivities: [f64; 9],
 }
 
