@@ -6,6 +6,7 @@ mod coefficients;
 mod conditions;
 mod effects;
 mod linear_theory;
+mod onset_of_rolling;
 mod rolling;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]

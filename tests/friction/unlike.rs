@@ -150,3 +150,43 @@ fn an_indentation_with_friction_is_similar_at_all_loads() {
         assert!((part - (225.0_f64 / 921.0).sqrt()).abs() <= 0.04, "{parts:?}");
     }
 }
+
+#[test]
+fn contacts_spence35_is_met() {
+    // CONTACT's example spence35 (Kalker 1990, figure 5.25): a rigid ball on a soft half-space with G = 0.5 and nu = 0, mu = .2986,
+    // undeformed distance .004116 r^2, 45 x 45 elements of 0.2 whose middle is 1e-4 off; forces (k/45)^3, of which six digits are given.
+    let (m, d) = (45, 0.2);
+    let grid = Grid::new(m, m, d, d).unwrap();
+    let place = |i: usize| -4.4999 + (i as f64 + 0.5) * d;
+    let h: Vec<f64> = (0..grid.len()).map(|i| 0.004116 * (place(i % m).powi(2) + place(i / m).powi(2))).collect();
+    let bodies = Bodies { shear_modulus: [0.5, 1e5], poisson_ratio: [0.0; 2] };
+    let scene = |stage: u32| {
+        let previous = if stage == 1 { Previous::None } else { Previous::Kept };
+        let force = ((f64::from(stage) / 45.0).powi(3) * 1e6).round() / 1e6;
+        Scene {
+            friction: Some(Friction { previous, ..Friction::new(0.2986) }),
+            ..Scene::new(grid, &h, bodies, Load::Force(force))
+        }
+    };
+    let options = Options { tolerance: 1e-7, ..Options::default() };
+    let mut solver = Solver::new(&scene(1), &options).unwrap();
+    let mut met = 0;
+    for stage in 1..=35 {
+        let (stop, report) = solver.solve(&scene(stage), &options, None, None).unwrap();
+        assert_eq!(stop, Outcome::Converged, "{stage}");
+        let certificate = report.friction.unwrap().certificate;
+        let found = (report.measures.contact_count, certificate.stick_count, certificate.slip_count);
+        // The counts that CONTACT prints.
+        for (printed, counts) in [(6, (29, 5, 24)), (18, (241, 61, 180)), (35, (921, 225, 696))] {
+            if stage == printed {
+                assert_eq!(found, counts, "{stage}");
+                met += 1;
+            }
+        }
+        if stage == 35 {
+            // Half of the last digit printed.
+            assert!((report.measures.max_pressure - 0.02392).abs() <= 5e-6, "{}", report.measures.max_pressure);
+        }
+    }
+    assert_eq!(met, 3);
+}
