@@ -1,0 +1,228 @@
+"""Friction beside aspher: a shift from rest, at an equal residual that is checked here.
+
+`build/peers/bin/python benches/peers/friction.py [--quick | --report]` after `make bench-peers`, or with the packages of
+`requirements.txt`. --quick: up to 256; --report: only writes again what build/friction_peers.json holds. Prints the table, writes it
+into docs/performance_peers.md, and draws docs/performance_friction.png.
+
+Both have two like bodies with nu = 0.3, the same h and the same load, one thread, and one tolerance for both problems. Each goes down the
+same tolerances; the loosest one that reaches an accuracy is repeated, both in turns. `tangential` has the check.
+"""
+
+import gc
+import json
+import os
+import sys
+import time
+from statistics import median
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[name] = "1"
+os.environ["OMP_WAIT_POLICY"] = "passive"
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.normpath(os.path.join(HERE, "..", ".."))
+os.environ.setdefault("CONTACT_NORMAL_LIBRARY", os.path.join(ROOT, "target", "release", "libcontact_normal.so"))
+sys.path[:0] = [HERE, os.path.join(ROOT, "python")]
+
+import aspher  # noqa: E402
+import numpy as np  # noqa: E402
+
+import contact_normal  # noqa: E402
+from problems import rough, sphere  # noqa: E402
+from tangential import Shift  # noqa: E402
+
+NU, MU = 0.3, 0.3
+TOLERANCES = [10 ** (-0.5 * k) for k in range(4, 20)]
+ACCURACIES = [1e-4, 1e-6]
+REPEATS, LONG, REPEATS_OF_LONG, LONGEST = 5, 8.0, 2, 60.0
+SCENES = [(surface, given, part) for surface in ("ball", "rough") for given in ("motion", "force") for part in (0.5, 0.9)]
+RESULTS = os.path.join(ROOT, "build", "friction_peers.json")
+PAGE = os.path.join(ROOT, "docs", "performance_peers.md")
+HEADING = "## Friction\n"
+
+
+def ours(shift, tolerance):
+    """Seconds of the normal problem alone and of both, pressures, tractions, shift."""
+    problem = shift.normal
+    scene = dict(force=problem.force, shear_modulus=shift.shear_modulus, poisson_ratio=NU, tolerance=tolerance, threads=1)
+    given = dict(force=(shift.force, None)) if shift.shift is None else dict(creepage=(-shift.shift, 0.0))
+    seconds = []
+    for friction in (None, dict(coefficient=MU, **given)):
+        began = time.process_time()
+        result = contact_normal.solve(problem.h, problem.dx, problem.dy, friction=friction, **scene)
+        seconds.append(time.process_time() - began)
+    return *seconds, result.pressure, np.stack(result.traction), None
+
+
+def peer(shift, tolerance):
+    """The same of aspher: its setting up and its normal step, and these with its tangential step. Its first direction is x."""
+    problem = shift.normal
+    began = time.process_time()
+    solver = aspher.FrictionSolver(grid_size=problem.h.shape[0], domain_size=problem.sides[0], E_star=problem.modulus, nu=NU,
+                                   model=aspher.CoulombFriction(MU))
+    solver.set_gap(np.ascontiguousarray(problem.h.T).ravel())
+    solver.step(p_bar=problem.mean_pressure, tol_normal=tolerance)
+    normal = time.process_time() - began
+    area = problem.sides[0] * problem.sides[1]
+    given = dict(q_bar=(shift.force / area, 0.0)) if shift.shift is None else dict(delta_t=(shift.shift, 0.0))
+    result = solver.step(tol_tangential=tolerance, **given)
+    whole = time.process_time() - began
+    p = np.array(solver.pressure).reshape(problem.h.shape).T
+    return normal, whole, p, np.stack([np.array(q).T for q in (result.qx, result.qy)]), result.delta_t
+
+
+PROGRAMS = {"contact-normal": ours, "aspher": peer}
+
+
+def scene(surface, given, part, size):
+    """The scene; the shift that brings this part of mu N is found by a force that is given."""
+    normal = {"ball": sphere, "rough": rough}[surface](size)
+    shift = Shift(normal, NU, MU, force=part * MU * normal.force)
+    if given == "motion":
+        result = contact_normal.solve(normal.h, normal.dx, normal.dy, force=normal.force, shear_modulus=shift.shear_modulus, poisson_ratio=NU,
+                                      tolerance=1e-7, friction=dict(coefficient=MU, force=(shift.force, None)))
+        shift.shift = -result.report["creepage"][0]
+    return shift
+
+
+def ladder(name, shift):
+    """Points (tolerance, seconds of the normal problem, of both, error), until the tightest accuracy is reached."""
+    points = []
+    for tolerance in TOLERANCES:
+        gc.collect()
+        try:
+            normal, whole, p, q, moved = PROGRAMS[name](shift, tolerance)
+        except (RuntimeError, ValueError, TypeError) as error:
+            print(f"  {name} at {tolerance:.1e}: {type(error).__name__} {error}", flush=True)
+            continue
+        error_p, error_q = shift.normal.error(p), shift.error(p, q, moved)
+        print(f"  {name:14} {tolerance:8.1e} {normal:8.4f} {whole:8.4f} s, errors {error_p:.1e} {error_q:.1e}", flush=True)
+        points.append(dict(tolerance=tolerance, normal=normal, whole=whole, error=max(error_p, error_q)))
+        if points[-1]["error"] <= min(ACCURACIES) or whole > LONGEST:
+            break
+    return points
+
+
+def measure(surface, given, part, size):
+    """One scene: ladders, then repeats in turns."""
+    print(f"{surface} {size}, {given}, {part:.0%}", flush=True)
+    shift = scene(surface, given, part, size)
+    points, chosen, runs = {}, {}, {}
+    for name in PROGRAMS:
+        points[name] = ladder(name, shift)
+        for accuracy in ACCURACIES:
+            point = next((point for point in points[name] if point["error"] <= accuracy), None)
+            if point:
+                chosen[name, accuracy] = point["tolerance"]
+                runs[name, point["tolerance"]] = (point["whole"], [])
+    for turn in range(REPEATS):
+        for (name, tolerance), (first, times) in runs.items():
+            if turn < (REPEATS if first <= LONG else REPEATS_OF_LONG):
+                gc.collect()
+                times.append(PROGRAMS[name](shift, tolerance)[:2])
+    results = {}
+    for (name, accuracy), tolerance in chosen.items():
+        times = runs[name, tolerance][1]
+        normal, whole = (median(column) for column in zip(*times))
+        tangential = median(both - alone for alone, both in times)
+        results[f"{name} {accuracy:.0e}"] = dict(tolerance=tolerance, normal=normal, tangential=tangential, whole=whole)
+    return dict(surface=surface, given=given, part=part, size=size, points=points, results=results)
+
+
+def shown(seconds):
+    """Three figures."""
+    return f"{seconds * 1e3:.3g}" if seconds < 1 else f"{seconds * 1e3:.0f}"
+
+
+def section(measured):
+    """The text of docs/performance_peers.md."""
+    lines = ["| scene | given | accuracy | contact-normal, ms: normal, tangential, both | aspher, ms (its tolerance) | "
+             "times slower: tangential | both |", "|---|---|---|---:|---:|---:|---:|"]
+    ratios = {}
+    for one in measured:
+        for accuracy in ACCURACIES:
+            mine, other = (one["results"].get(f"{name} {accuracy:.0e}") for name in PROGRAMS)
+            start = f"| {one['surface']} {one['size']} | {one['part']:.0%}, {one['given']} | {accuracy:.0e} |"
+            times = [", ".join(shown(it[part]) for part in ("normal", "tangential", "whole")) if it else "not reached" for it in (mine, other)]
+            if other is None:
+                least = min((point["error"] for point in one["points"]["aspher"]), default=np.inf)
+                times[1] += f" (least error {least:.0e})"
+            else:
+                times[1] += f" ({other['tolerance']:.0e})"
+            each = ["", ""]
+            if mine and other:
+                ratio = [other[part] / mine[part] for part in ("tangential", "whole")]
+                each = [f"{value:.1f}" for value in ratio]
+                ratios.setdefault(accuracy, []).append(ratio)
+            lines.append(f"{start} {times[0]} | {times[1]} | {each[0]} | {each[1]} |")
+    # The column of the tangential problem alone, and that of both.
+    said = "; ".join(f"at {accuracy:.0e} {min(r[0] for r in both):.1f} to {max(r[0] for r in both):.1f} times for the tangential problem, "
+                     f"{min(r[1] for r in both):.1f} to {max(r[1] for r in both):.1f} times for both" for accuracy, both in ratios.items())
+    return (
+        f"{HEADING}\nWritten by `build/peers/bin/python benches/peers/friction.py`. Two like bodies are pressed together and shifted from rest, to 50 % and 90 % of mu N, "
+        f"by a motion or by a force; aspher {aspher.__version__} is slower: {said}. Accuracy is the larger one of the pressures' error as above and "
+        "the residual of the tangential problem relative to the shift or the displacements (docs/friction.md), "
+        "checked by a product of the bench's own.\n\n"
+        "nu = 0.3, mu = 0.3, one thread, milliseconds of the processor, medians of repeats taken in turns. Setting up counts: with aspher as part of its "
+        "normal problem. Whole cold calls; for contact-normal the tangential time is that of a call with friction less that of one without.\n\n"
+        + "\n".join(lines) + "\n\n![Friction: time against size](performance_friction.png)\n"
+    )
+
+
+def draw(measured):
+    """Both problems together over the size, at the tightest accuracy."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from pictures import STYLES
+
+    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), sharey=True, constrained_layout=True)
+    for axis, surface in zip(axes, ("ball", "rough")):
+        for name in PROGRAMS:
+            for given, line in (("motion", "-"), ("force", "--")):
+                at = [(one["size"], one["results"][key]["whole"]) for one in measured
+                      for key in [f"{name} {min(ACCURACIES):.0e}"]
+                      if (one["surface"], one["given"], one["part"]) == (surface, given, 0.5) and key in one["results"]]
+                if at:
+                    axis.loglog(*zip(*sorted(at)), label=f"{name}, {given}", **{**STYLES[name], "linestyle": line})
+        sizes = sorted({one["size"] for one in measured})
+        axis.set_xticks(sizes, [str(size) for size in sizes])
+        axis.minorticks_off()
+        axis.set_title(f"{surface}, to 50 % of mu N", fontsize=10)
+        axis.set_xlabel("elements in each direction")
+        axis.grid(True, color="0.85", linewidth=0.8)
+    axes[0].set_ylabel("processor seconds to 1e-6")
+    axes[1].legend(frameon=False, fontsize=8)
+    figure.savefig(os.path.join(ROOT, "docs", "performance_friction.png"), dpi=90)
+    plt.close(figure)
+
+
+def report():
+    """Table and picture."""
+    with open(RESULTS, encoding="utf-8") as file:
+        measured = json.load(file)
+    text = section(measured)
+    with open(PAGE, encoding="utf-8") as file:
+        before = file.read().split(HEADING)[0]
+    with open(PAGE, "w", encoding="utf-8") as file:
+        file.write(before.rstrip("\n") + "\n\n" + text)
+    draw(measured)
+    print(text)
+
+
+def main():
+    arguments = sys.argv[1:]
+    if "--report" not in arguments:
+        os.makedirs(os.path.dirname(RESULTS), exist_ok=True)
+        measured = []
+        for size in (64, 128, 256) if "--quick" in arguments else (64, 128, 256, 512):
+            for surface, given, part in SCENES:
+                if surface == "ball" or size >= 128:
+                    measured.append(measure(surface, given, part, size))
+                    with open(RESULTS, "w", encoding="utf-8") as file:
+                        json.dump(measured, file)
+    report()
+
+
+if __name__ == "__main__":
+    main()
