@@ -107,8 +107,14 @@ def report():
         "the clock of a quiet machine would say; the ratio by the clock stands beside theirs.\n\n"
         f"{table(measured)}\n\n![Time against error](performance_error.png)\n\n![Time against size](performance_size.png)\n"
     )
-    with open(os.path.join(ROOT, "docs", "performance_peers.md"), "w", encoding="utf-8") as file:
-        file.write(text)
+    path = os.path.join(ROOT, "docs", "performance_peers.md")
+    # friction.py writes what follows its heading.
+    friction = ""
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            friction = "".join(file.read().partition("\n## Friction\n")[1:])
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text + friction)
     pictures.draw(measured, os.path.join(ROOT, "docs"))
     print(text)
 

@@ -16,7 +16,7 @@ import scipy.fft
 
 
 class Shift:
-    """The normal problem, two like bodies with E* of the normal problem, and a tangential force or a shift along x."""
+    """The normal problem, two like bodies with E* of the normal problem, and a tangential force along x, or a shift (a pair)."""
 
     def __init__(self, normal, poisson_ratio, friction, force):
         self.normal, self.mu, self.force, self.shift = normal, friction, force, None
@@ -49,7 +49,7 @@ class Shift:
         q, g = q[:, contact], g[contact]
         circle = np.hypot(*q) >= g * (1.0 - 1e-7)
         if self.shift is not None:
-            return max(infeasible, residual(q, u, circle, np.array([-self.shift, 0.0])))
+            return max(infeasible, residual(q, u, circle, -np.asarray(self.shift)))
         given = np.array([self.force, 0.0]) / (self.normal.dx * self.normal.dy)
         forces = np.abs(q.sum(axis=1) - given).max() / g.sum()
         shifts = [-np.asarray(moved)] if moved is not None else []
