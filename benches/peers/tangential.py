@@ -19,7 +19,8 @@ class Shift:
     """The normal problem, two like bodies with E* of the normal problem, and a tangential force along x, or a shift (a pair)."""
 
     def __init__(self, normal, poisson_ratio, friction, force):
-        self.normal, self.mu, self.force, self.shift = normal, friction, force, None
+        self.normal, self.poisson_ratio, self.mu = normal, poisson_ratio, friction
+        self.force, self.shift = force, None
         # E* = G/(1 - nu) for two like bodies.
         self.shear_modulus = normal.modulus * (1.0 - poisson_ratio)
         my, mx = normal.h.shape
