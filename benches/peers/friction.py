@@ -155,6 +155,11 @@ def measure(surface, poisson_ratio, given, part, size):
     return dict(surface=surface, poisson_ratio=poisson_ratio, given=given, part=part, size=size, least=least, results=results)
 
 
+def shown(seconds):
+    """Three figures, in milliseconds."""
+    return f"{seconds * 1e3:.3g}" if seconds < 1 else f"{seconds * 1e3:.0f}"
+
+
 def section(measured):
     """The text of docs/performance_peers.md."""
     lines = ["| scene, nu | given | accuracy | contact-normal, ms: normal, tangential, both | aspher, ms (its setting, tolerances) | "
