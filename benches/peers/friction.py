@@ -188,11 +188,11 @@ def section(measured):
     version, both_times = importlib.metadata.version("aspher"), []
     for accuracy, both in ratios.items():
         (least, most), (least_both, most_both) = ((min(column), max(column)) for column in zip(*both))
-        both_times.append(f"at {accuracy:.0e} it takes {least:.1f} to {most:.1f} times as long for the tangential problem and {least_both:.1f} to {most_both:.1f} "
-                          f"times for both ({len(both)} of {len(measured)} scenes; it does not reach this accuracy in the others)")
+        both_times.append(f"at {accuracy:.0e} {least:.1f} to {most:.1f} times as long for the tangential problem and {least_both:.1f} to {most_both:.1f} "
+                          f"times for both, in the {len(both)} of {len(measured)} scenes where it reaches that")
     return (
         f"{HEADING}\nWritten by `build/peers/bin/python benches/peers/friction.py`. Two like bodies are pressed together and shifted from rest, to 50 % and 90 % of mu N, "
-        f"by a motion or by a force. aspher {version} beside contact-normal: {'; '.join(both_times)}.\n\nAccuracy is the larger one of the pressures' error as above and "
+        f"by a motion or by a force. aspher {version} takes {'; '.join(both_times)}.\n\nAccuracy is the larger one of the pressures' error as above and "
         "the residual of the tangential problem, which is relative to the shift or the displacements ([Friction](friction.md)), "
         "both checked by a product of the bench's own. Each has its loosest tolerances that reach it, aspher one for each problem and the faster one of its two settings.\n\n"
         "mu = 0.3, one thread, milliseconds of the processor, medians of repeats taken in turns. Setting up counts: with aspher as part of its "
@@ -207,6 +207,7 @@ def draw(measured):
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter
     from pictures import STYLES
 
     figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), sharey=True, constrained_layout=True)
@@ -219,13 +220,14 @@ def draw(measured):
                 if at:
                     axis.loglog(*zip(*sorted(at)), label=f"{name}, {part:.0%} of mu N", **{**STYLES[name], "linestyle": line})
         sizes = sorted({one["size"] for one in measured})
+        axis.set_xlim(sizes[0] / 1.2, sizes[-1] * 1.2)
         axis.set_xticks(sizes, [str(size) for size in sizes])
-        axis.minorticks_off()
+        axis.xaxis.set_minor_formatter(NullFormatter())
         axis.set_title(f"{surface}, nu = 0, motion given", fontsize=10)
         axis.set_xlabel("elements in each direction")
         axis.grid(True, color="0.85", linewidth=0.8)
     axes[0].set_ylabel(f"tangential problem to {SHOWN:.0e}, s")
-    axes[1].legend(frameon=False, fontsize=8)
+    axes[0].legend(frameon=False, fontsize=8)
     figure.savefig(os.path.join(ROOT, "docs", "performance_friction.png"), dpi=90)
     plt.close(figure)
 
