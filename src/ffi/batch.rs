@@ -165,8 +165,7 @@ impl Batch {
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             run(worker, &scene, options, None, outputs, &mut Buffers::default())
         };
-        let outcome =
-            solved().unwrap_or_else(|refusal| Conclusion { status: refusal.status, message: refusal.message });
+        let outcome = solved().unwrap_or_else(Conclusion::from);
         if !self.statuses.is_null() {
             // SAFETY: not null: room for `count` values.
             unsafe { self.statuses.add(i).write(outcome.status) };

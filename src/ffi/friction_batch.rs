@@ -10,7 +10,7 @@ use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{explain, watcher, Conclusion, Request};
+use super::solve::{explain, watcher, why, Conclusion, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
 use crate::friction::{Report, Solution};
@@ -120,8 +120,8 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
         if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
             return entries.conclude();
         }
-        let message = format!("the normal problem: {}", explain(stop, &normal, options.options.method, None));
-        Conclusion { status: stop.into(), message }.conclude()
+        let message = || format!("the normal problem: {}", explain(stop, &normal, options.options.method, None));
+        Conclusion::of(stop, message).conclude()
     })
 }
 
@@ -156,11 +156,8 @@ impl contact_normal_friction_results {
     /// Writes how entry i ended, and what was found of it.
     unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Conclusion {
         let outcome = match &ended {
-            Ok((stop, report)) => Conclusion { status: (*stop).into(), message: said(*stop, report) },
-            Err(error) => {
-                let refusal = Refusal::from(error.clone());
-                Conclusion { status: refusal.status, message: refusal.message }
-            }
+            Ok((stop, report)) => Conclusion::of(*stop, || said(*stop, report)),
+            Err(error) => Refusal::from(error.clone()).into(),
         };
         // SAFETY (all): by the caller: NULL or room for all entries.
         unsafe {
@@ -200,11 +197,8 @@ unsafe fn put<T>(to: *mut T, i: usize, value: T) {
 
 /// Why an entry is not OK.
 fn said(stop: Outcome, found: &Report) -> String {
-    let why = match stop {
-        Outcome::Converged => return String::new(),
-        Outcome::Cancelled => return "the progress callback cancelled".into(),
-        Outcome::IterationLimit => "max_cycles was reached",
-        Outcome::Stagnated => "no further progress",
-    };
-    format!("{why}; the residual is {:e}", found.certificate.residual)
+    match stop {
+        Outcome::Cancelled => why(stop).into(),
+        _ => format!("{}; the residual is {:e}", why(stop), found.certificate.residual),
+    }
 }

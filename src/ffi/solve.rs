@@ -71,7 +71,19 @@ pub(super) struct Conclusion {
     pub message: String,
 }
 
+impl From<Refusal> for Conclusion {
+    fn from(refusal: Refusal) -> Conclusion {
+        Conclusion { status: refusal.status, message: refusal.message }
+    }
+}
+
 impl Conclusion {
+    /// Of an outcome; what is not solved has a message.
+    pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
+        let message = if outcome == Outcome::Converged { String::new() } else { message() };
+        Conclusion { status: outcome.into(), message }
+    }
+
     /// The end of an export: the message becomes that of this thread.
     pub fn conclude(self) -> Result<contact_normal_status, Refusal> {
         if self.status < CONTACT_NORMAL_OK {
@@ -123,24 +135,23 @@ pub(super) fn run(
     let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, buffers)?, progress)?;
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;
-    let message = if stop == Outcome::Converged {
-        String::new()
-    } else {
-        explain(stop, &report, options.method, Some(solver.state()))
-    };
-    Ok(Conclusion { status: stop.into(), message })
+    Ok(Conclusion::of(stop, || explain(stop, &report, options.method, Some(solver.state()))))
+}
+
+/// Why a loop ended, in words.
+pub(super) fn why(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Converged => "solved",
+        Outcome::IterationLimit => "max_cycles was reached",
+        Outcome::Cancelled => "the progress callback cancelled",
+        Outcome::Stagnated => "no further progress",
+    }
 }
 
 pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
-    let why = match stop {
-        Outcome::Converged => "solved",
-        Outcome::IterationLimit => "max_cycles was reached",
-        Outcome::Cancelled => "the progress callback cancelled",
-        Outcome::Stagnated => "no further progress",
-    };
-    let mut message = format!("{why} after {cycles} cycles; the residual is {residual:e}");
+    let mut message = format!("{} after {cycles} cycles; the residual is {residual:e}", why(stop));
     message += tangential.as_deref().unwrap_or_default();
     if stop == Outcome::Stagnated {
         let (largest, round_off) = state.map_or((0.0, 0.0), round_off);

@@ -8,7 +8,7 @@ use super::report::{contact_normal_fields, contact_normal_report};
 use super::scene::contact_normal_scene;
 use super::solve::{explain, watcher, Conclusion, Request};
 use super::status::contact_normal_status;
-use crate::solver::{solve_tangential, Outcome, ProgressCallback};
+use crate::solver::{solve_tangential, ProgressCallback};
 
 /// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
 /// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
@@ -33,11 +33,6 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
         outputs.write_friction(Some(&solution), scene.grid.len());
         outputs.write_report(&report, &[])?;
-        let message = if stop == Outcome::Converged {
-            String::new()
-        } else {
-            explain(stop, &report, options.options.method, None)
-        };
-        Conclusion { status: stop.into(), message }.conclude()
+        Conclusion::of(stop, || explain(stop, &report, options.options.method, None)).conclude()
     })
 }

@@ -14,6 +14,7 @@
 use super::problem::{add, plus};
 use super::Vector;
 use crate::error::Result;
+use crate::grid::Grid;
 use crate::memory::zeros;
 
 /// Coarser grids: C reaches eight elements far.
@@ -29,8 +30,7 @@ pub struct Extension {
 
 /// One grid.
 struct Fields {
-    mx: usize,
-    my: usize,
+    grid: Grid,
     /// Whether a value is known: in C, or where a child's is.
     known: Vec<bool>,
     /// Coarse values; of the given grid none.
@@ -38,14 +38,14 @@ struct Fields {
 }
 
 impl Extension {
-    /// For a grid of `mx` by `my` elements.
-    pub fn new(mx: usize, my: usize) -> Result<Extension> {
+    /// For a grid.
+    pub fn new(grid: &Grid) -> Result<Extension> {
         let what = "the continuation of residuals";
-        let mut grids = vec![Fields { mx, my, known: zeros(mx * my, what)?, values: Vec::new() }];
-        let (mut mx, mut my) = (mx, my);
+        let mut grid = *grid;
+        let mut grids = vec![Fields { grid, known: zeros(grid.len(), what)?, values: Vec::new() }];
         for _ in 0..LEVELS {
-            (mx, my) = (mx.div_ceil(2), my.div_ceil(2));
-            grids.push(Fields { mx, my, known: zeros(mx * my, what)?, values: zeros(mx * my, what)? });
+            grid = Grid { mx: grid.mx.div_ceil(2), my: grid.my.div_ceil(2), dx: 2.0 * grid.dx, dy: 2.0 * grid.dy };
+            grids.push(Fields { grid, known: zeros(grid.len(), what)?, values: zeros(grid.len(), what)? });
         }
         Ok(Extension { grids })
     }
@@ -56,7 +56,7 @@ impl Extension {
         for l in 1..self.grids.len() {
             let (fine, coarse) = self.pair(l);
             for k in 0..coarse.known.len() {
-                coarse.known[k] = fine.known_children(k, coarse.mx).next().is_some();
+                coarse.known[k] = fine.known_children(k, &coarse.grid).next().is_some();
             }
         }
     }
@@ -68,7 +68,7 @@ impl Extension {
             let from = if l == 1 { &*r } else { &fine.values };
             for k in 0..coarse.values.len() {
                 let (mut sum, mut count) = ([0.0; 2], 0);
-                for child in fine.known_children(k, coarse.mx) {
+                for child in fine.known_children(k, &coarse.grid) {
                     (sum, count) = (add(sum, from[child]), count + 1);
                 }
                 coarse.values[k] = sum.map(|sum| sum / f64::from(count.max(1)));
@@ -76,11 +76,11 @@ impl Extension {
         }
         for l in (1..self.grids.len()).rev() {
             let (fine, coarse) = self.pair(l);
-            let Fields { mx, known, values, .. } = fine;
+            let Fields { grid, known, values } = fine;
             let to = if l == 1 { &mut *r } else { values };
             for i in (0..to.len()).filter(|&i| !known[i]) {
                 to[i] = [0.0; 2];
-                coarse.around(i, *mx, |k, weight| to[i] = plus(to[i], DECAY * weight, coarse.values[k]));
+                coarse.around(i, grid.mx, |k, weight| to[i] = plus(to[i], DECAY * weight, coarse.values[k]));
             }
         }
     }
@@ -93,15 +93,15 @@ impl Extension {
             let mut sums = std::mem::take(&mut coarse.values);
             sums.fill([0.0; 2]);
             for i in (0..from.len()).filter(|&i| !fine.known[i]) {
-                coarse.around(i, fine.mx, |k, weight| sums[k] = plus(sums[k], DECAY * weight, from[i]));
+                coarse.around(i, fine.grid.mx, |k, weight| sums[k] = plus(sums[k], DECAY * weight, from[i]));
             }
             coarse.values = sums;
         }
         for l in (1..self.grids.len()).rev() {
             let (fine, coarse) = self.pair(l);
             for k in (0..coarse.values.len()).filter(|&k| coarse.known[k]) {
-                let share = 1.0 / fine.known_children(k, coarse.mx).count() as f64;
-                for child in fine.children(k, coarse.mx).filter(|&child| fine.known[child]) {
+                let share = 1.0 / fine.known_children(k, &coarse.grid).count() as f64;
+                for child in coarse.grid.children(&fine.grid, k).filter(|&child| fine.known[child]) {
                     let to = if l == 1 { &mut z[child] } else { &mut fine.values[child] };
                     *to = plus(*to, share, coarse.values[k]);
                 }
@@ -117,23 +117,16 @@ impl Extension {
 }
 
 impl Fields {
-    /// The elements in element k of a coarser grid, `width` wide.
-    fn children(&self, k: usize, width: usize) -> impl Iterator<Item = usize> {
-        let within = |at: usize, m: usize| 2 * at..(2 * at + 2).min(m);
-        let (mx, columns) = (self.mx, within(k % width, self.mx));
-        within(k / width, self.my).flat_map(move |iy| columns.clone().map(move |ix| iy * mx + ix))
-    }
-
-    /// Those of them that are known.
-    fn known_children(&self, k: usize, width: usize) -> impl Iterator<Item = usize> + '_ {
-        self.children(k, width).filter(|&child| self.known[child])
+    /// The elements that are known in element k of the next coarser grid.
+    fn known_children(&self, k: usize, coarse: &Grid) -> impl Iterator<Item = usize> + '_ {
+        coarse.children(&self.grid, k).filter(|&child| self.known[child])
     }
 
     /// The elements between which the centre of element i of the next finer grid lies, `width` wide, and their weights.
     fn around(&self, i: usize, width: usize, mut take: impl FnMut(usize, f64)) {
-        for (ix, in_x) in neighbours(i % width, self.mx) {
-            for (iy, in_y) in neighbours(i / width, self.my) {
-                take(iy * self.mx + ix, in_x * in_y);
+        for (ix, in_x) in neighbours(i % width, self.grid.mx) {
+            for (iy, in_y) in neighbours(i / width, self.grid.my) {
+                take(self.grid.index(ix, iy), in_x * in_y);
             }
         }
     }
@@ -156,7 +149,7 @@ mod tests {
         for (mx, my) in [(21, 13), (17, 1)] {
             let value = |i: usize, seed: usize| ((i * 37 + seed) % 101) as f64 / 101.0 - 0.5;
             let bound: Vec<f64> = (0..mx * my).map(|i| if (i * 29 + i / 7) % 5 < 2 { 1.0 } else { 0.0 }).collect();
-            let mut extension = Extension::new(mx, my).unwrap();
+            let mut extension = Extension::new(&Grid::new(mx, my, 1.0, 1.0).unwrap()).unwrap();
             extension.contact_changed(&bound);
             let r: Vec<Vector> = (0..mx * my).map(|i| [bound[i] * value(i, 3), bound[i] * value(i, 8)]).collect();
             let w: Vec<Vector> = (0..mx * my).map(|i| [value(i, 50), value(i, 77)]).collect();

@@ -96,7 +96,7 @@ impl Problem {
             offset: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             operators,
-            extension: Extension::new(grid.mx, grid.my)?,
+            extension: Extension::new(&grid)?,
             runs: Vec::new(),
             count: 0,
             rms_bound: 0.0,

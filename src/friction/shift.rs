@@ -81,6 +81,17 @@ struct Steps {
     energy: f64,
 }
 
+impl Steps {
+    /// What of the last direction is kept: the parts are those of `z . (A + D) t`.
+    fn beta(&self, parts: impl Iterator<Item = f64>) -> f64 {
+        if self.energy > 0.0 {
+            (parts.fold(0.0, |sum, part| sum - part) / self.energy).max(0.0)
+        } else {
+            0.0
+        }
+    }
+}
+
 /// Iterates from what the state holds.
 pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Outcome {
     let Goal { tolerance, limit, watch, .. } = goal;
@@ -124,14 +135,9 @@ fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &m
     let Memory { tangent, direction, chord, product, debt, given, z, .. } = memory;
     let unit = problem.rms_bound();
     tangent.precondition(problem, &tangent.driving, unit, given, z);
-    let mut beta = 0.0;
-    if steps.energy > 0.0 {
-        for i in problem.contact() {
-            beta -= dot(z[i], plus(product[i], tangent.curvature[i], direction[i]));
-        }
-        beta = (beta / steps.energy).max(0.0);
-    }
     let f = steps.held_back;
+    let along_last = |i: usize| dot(z[i], plus(product[i], tangent.curvature[i], direction[i]));
+    let beta = steps.beta(problem.contact().map(along_last));
     // Outside C there are still continued residuals.
     given.fill([0.0; 2]);
     for i in problem.contact() {

@@ -38,7 +38,7 @@ impl Fields {
 /// `v . w`.
 pub fn dot(threads: &Threads, v: &[Vector], w: &[Vector]) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((&mut sums[..], 1), (&mut vec![(); v.len().div_ceil(BLOCK)][..], 1), |k, sum, _| {
+    threads.for_each_plain_row(&mut sums, 1, |k, sum| {
         let block = k * BLOCK..((k + 1) * BLOCK).min(v.len());
         sum[0] = dot_of_block(&v[block.clone()], &w[block]);
     });
@@ -47,30 +47,34 @@ pub fn dot(threads: &Threads, v: &[Vector], w: &[Vector]) -> f64 {
 
 /// `to += a v`, and then `to . w`.
 pub fn add_and_dot(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector], w: &[Vector]) -> f64 {
-    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
-        let block = k * BLOCK..k * BLOCK + to.len();
-        to.iter_mut().zip(&v[block.clone()]).for_each(|(to, v)| *to = plus(*to, a, *v));
-        sum[0] = dot_of_block(to, &w[block]);
-    });
-    sums.iter().sum()
+    add_and_sum(threads, to, a, v, |start, to| dot_of_block(to, &w[start..start + to.len()]))
 }
 
 /// `to += a v`, and then `to . to`.
 pub fn add_and_square(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector]) -> f64 {
+    add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
+}
+
+/// `to += a v`, and then the sum of what `of` makes of each block of it, which starts at an element.
+fn add_and_sum(
+    threads: &Threads,
+    to: &mut [Vector],
+    a: f64,
+    v: &[Vector],
+    of: impl Fn(usize, &[Vector]) -> f64 + Sync + Send,
+) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
-        let block = k * BLOCK..k * BLOCK + to.len();
-        to.iter_mut().zip(&v[block]).for_each(|(to, v)| *to = plus(*to, a, *v));
-        sum[0] = dot_of_block(to, to);
+        let start = k * BLOCK;
+        to.iter_mut().zip(&v[start..]).for_each(|(to, v)| *to = plus(*to, a, *v));
+        sum[0] = of(start, to);
     });
     sums.iter().sum()
 }
 
 /// `to += sum of a_j v_j`, in one pass.
 pub fn add_all(threads: &Threads, to: &mut [Vector], terms: &[(f64, &[Vector])]) {
-    let mut none = vec![(); to.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
         for (a, v) in terms {
             let v = &v[k * BLOCK..k * BLOCK + to.len()];
             to.iter_mut().zip(v).for_each(|(to, v)| *to = plus(*to, *a, *v));
@@ -80,24 +84,21 @@ pub fn add_all(threads: &Threads, to: &mut [Vector], terms: &[(f64, &[Vector])])
 
 /// `to *= a`.
 pub fn scale(threads: &Threads, to: &mut [Vector], a: f64) {
-    let mut none = vec![(); to.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |_, to, _| {
+    threads.for_each_plain_row(to, BLOCK, |_, to| {
         to.iter_mut().for_each(|to| *to = to.map(|value| a * value));
     });
 }
 
 /// `to = f(i, to)` for each element i.
 pub fn map(threads: &Threads, to: &mut [Vector], f: impl Fn(usize, Vector) -> Vector + Sync + Send) {
-    let mut none = vec![(); to.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i, *to));
     });
 }
 
 /// `to = f(i)` for each element i.
 pub fn fill(threads: &Threads, to: &mut [Vector], f: impl Fn(usize) -> Vector + Sync + Send) {
-    let mut none = vec![(); to.len().div_ceil(BLOCK)];
-    threads.for_each_row_pair((to, BLOCK), (&mut none[..], 1), |k, to, _| {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
     });
 }
@@ -105,7 +106,7 @@ pub fn fill(threads: &Threads, to: &mut [Vector], f: impl Fn(usize) -> Vector + 
 /// The sum of f over n elements.
 pub fn sum(threads: &Threads, n: usize, f: impl Fn(usize) -> Vector + Sync + Send) -> Vector {
     let mut sums = vec![[0.0; 2]; n.div_ceil(BLOCK)];
-    threads.for_each_row_pair((&mut sums[..], 1), (&mut vec![(); n.div_ceil(BLOCK)][..], 1), |k, sum, _| {
+    threads.for_each_plain_row(&mut sums, 1, |k, sum| {
         sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; 2], |s, v| plus(s, 1.0, v));
     });
     sums.iter().fold([0.0; 2], |s, v| plus(s, 1.0, *v))
