@@ -58,6 +58,9 @@ impl State {
                 // Less than what is at its limit carries: that is not at its limit.
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
+            } else if self.carries() {
+                // What is at its limit carries all of it.
+                break;
             } else {
                 self.spread(missing);
             }

@@ -3,13 +3,15 @@
 //!
 //! ```text
 //! free elements: p > 0, or e < 0
-//! r = -e on them               (prescribed force: of mean zero; the approach is the mean of h + u where p > 0)
-//! t = r + beta t               conjugate to the last direction while the free elements stay the same
+//! r = -e on them               (prescribed force: W r of mean zero; the approach is the mean of h + u where p > 0)
+//! t = W r + beta t             conjugate to the last direction while the free elements stay the same
 //! alpha = (r, t)/(t, A t)
 //! p = p + alpha t              if that is nowhere negative; otherwise whichever of these has less energy:
 //!     max(p + alpha t, 0)      scaled to carry a prescribed force
 //!     p + alpha' t             alpha' < alpha: as far as p stays >= 0
 //! ```
+//!
+//! W is the inverse of A's diagonal, times its least entry: 1 where all elements are alike, less where a layer is softer.
 //!
 //! With limits, p = p_max ends a step as p = 0 does, and an element there is free if e > 0.
 //!
@@ -28,13 +30,15 @@ pub struct Descent {
     free: Vec<bool>,
     free_before: Vec<bool>,
     residual: Vec<f64>,
+    /// W.
+    weight: Vec<f64>,
     t: Vec<f64>,
     /// A t.
     q: Vec<f64>,
     /// The change of p by a truncated step, and its product.
     change: Vec<f64>,
     product: Vec<f64>,
-    /// (r, r) of the last direction; 0: the next is conjugate to none.
+    /// (r, W r) of the last direction; 0: the next is conjugate to none.
     last_rr: f64,
     began: bool,
 }
@@ -49,8 +53,8 @@ impl<S: AdmissibleSet> Step<S> for Descent {
     }
 
     fn begin(&mut self, state: &State) -> Result<()> {
-        let Descent { free, free_before, residual, t, q, change, product, .. } = self;
-        for values in [residual, t, q, change, product] {
+        let Descent { free, free_before, residual, weight, t, q, change, product, .. } = self;
+        for values in [residual, weight, t, q, change, product] {
             values.clear();
             reserve(values, state.p.len(), "the workspace of projected descent")?;
             values.resize(state.p.len(), 0.0);
@@ -73,6 +77,7 @@ impl<S: AdmissibleSet> Step<S> for Descent {
     ) -> Result<Change> {
         if !std::mem::replace(&mut self.began, true) {
             take_over(problem, state, set);
+            self.weigh(problem);
         }
         if state.u_is == Freshness::Exact {
             self.last_rr = 0.0;
@@ -109,21 +114,29 @@ impl<S: AdmissibleSet> Step<S> for Descent {
 }
 
 impl Descent {
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        5 * self.t.len() * size_of::<f64>()
+    /// W.
+    fn weigh(&mut self, problem: &Problem) {
+        let own = |i: usize| problem.coefficients.entry(&problem.grid, i, i);
+        let least = (0..self.weight.len()).map(own).fold(f64::INFINITY, f64::min);
+        self.weight.iter_mut().enumerate().for_each(|(i, weight)| *weight = least / own(i));
     }
 
-    /// The free elements, r and t; returns (r, r).
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        6 * self.t.len() * size_of::<f64>()
+    }
+
+    /// The free elements, r and t; returns (r, W r).
     fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S) -> f64 {
-        find_free(state, set, &mut self.free, &mut self.residual);
+        find_free(state, set, &self.weight, &mut self.free, &mut self.residual);
         if self.free != self.free_before {
             self.last_rr = 0.0;
             self.free_before.clone_from(&self.free);
         }
-        let rr = dot(&self.residual, &self.residual);
+        let weighted = self.residual.iter().zip(&self.weight);
+        let rr = weighted.clone().map(|(r, w)| r * w * r).sum();
         let beta = if self.last_rr > 0.0 { rr / self.last_rr } else { 0.0 };
-        self.t.iter_mut().zip(&self.residual).for_each(|(t, r)| *t = r + beta * *t);
+        self.t.iter_mut().zip(weighted).for_each(|(t, (r, w))| *t = w * r + beta * *t);
         rr
     }
 
@@ -176,7 +189,7 @@ fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
 }
 
 /// The free elements and r; r = 0 on the others. An element at a bound is free where its r leads away from that.
-fn find_free<S: AdmissibleSet>(state: &State, set: S, free: &mut Vec<bool>, residual: &mut [f64]) {
+fn find_free<S: AdmissibleSet>(state: &State, set: S, weight: &[f64], free: &mut Vec<bool>, residual: &mut [f64]) {
     let at_limit = |i: usize| S::LIMITED && state.p[i] >= set.limit(i);
     free.clear();
     free.extend((0..state.p.len()).map(|i| match (at_limit(i), state.deformed_distance(i)) {
@@ -187,10 +200,10 @@ fn find_free<S: AdmissibleSet>(state: &State, set: S, free: &mut Vec<bool>, resi
         let (mut mean, mut count) = (0.0, 0.0);
         if let Load::Force(_) = state.load {
             for i in (0..free.len()).filter(|&i| free[i]) {
-                mean -= state.deformed_distance(i);
-                count += 1.0;
+                mean -= weight[i] * state.deformed_distance(i);
+                count += weight[i];
             }
-            mean /= f64::max(count, 1.0);
+            mean = if count > 0.0 { mean / count } else { 0.0 };
         }
         let mut dropped = false;
         for i in 0..free.len() {

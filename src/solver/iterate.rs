@@ -31,7 +31,7 @@ pub fn iterate<S: AdmissibleSet>(
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
     // A step need not take a cycle, but there are no more of them than cycles may be.
     for _ in 0..=goal.max_cycles {
-        if task.monitor.count.cycles >= goal.max_cycles || task.monitor.is_cancelled() {
+        if task.is_interrupted() {
             break;
         }
         // 2. p = 0 in E. 3. A step of the method on C.
@@ -102,8 +102,9 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
         task.state.fit_approach();
     }
     let mut survey = task.survey();
-    let ends = task.monitor.is_cancelled() || task.monitor.count.cycles >= task.goal.max_cycles;
-    if task.state.u_is == Freshness::Near && (ends || task.goal.holds(&survey, change.update, task.set)) {
+    if task.state.u_is == Freshness::Near
+        && (task.is_interrupted() || task.goal.holds(&survey, change.update, task.set))
+    {
         task.refresh();
         survey = task.survey();
     }

@@ -1,6 +1,7 @@
 //! Which methods solve a scene, in which order, each handing over to the next when it stalls; and how each starts from nothing.
 
 use super::best::Best;
+use super::by_approach::{Bracket, ByApproach};
 use super::estimates;
 use super::iterate::iterate;
 use super::nested::FullMultigrid;
@@ -26,6 +27,7 @@ pub struct Methods {
     multigrid: Option<FullMultigrid>,
     descent: Descent,
     norm: Norm,
+    bracket: Bracket,
     pub best: Best,
     shape: CycleShape,
 }
@@ -37,6 +39,7 @@ pub enum Stage {
     ProjectedCg,
     VCycles,
     FullMultigrid,
+    ByApproach,
     Descent,
     Norm,
 }
@@ -50,6 +53,7 @@ impl Methods {
             multigrid: None,
             descent: Descent::default(),
             norm: Norm::default(),
+            bracket: Bracket::default(),
             best: Best::default(),
             shape: options.cycle,
         })
@@ -164,7 +168,7 @@ impl Methods {
     }
 
     fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
-        let mut cycles = None;
+        let (mut cycles, mut by_approach) = (None, None);
         let method: &mut dyn Step<S> = match stage {
             Stage::Direct => match &mut self.direct {
                 Some(direct) => direct,
@@ -173,6 +177,10 @@ impl Methods {
             Stage::ProjectedCg => &mut self.projected_cg,
             Stage::VCycles | Stage::FullMultigrid => {
                 cycles.insert(set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?.cycles(0))
+            }
+            Stage::ByApproach => {
+                let Methods { projected_cg, descent, bracket, .. } = self;
+                by_approach.insert(ByApproach { projected_cg, descent, bracket, last: None, twice: false })
             }
             Stage::Descent => &mut self.descent,
             Stage::Norm => &mut self.norm,
@@ -190,7 +198,8 @@ impl Methods {
     pub fn bytes(&self) -> usize {
         let multigrid = self.multigrid.as_ref().map_or(0, FullMultigrid::bytes);
         let direct = self.direct.as_ref().map_or(0, Direct::bytes);
-        self.projected_cg.bytes() + direct + multigrid + self.descent.bytes() + self.norm.bytes() + self.best.bytes()
+        let kept = self.best.bytes() + self.bracket.bytes();
+        self.projected_cg.bytes() + direct + multigrid + self.descent.bytes() + self.norm.bytes() + kept
     }
 }
 
@@ -214,7 +223,7 @@ fn set_up_multigrid<'a>(
 
 /// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
 pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> &'static [Stage] {
-    use Stage::{Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
+    use Stage::{ByApproach, Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
     match method {
         Method::Norm => &[Norm],
         // Around limits V-cycles may go round in circles.
@@ -226,6 +235,7 @@ pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool
         Method::ProjectedCg => &[Direct, ProjectedCg],
         Method::Auto => match (symmetric, S::FIXED, multigrid) {
             (true, true, _) => &[ProjectedCg, Norm],
+            (true, false, _) if S::LIMITED => &[Direct, ProjectedCg, ByApproach, Descent, Norm],
             (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, Descent, Norm],
             (true, false, false) => &[Direct, ProjectedCg, Descent, Norm],
             (false, _, true) => &[FullMultigrid, Norm],

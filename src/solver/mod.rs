@@ -5,6 +5,7 @@
 
 mod batch;
 mod best;
+mod by_approach;
 mod check;
 mod estimates;
 mod friction_batch;

@@ -23,6 +23,11 @@ impl<S: AdmissibleSet> Task<'_, '_, S> {
         Survey::by(self.state, &self.problem.threads)
     }
 
+    /// Whether the caller cancelled, or no cycle is left.
+    pub fn is_interrupted(&self) -> bool {
+        self.monitor.is_cancelled() || self.monitor.count.cycles >= self.goal.max_cycles
+    }
+
     /// Counts the products on this grid since the last call.
     pub fn count_products(&mut self) {
         self.monitor.count_products(self.problem.take_products(), self.problem.work);

@@ -4,7 +4,7 @@
 use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Layer, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Report, Solver};
 
 fn ball(grid: &Grid) -> Vec<f64> {
@@ -164,6 +164,63 @@ fn with_a_layer_and_with_a_period() {
         let scene = Scene { pressure_limit: limit, layer, period, ..elastic.clone() };
         let (solver, report) = run(&scene, &tight(Method::Auto));
         assert_holds(&scene, &solver, &report, &format!("{layer:?} {period:?}"));
+    }
+}
+
+/// Uniform in [0, 1): splitmix64.
+fn noise(n: usize, seed: u64) -> Vec<f64> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..n).map(|_| next()).collect()
+}
+
+/// Bodies so stiff that displacements at the limit are smaller than what heights differ by: nearly who touches is at its limit.
+#[test]
+fn forces_on_white_noise_from_soft_to_nearly_rigid() {
+    let grid = Grid::new(35, 48, 0.1, 0.4).unwrap();
+    for seed in 0..6 {
+        let (h, uneven) = (noise(grid.len(), seed), noise(grid.len(), seed + 100));
+        let uneven: Vec<f64> = uneven.iter().map(|u| 0.5 + u).collect();
+        for modulus in [10.0, 1e3, 1e5] {
+            for (k, share) in [0.05, 0.3, 0.7, 0.95, 1.0].into_iter().enumerate() {
+                let limits = if k % 2 == 0 { PressureLimit::Uniform(1.0) } else { PressureLimit::PerElement(&uneven) };
+                let greatest = (0..grid.len()).map(|i| limits.at(i)).sum::<f64>() * grid.element_area();
+                let plain = Scene::new(grid, &h, Bodies::same(modulus, 0.3), Load::Force(share * greatest));
+                let scene = Scene { pressure_limit: Some(limits), ..plain };
+                let (solver, stop, report) = solve(&scene, &tight(Method::Auto)).unwrap();
+                let what = format!("seed {seed}, modulus {modulus}, {share} of the greatest force");
+                assert_eq!(stop, Outcome::Converged, "{what}: {report:?}");
+                let count = assert_holds(&scene, &solver, &report, &what);
+                assert!(count > 0, "{what}");
+            }
+        }
+    }
+}
+
+/// An uneven layer on a coated body, from nothing to ten thousand times as compliant as that: A's diagonal is as uneven, which the
+/// preconditioner, a circulant, does not know. Of coatings there is no multigrid.
+#[test]
+fn forces_on_an_uneven_layer() {
+    let grid = Grid::new(6, 3, 0.6, 0.6).unwrap();
+    let soft = CoatingLayer { thickness: 0.3, shear_modulus: 0.3, poisson_ratio: 0.3 };
+    let coating = Some(Coating { layers: [Some(soft), None] });
+    for seed in 0..300 {
+        let h: Vec<f64> = noise(grid.len(), seed).iter().map(|u| 3e-4 * u).collect();
+        let layers: Vec<f64> = noise(grid.len(), seed + 1000).iter().map(|u| 10f64.powf(5.0 * u) - 1.0).collect();
+        let layer = Some(Layer::PerElement(&layers));
+        let scene = Scene {
+            layer,
+            coating,
+            pressure_limit: Some(PressureLimit::Uniform(3e-4)),
+            ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(1e-4))
+        };
+        let (_, stop, report) = solve(&scene, &Options { tolerance: 1e-6, ..Options::default() }).unwrap();
+        assert_eq!(stop, Outcome::Converged, "seed {seed}: {report:?}");
     }
 }
 
