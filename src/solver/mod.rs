@@ -314,7 +314,7 @@ impl Solver {
         mut stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, friction::Report)> {
-        let (mut tangential_stop, mut found) = tangent.solve(turn, &self.state.p, false, monitor)?;
+        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, false, monitor)?;
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
         for _ in 0..MOST_TURNS {
             let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
@@ -328,7 +328,7 @@ impl Solver {
             let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
             (stop, _) = self.solve_normal(&scene, &options, None, monitor)?;
             let (products, seconds) = (found.products, found.seconds);
-            (tangential_stop, found) = tangent.solve(turn, &self.state.p, true, monitor)?;
+            (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, true, monitor)?;
             (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
         }
         log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");

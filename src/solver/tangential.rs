@@ -9,7 +9,7 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::operator::Precision;
 use crate::progress::Monitor;
-use crate::scene::{Friction, Motion, Scene};
+use crate::scene::{Friction, Motion, Prescribed, Scene};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -103,6 +103,30 @@ impl Tangent {
             again,
         };
         solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
+    }
+
+    /// The same with the pressures of a normal problem that ended with `stop`. Those of one that did not converge may be too small for
+    /// the force: then nothing moves in the directions in which it is given.
+    pub fn solve_after(
+        &mut self,
+        stop: Outcome,
+        turn: &Turn<'_>,
+        pressure: &[f64],
+        again: bool,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Report)> {
+        match self.solve(turn, pressure, again, monitor) {
+            Err(Error::Infeasible(message)) if stop != Outcome::Converged => {
+                log::info!("the normal problem is not solved: {message}");
+                let stays = |prescribed: Prescribed| match prescribed {
+                    Prescribed::Force(_) => Prescribed::Creepage(0.0),
+                    given => given,
+                };
+                let friction = Friction { prescribed: turn.friction.prescribed.map(stays), ..*turn.friction };
+                self.solve(&Turn { friction: &friction, ..*turn }, pressure, again, monitor)
+            }
+            found => found,
+        }
     }
 
     /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,

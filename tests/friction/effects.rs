@@ -6,7 +6,7 @@ use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{
     Bodies, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene,
 };
-use contact_normal::solver::{solve, Options, Outcome, Solver};
+use contact_normal::solver::{solve, Options, Outcome, Progress, Solver};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 
@@ -136,4 +136,31 @@ fn the_precisions_agree() {
     let apart = double.iter().zip(&mixed).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
     // Short waves of a residual of 1e-9 hide some 1e-6 of the tractions, of which the largest are 300.
     assert!(apart <= 1e-3, "{apart}");
+}
+
+/// Pressures of a normal problem that is stopped on its way may carry less than the tangential force: that is no refusal. The force is
+/// one that the solved problem carries.
+#[test]
+fn a_stop_of_the_normal_problem_is_not_a_force_that_is_too_large() {
+    let (grid, h) = ball(32, 0.06);
+    let friction = Friction { prescribed: [Prescribed::Force(300.0), Prescribed::Creepage(0.0)], ..Friction::new(0.5) };
+    let plain = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Approach(0.02)) };
+    let (solved, stop, report) = solve(&plain, &Options::default()).unwrap();
+    assert!(stop == Outcome::Converged && 0.5 * report.measures.force > 300.0);
+    let mut too_little = 0;
+    for last in 1..=6 {
+        let mut told = 0;
+        let mut watch = |_: &Progress| {
+            told += 1;
+            told >= last
+        };
+        let mut solver = Solver::new(&plain, &Options::default()).unwrap();
+        let (stop, report) = solver.solve(&plain, &Options::default(), None, Some(&mut watch)).unwrap();
+        assert_eq!(stop, Outcome::Cancelled);
+        too_little += usize::from(0.5 * report.measures.force <= 300.0);
+        let found = solver.friction().unwrap();
+        let admissible = found.traction.iter().zip(&solver.state().p).all(|(q, p)| q[0].hypot(q[1]) <= 0.5 * p);
+        assert!(admissible && solver.state().p != solved.state().p, "{last}");
+    }
+    assert!(too_little > 0);
 }
