@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::call::initialised;
+use crate::call::{initialised, last_error};
 use crate::half_space::compliance;
 use crate::random::Random;
 use crate::rules::Failure;
@@ -63,14 +63,18 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     let error = (found / exact - 1.0).abs();
     let (target, reached) = (accuracy.target, accuracy.reached);
     let details = format!(
-        "status {status}: target {target:.1e}, reached {reached:.1e}, true {error:.1e}, {} x {} from {mx} x {my}, by force: {by_force}",
-        accuracy.mx, accuracy.my
+        "status {status}: target {target:.1e}, reached {reached:.1e}, true {error:.1e}, {} x {} from {mx} x {my}, by force: {by_force}: {}",
+        accuracy.mx, accuracy.my, last_error()
     );
     let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
     let holds = match status {
         CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= target,
-        // The next grid would have been too large.
-        CONTACT_NORMAL_ITERATION_LIMIT => 4 * elements > MOST && reached > target,
+        // The next grid would have been too large. Contacts of less than 32 elements across meet no target, whatever they reach; the
+        // centre lies within an element.
+        CONTACT_NORMAL_ITERATION_LIMIT => {
+            let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
+            4 * elements > MOST && (reached > target || across < 33.0)
+        }
         _ => false,
     };
     if holds && elements <= MOST {

@@ -227,7 +227,14 @@ impl Accuracy {
     /// The limit that so many doublings would break, if any.
     fn limit(&self, past: &Past, doublings: u32) -> Option<String> {
         let (mx, my) = ((past.grid.mx as u64) << doublings, (past.grid.my as u64) << doublings);
-        let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements"));
+        let why = match past.is_resolved() {
+            true => String::new(),
+            false => format!(
+                "; {} elements across the contact are less than {ENOUGH_ACROSS}",
+                past.across.0.min(past.across.1)
+            ),
+        };
+        let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements{why}"));
         let most = if self.max_elements == 0 { MOST_ELEMENTS } else { self.max_elements };
         // mx and my are below 2^34.
         if mx.saturating_mul(my) > most.min(ALL_ELEMENTS) {
