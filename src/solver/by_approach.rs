@@ -171,6 +171,8 @@ impl<S: AdmissibleSet> Step<S> for ByApproach<'_> {
             Some(_) => self.narrow(&mut task, wanted)?,
         };
         if !found {
+            // The force is not carried.
+            state.u_is = Freshness::Stale;
             return Ok(gives_up);
         }
         let Bracket { low, high, .. } = &*self.bracket;
