@@ -113,10 +113,11 @@ impl Measures {
         self.residual <= tolerance * (1.0 + 1e-12) * self.distance + self.rounding * self.count.sqrt()
     }
 
-    /// Whether the conditions hold but for what rounding may leave of each: then nobody can do better. Measured over 20000 cases: what
-    /// stagnates is within four of the rounding.
+    /// Whether the conditions hold but for what rounding may leave of each: then nobody can do better. With a prescribed force the
+    /// approach is a mean over C, a sum of so many numbers. Measured over 60000 cases: what stagnates is within four of one e's rounding
+    /// on small contact areas, within 13 of it on some thousand elements.
     fn holds_to_rounding(&self, case: &Case, found: &Outputs) -> bool {
-        let (tolerance, rounding) = (case.how.tolerance, 10.0 * self.rounding);
+        let (tolerance, rounding) = (case.how.tolerance, (10.0 + self.count.sqrt()) * self.rounding);
         let pressures = found.p.iter().sum::<f64>();
         let free = self.violation <= tolerance * self.rms + rounding
             && self.work.0 <= tolerance * self.work.1 + rounding * pressures;
