@@ -130,6 +130,27 @@ impl Table {
         &self.values[y * width..][..width]
     }
 
+    /// Row ky of a grid coarsened in x, or as it is. The outer two are added first: so what is even stays so to the last bit.
+    fn coarsen_row(&self, ky: i64, halved: bool, out: &mut [f64]) {
+        let (row, last) = (self.row(ky), out.len() - 1);
+        let first = if self.even { 0 } else { -(last as i64) / 2 };
+        if !halved {
+            let start = place(first, self.cx, self.even);
+            return out.copy_from_slice(&row[start..=start + last]);
+        }
+        // What lies beyond the ends is not of the row itself.
+        for i in [0, last] {
+            let [before, at, after] = [-1, 0, 1].map(|k| row[place(2 * (first + i as i64) + k, self.cx, self.even)]);
+            out[i] = at + 0.5 * (before + after);
+        }
+        if last > 1 {
+            let start = place(2 * first, self.cx, self.even) + 1;
+            for (value, three) in out[1..last].iter_mut().zip(row[start..].windows(3).step_by(2)) {
+                *value = three[1] + 0.5 * (three[0] + three[2]);
+            }
+        }
+    }
+
     /// The rows of `grid`, each as far as the grid reaches.
     fn rows_of<'a>(&'a self, grid: &Grid) -> impl DoubleEndedIterator<Item = &'a [f64]> {
         let (mx, last, even, cx) = (grid.mx, grid.my as i64 - 1, self.even, self.cx);
@@ -175,10 +196,15 @@ impl Kernel for Table {
             out[..inside].copy_from_slice(&row[..inside]);
             return out[inside..].fill(row[self.cx - 1]);
         }
-        let (above, below) = (self.row(ky), self.row(-ky));
-        for (kx, value) in (0..).zip(out) {
-            let (right, left) = (place(kx, self.cx, false), place(-kx, self.cx, false));
-            *value = 0.25 * (above[right] + above[left] + below[right] + below[left]);
+        let ([above, below], zero) = ([self.row(ky), self.row(-ky)], self.cx - 1);
+        let right = above[zero..].iter().zip(&below[zero..]);
+        let left = above[..=zero].iter().rev().zip(below[..=zero].iter().rev());
+        for (value, ((a, b), (c, d))) in out.iter_mut().zip(right.zip(left)) {
+            *value = 0.25 * (a + c + b + d);
+        }
+        if out.len() > self.cx {
+            let last = out[self.cx - 1];
+            out[self.cx..].fill(last);
         }
     }
 
@@ -205,26 +231,23 @@ impl Kernel for Table {
     }
 
     fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
-        let (half_x, half_y, even) = (coarse.mx < fine.mx, coarse.my < fine.my, self.even);
-        let (cx, cy) = (coarse.mx, coarse.my);
-        let first = |c: usize| if even { 0 } else { 1 - c as i64 };
+        let (half_y, even, (cx, cy)) = (coarse.my < fine.my, self.even, (coarse.mx, coarse.my));
         let (columns, rows) = (width(cx, even), width(cy, even));
-        let joined = |halved: bool, k: i64| if halved { [2 * k - 1, 2 * k, 2 * k + 1] } else { [k; 3] };
-        // The outer two are added first: so what is even stays so to the last bit.
-        let sum = |halved: bool, [before, at, after]: [f64; 3]| if halved { at + 0.5 * (before + after) } else { at };
         let mut in_x = blank(3 * columns, f64::NAN, TABLE)?;
         let mut values = Vec::new();
         reserve(&mut values, columns * rows, TABLE)?;
-        for ky in first(cy)..cy as i64 {
-            for (out, ky) in in_x.chunks_exact_mut(columns).zip(joined(half_y, ky)) {
-                let row = self.row(ky);
-                for (value, kx) in out.iter_mut().zip(first(cx)..) {
-                    *value = sum(half_x, joined(half_x, kx).map(|kx| row[place(kx, self.cx, even)]));
-                }
+        for ky in (if even { 0 } else { 1 - cy as i64 })..cy as i64 {
+            let joined = if half_y { [2 * ky - 1, 2 * ky, 2 * ky + 1] } else { [ky; 3] };
+            for (out, ky) in in_x.chunks_exact_mut(columns).zip(joined) {
+                self.coarsen_row(ky, coarse.mx < fine.mx, out);
             }
             let (before, rest) = in_x.split_at(columns);
             let (at, after) = rest.split_at(columns);
-            values.extend((0..columns).map(|i| sum(half_y, [before[i], at[i], after[i]])));
+            match half_y {
+                true => values
+                    .extend(at.iter().zip(before).zip(after).map(|((at, before), after)| at + 0.5 * (before + after))),
+                false => values.extend_from_slice(at),
+            }
         }
         Ok(Arc::new(Table { cx, cy, even, values: Arc::new(values) }))
     }
