@@ -37,7 +37,7 @@ pub struct Table {
 }
 
 /// Coefficients of one direction that are kept.
-fn width(c: usize, even: bool) -> usize {
+pub(super) fn width(c: usize, even: bool) -> usize {
     if even {
         c
     } else {
@@ -46,7 +46,7 @@ fn width(c: usize, even: bool) -> usize {
 }
 
 /// Whether all are finite, looked at many at a time.
-fn are_finite(values: &[f64], scale: f64) -> bool {
+pub(super) fn are_finite(values: &[f64], scale: f64) -> bool {
     values.iter().fold(true, |all, value| all & (scale * value).is_finite())
 }
 
@@ -130,27 +130,6 @@ impl Table {
         &self.values[y * width..][..width]
     }
 
-    /// Row ky of a grid coarsened in x, or as it is. The outer two are added first: so what is even stays so to the last bit.
-    fn coarsen_row(&self, ky: i64, halved: bool, out: &mut [f64]) {
-        let (row, last) = (self.row(ky), out.len() - 1);
-        let first = if self.even { 0 } else { -(last as i64) / 2 };
-        if !halved {
-            let start = place(first, self.cx, self.even);
-            return out.copy_from_slice(&row[start..=start + last]);
-        }
-        // What lies beyond the ends is not of the row itself.
-        for i in [0, last] {
-            let [before, at, after] = [-1, 0, 1].map(|k| row[place(2 * (first + i as i64) + k, self.cx, self.even)]);
-            out[i] = at + 0.5 * (before + after);
-        }
-        if last > 1 {
-            let start = place(2 * first, self.cx, self.even) + 1;
-            for (value, three) in out[1..last].iter_mut().zip(row[start..].windows(3).step_by(2)) {
-                *value = three[1] + 0.5 * (three[0] + three[2]);
-            }
-        }
-    }
-
     /// The rows of `grid`, each as far as the grid reaches.
     fn rows_of<'a>(&'a self, grid: &Grid) -> impl DoubleEndedIterator<Item = &'a [f64]> {
         let (mx, last, even, cx) = (grid.mx, grid.my as i64 - 1, self.even, self.cx);
@@ -168,8 +147,46 @@ fn not_finite(row: &[f64], scale: f64, (kx, ky): (i64, i64)) -> Error {
     ))
 }
 
+/// A row of the coefficients of c elements, on a grid coarsened in x or as it is. The outer two are added first: so what is even stays so
+/// to the last bit.
+pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: &mut [f64]) {
+    let last = out.len() - 1;
+    let first = if even { 0 } else { -(last as i64) / 2 };
+    if !halved {
+        let start = place(first, c, even);
+        return out.copy_from_slice(&row[start..=start + last]);
+    }
+    // What lies beyond the ends is not of the row itself.
+    for i in [0, last] {
+        let [before, at, after] = [-1, 0, 1].map(|k| row[place(2 * (first + i as i64) + k, c, even)]);
+        out[i] = at + 0.5 * (before + after);
+    }
+    if last > 1 {
+        let start = place(2 * first, c, even) + 1;
+        for (value, three) in out[1..last].iter_mut().zip(row[start..].windows(3).step_by(2)) {
+            *value = three[1] + 0.5 * (three[0] + three[2]);
+        }
+    }
+}
+
+/// The largest of some values, whatever their sign.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    // Several at a time: that the compiler can vectorise.
+    const LANES: usize = 8;
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let mut largest = [0.0; LANES];
+    let blocks = values.chunks_exact(LANES);
+    let rest = blocks.remainder().iter().fold(0.0, |largest, value| larger(value.abs(), largest));
+    for block in blocks {
+        for lane in 0..LANES {
+            largest[lane] = larger(block[lane].abs(), largest[lane]);
+        }
+    }
+    largest.into_iter().fold(rest, larger)
+}
+
 /// Where an offset stands among those kept, the outermost one where they end.
-fn place(k: i64, c: usize, even: bool) -> usize {
+pub(super) fn place(k: i64, c: usize, even: bool) -> usize {
     let last = c as i64 - 1;
     match even {
         true => k.abs().min(last) as usize,
@@ -213,9 +230,7 @@ impl Kernel for Table {
     }
 
     fn largest(&self, grid: &Grid) -> f64 {
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        let of_row = |row: &[f64]| row.iter().fold(0.0, |largest: f64, value| larger(largest, value.abs()));
-        self.rows_of(grid).map(of_row).fold(0.0, larger)
+        self.rows_of(grid).map(largest).fold(0.0, f64::max)
     }
 
     fn is_symmetric(&self, grid: &Grid) -> bool {
@@ -239,7 +254,7 @@ impl Kernel for Table {
         for ky in (if even { 0 } else { 1 - cy as i64 })..cy as i64 {
             let joined = if half_y { [2 * ky - 1, 2 * ky, 2 * ky + 1] } else { [ky; 3] };
             for (out, ky) in in_x.chunks_exact_mut(columns).zip(joined) {
-                self.coarsen_row(ky, coarse.mx < fine.mx, out);
+                coarsen_row(self.row(ky), self.cx, even, coarse.mx < fine.mx, out);
             }
             let (before, rest) = in_x.split_at(columns);
             let (at, after) = rest.split_at(columns);
