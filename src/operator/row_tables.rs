@@ -50,9 +50,12 @@ impl<T: Real> PerRow<T> {
                     _ => {}
                 }
                 let (given, rest) = period.split_at_mut(mx);
-                let zeros = rest.len() + 1 - mx;
+                // Of the shortest period, 2 mx - 2, the outermost offsets are one.
+                let mirrored = (mx - 1).min(rest.len());
+                let zeros = rest.len() - mirrored;
                 rest[..zeros].fill(Complex::default());
-                rest[zeros..].iter_mut().zip(given[1..].iter().rev()).for_each(|(value, from)| *value = *from);
+                rest[zeros..].copy_from_slice(&given[1..=mirrored]);
+                rest[zeros..].reverse();
                 transform.forward(period, scratch);
             });
             let pairs = &pairs[..];
