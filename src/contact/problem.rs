@@ -71,6 +71,7 @@ impl Problem {
     /// Takes other coefficients, on the same grid; plans and memory are kept where nobody else uses the operator. Not to be used after
     /// an error, before it is renewed again.
     pub fn renew(&mut self, coefficients: Coefficients) -> Result<()> {
+        let periods = self.operator.periods();
         match Arc::get_mut(&mut self.operator) {
             Some(operator) => operator.renew(&coefficients, 1.0, &self.grid, &mut self.set_up)?,
             None => {
@@ -78,7 +79,9 @@ impl Problem {
                 self.operator = Arc::new(Operator::new(&coefficients, &self.grid, &threads)?);
             }
         }
-        self.workspace.cover(self.operator.workspace()?);
+        if self.operator.periods() != periods {
+            self.workspace = self.operator.workspace()?;
+        }
         self.symmetric = coefficients.is_symmetric(&self.grid);
         self.coefficients = coefficients;
         Ok(())

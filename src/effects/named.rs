@@ -111,7 +111,8 @@ impl Named {
             (Some(Kept::Number(kept)), Value::Number(number)) => {
                 Some(format!("{name} is {number}; this solver was set up with {kept}"))
             }
-            (Some(Kept::Shared(kept)), Value::Shared(values)) => {
+            // Of tables that are even less is kept.
+            (Some(Kept::Shared(kept)), Value::Shared(values)) if kept.len() == values.len() => {
                 let other = kept.iter().zip(&**values).find(|(kept, now)| kept != now);
                 let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
                 Some(format!(
@@ -119,6 +120,10 @@ impl Named {
                      contact_normal_solver_set_influence)"
                 ))
             }
+            (Some(Kept::Shared(_)), _) => Some(format!(
+                "{name} holds other coefficients than this solver has; leave them out, or set them first (for influence: \
+                 contact_normal_solver_set_influence)"
+            )),
             (Some(_), _) => Some(format!("{name} has other values than this solver was set up with")),
             (None, _) => Some(format!("{name} is given, but this solver was set up without")),
         }

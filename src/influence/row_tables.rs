@@ -20,11 +20,11 @@
 
 use std::sync::Arc;
 
-use super::table::{check_scale, SYMMETRY};
+use super::table::{are_finite, check_scale, coarsen_row, largest, place, width, SYMMETRY};
 use super::Kernel;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::memory::reserve;
+use crate::memory::{blank, reserve};
 
 /// What memory is for.
 const TABLES: &str = "the tables of coefficients";
@@ -35,6 +35,8 @@ pub struct RowTables {
     pub(crate) mx: usize,
     pub(crate) my: usize,
     even: bool,
+    /// The largest, whatever its sign.
+    largest: f64,
     /// `[jy][iy][width]`, shared by all that hold the tables.
     pub(crate) values: Arc<Vec<f64>>,
 }
@@ -46,7 +48,10 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
     for (k, row) in values.chunks_exact(2 * cx).enumerate() {
         let (jy, iy) = (k / my, k % my);
         let row = &row[cx + 1 - mx..cx + mx];
-        if let Some(i) = row.iter().position(|value| !(scale * value).is_finite()) {
+        // All of a row, which the compiler can vectorise. What is even needs a look at one half.
+        even &= row[mx - 1..].iter().zip(row[..mx].iter().rev()).fold(true, |all, (a, b)| all & (a == b));
+        if !are_finite(if even { &row[mx - 1..] } else { row }, scale) {
+            let i = row.iter().position(|value| !(scale * value).is_finite()).unwrap_or(0);
             let kx = i as i64 - (mx as i64 - 1);
             return Err(Error::NotFinite(format!(
                 "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
@@ -60,7 +65,6 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
                 scale * row[mx - 1]
             )));
         }
-        even &= row[mx - 1..].iter().eq(row[..mx].iter().rev());
     }
     Ok(even)
 }
@@ -99,7 +103,7 @@ impl RowTables {
             let row = &row[if even { cx } else { cx + 1 - mx }..cx + mx];
             kept.extend(row.iter().map(|value| scale * value));
         }
-        Ok(RowTables { mx, my, even, values: Arc::new(kept) })
+        Ok(RowTables { mx, my, even, largest: largest(&kept), values: Arc::new(kept) })
     }
 
     /// Whether all tables are even in x.
@@ -127,18 +131,15 @@ impl RowTables {
         }
     }
 
-    fn row(&self, jy: usize, iy: usize) -> &[f64] {
+    /// The coefficients of a loaded row jy and a row iy: at offsets `0..mx`, where all tables are even, or else from `1 - mx` on.
+    pub fn row(&self, jy: usize, iy: usize) -> &[f64] {
         let width = width(self.mx, self.even);
         &self.values[(jy * self.my + iy) * width..][..width]
     }
 
     /// Where offset kx stands in a row, the outermost one where it ends.
     fn column(&self, kx: i64) -> usize {
-        let last = self.mx as i64 - 1;
-        match self.even {
-            true => kx.abs().min(last) as usize,
-            false => (kx.clamp(-last, last) + last) as usize,
-        }
+        place(kx, self.mx, self.even)
     }
 
     /// Pairs of rows (jy, iy), `iy - jy = ky`; those furthest apart where the grid ends.
@@ -164,7 +165,9 @@ impl Kernel for RowTables {
         out.fill(0.0);
         let rows = || self.rows_apart(ky).chain(self.rows_apart(-ky));
         for row in rows().map(|(jy, iy)| self.row(jy, iy)) {
-            for (value, kx) in out.iter_mut().zip(0..) {
+            let inside = if self.even { out.len().min(self.mx) } else { 0 };
+            out[..inside].iter_mut().zip(row).for_each(|(value, c)| *value += c + c);
+            for (value, kx) in out[inside..].iter_mut().zip(inside as i64..) {
                 *value += row[self.column(kx)] + row[self.column(-kx)];
             }
         }
@@ -173,21 +176,21 @@ impl Kernel for RowTables {
     }
 
     fn largest(&self, _grid: &Grid) -> f64 {
-        self.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+        self.largest
     }
 
     fn is_even(&self, _grid: &Grid) -> bool {
         false
     }
 
-    fn is_symmetric(&self, grid: &Grid) -> bool {
-        let allowed = SYMMETRY * self.largest(grid);
+    fn is_symmetric(&self, _grid: &Grid) -> bool {
+        let allowed = SYMMETRY * self.largest;
         let alike = |jy: usize, iy: usize| {
             let (row, turned) = (self.row(jy, iy), self.row(iy, jy));
-            let near = |(a, b): (&f64, &f64)| (a - b).abs() <= allowed;
+            let near = |all: bool, (a, b): (&f64, &f64)| all & ((a - b).abs() <= allowed);
             match self.even {
-                true => row.iter().zip(turned).all(near),
-                false => row.iter().zip(turned.iter().rev()).all(near),
+                true => row.iter().zip(turned).fold(true, near),
+                false => row.iter().zip(turned.iter().rev()).fold(true, near),
             }
         };
         (0..self.my).all(|jy| (0..=jy).all(|iy| alike(jy, iy)))
@@ -200,43 +203,31 @@ impl Kernel for RowTables {
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
         let Grid { mx, my, .. } = *coarse;
         let (half_x, half_y) = (mx < self.mx, my < self.my);
-        // The outer two are added first: so what is even stays so to the last bit.
-        let in_x = |row: &[f64], kx: i64| match half_x {
-            true => row[self.column(2 * kx)] + 0.5 * (row[self.column(2 * kx - 1)] + row[self.column(2 * kx + 1)]),
-            false => row[self.column(kx)],
-        };
         // The row at the same distance where one lies beyond the last.
         let row = |jy: usize, iy: usize| {
             let beyond = jy.max(iy).saturating_sub(self.my - 1);
             self.row(jy.saturating_sub(beyond), iy.saturating_sub(beyond))
         };
-        let mut values = Vec::new();
-        reserve(&mut values, my * my * width(mx, self.even), TABLES)?;
-        let first = if self.even { 0 } else { 1 - mx as i64 };
-        for (jy, iy) in (0..my * my).map(|k| (k / my, k % my)) {
-            let (one, other) = match half_y {
-                true => (
-                    [row(2 * jy, 2 * iy), row(2 * jy + 1, 2 * iy + 1)],
-                    Some([row(2 * jy, 2 * iy + 1), row(2 * jy + 1, 2 * iy)]),
-                ),
-                false => ([row(jy, iy); 2], None),
-            };
-            let both = |rows: [&[f64]; 2], kx: i64| 0.5 * (in_x(rows[0], kx) + in_x(rows[1], kx));
-            values.extend((first..mx as i64).map(|kx| both(one, kx) + other.map_or(0.0, |other| both(other, kx))));
+        let (fine, coarse) = (width(self.mx, self.even), width(mx, self.even));
+        let mut joined = blank(fine, f64::NAN, TABLES)?;
+        let mut values = blank(my * my * coarse, f64::NAN, TABLES)?;
+        for (k, out) in values.chunks_exact_mut(coarse).enumerate() {
+            let (jy, iy) = (k / my, k % my);
+            if !half_y {
+                coarsen_row(row(jy, iy), self.mx, self.even, half_x, out);
+                continue;
+            }
+            let one = row(2 * jy, 2 * iy).iter().zip(row(2 * jy + 1, 2 * iy + 1));
+            let other = row(2 * jy, 2 * iy + 1).iter().zip(row(2 * jy + 1, 2 * iy));
+            for (value, ((a, b), (c, d))) in joined.iter_mut().zip(one.zip(other)) {
+                *value = 0.5 * (a + b) + 0.5 * (c + d);
+            }
+            coarsen_row(&joined, self.mx, self.even, half_x, out);
         }
-        Ok(Arc::new(RowTables { mx, my, even: self.even, values: Arc::new(values) }))
+        Ok(Arc::new(RowTables { mx, my, even: self.even, largest: largest(&values), values: Arc::new(values) }))
     }
 
     fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
-    }
-}
-
-/// Coefficients of one row that are kept.
-fn width(mx: usize, even: bool) -> usize {
-    if even {
-        mx
-    } else {
-        2 * mx - 1
     }
 }

@@ -121,6 +121,20 @@ impl<T: Real> Operator<T> {
         }
     }
 
+    /// The threads of its products.
+    pub fn threads(&self) -> &Threads {
+        &self.rows.threads
+    }
+
+    /// The periods: another operator of the same grid and periods needs the same workspace.
+    pub fn periods(&self) -> (usize, usize) {
+        let in_y = match &self.columns {
+            Columns::Convolution(convolution) => convolution.columns.length(),
+            Columns::PerRow(_) => self.rows.my,
+        };
+        (self.rows.transform.length(), in_y)
+    }
+
     /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
     /// error, before it is renewed again.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {

@@ -11,11 +11,11 @@
 use std::ops::Range;
 
 use super::columns::for_each_block;
-use super::fft::{Complex, Real, RowTransform};
+use super::fft::{ColumnTransform, Complex, Real, RowTransform};
 use super::rows::{Product, Rows};
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
-use crate::memory::{computed, keep, zeros};
+use crate::memory::{blank, computed, keep, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -31,6 +31,48 @@ pub(super) struct PerRow<T: Real> {
 }
 
 impl<T: Real> PerRow<T> {
+    /// Of tables that are even in x: two of their rows are transformed at a time, one as the real and one as the imaginary part.
+    fn even(tables: &RowTables, (least, factor): (f64, f64), px: usize, threads: &Threads) -> Result<PerRow<T>> {
+        let (mx, my, transform) = (tables.mx, tables.my, ColumnTransform::<f64>::new(px));
+        let mut values = matrices(my, 1, px / 2 + 1)?;
+        let nan = Complex::new(f64::NAN, f64::NAN);
+        let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
+        let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| transform.scratch()).collect();
+        let scale = factor / px as f64;
+        for jy in 0..my {
+            threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
+                let iy = 2 * pair;
+                let rows = tables.row(jy, iy).iter().zip(tables.row(jy, (iy + 1).min(my - 1)));
+                period.iter_mut().zip(rows).for_each(|(value, (re, im))| *value = Complex::new(*re, *im));
+                match jy.checked_sub(iy) {
+                    Some(0) => period[0].re += least,
+                    Some(1) => period[0].im += least,
+                    _ => {}
+                }
+                let (given, rest) = period.split_at_mut(mx);
+                // Of the shortest period, 2 mx - 2, the outermost offsets are one.
+                let mirrored = (mx - 1).min(rest.len());
+                let zeros = rest.len() - mirrored;
+                rest[..zeros].fill(Complex::default());
+                rest[zeros..].copy_from_slice(&given[1..=mirrored]);
+                rest[zeros..].reverse();
+                transform.forward(period, scratch);
+            });
+            let pairs = &pairs[..];
+            threads.for_each_row(&mut values, my * my, &mut pieces, |bin, matrix, _| {
+                let column = pairs[bin..].iter().step_by(px);
+                for (two, value) in matrix[jy * my..][..my].chunks_mut(2).zip(column) {
+                    two[0] = T::of(scale * value.re);
+                    if let Some(second) = two.get_mut(1) {
+                        *second = T::of(scale * value.im);
+                    }
+                }
+            });
+        }
+        keep([&mut pairs]);
+        Ok(PerRow { my, planes: 1, values })
+    }
+
     /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
     pub fn new(
         tables: &RowTables,
@@ -38,12 +80,11 @@ impl<T: Real> PerRow<T> {
         rows: &RowTransform<f64>,
         threads: &Threads,
     ) -> Result<PerRow<T>> {
-        let (my, nb, px) = (tables.my, rows.bins(), rows.length());
-        let planes = if tables.is_even_in_x() { 1 } else { 2 };
-        let size = (my * my).checked_mul(planes * nb);
-        let size =
-            size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {nb} values of {MATRICES}")))?;
-        let mut values: Vec<T> = zeros(size, MATRICES)?;
+        let (my, nb, px, planes) = (tables.my, rows.bins(), rows.length(), 2);
+        if tables.is_even_in_x() {
+            return PerRow::even(tables, (least, factor), px, threads);
+        }
+        let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| (vec![0.0; px], rows.scratch())).collect();
         let scale = factor / px as f64;
@@ -61,10 +102,8 @@ impl<T: Real> PerRow<T> {
                 for (value, from) in matrices[jy * my..].iter_mut().zip(column.clone()) {
                     *value = T::of(scale * from.re);
                 }
-                if planes == 2 {
-                    for (value, from) in matrices[(my + jy) * my..].iter_mut().zip(column) {
-                        *value = T::of(scale * from.im);
-                    }
+                for (value, from) in matrices[(my + jy) * my..].iter_mut().zip(column) {
+                    *value = T::of(scale * from.im);
                 }
             });
         }
@@ -119,6 +158,14 @@ impl<T: Real> Drop for PerRow<T> {
     fn drop(&mut self) {
         keep([&mut self.values]);
     }
+}
+
+/// Memory for the matrices, all of which is written before it is read.
+fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
+    let size = (my * my).checked_mul(planes * bins);
+    let size =
+        size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
+    blank(size, T::nan(), MATRICES)
 }
 
 /// `u = u + M p`, row after row of M, four at a time.

@@ -188,10 +188,17 @@ impl Methods {
         iterate(method, task, &mut self.best)
     }
 
-    /// Lets go of the operator, which gets other coefficients: nothing is solved before [`new`](Self::new).
+    /// Lets go of the operator, which gets other coefficients: nothing is solved before [`renew`](Self::renew).
     pub fn forget_operator(&mut self) {
         self.projected_cg.forget_operator();
         self.multigrid = None;
+    }
+
+    /// The problem has other coefficients.
+    pub fn renew(&mut self, problem: &Problem) -> Result<()> {
+        self.projected_cg.renew(problem);
+        self.direct = Direct::new(&problem.coefficients, &problem.grid)?;
+        Ok(())
     }
 
     /// Bytes held.

@@ -391,7 +391,7 @@ impl Solver {
         self.workers.clear();
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
-        self.methods = Methods::new(&self.problem, &self.set_up.options)?;
+        self.methods.renew(&self.problem)?;
         self.set_up.named.replace(&table);
         self.set_up.lacks_table = false;
         Ok(())

@@ -3,8 +3,11 @@
 use astro_float::{BigFloat, Consts, RoundingMode};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic, Table};
+use contact_normal::operator::Precision;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve, Options};
+use contact_normal::solver::{solve, InitialGuess, Options, Outcome, Solver};
+
+use super::support::assert_conditions;
 
 /// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 eats about 80 of them.
 const BITS: usize = 320;
@@ -85,8 +88,8 @@ fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
     }
 }
 
-/// A table of the half-space's coefficients is solved with the operators of the half-space: all that is held beside them are the tables, of
-/// 2 mx by 2 my doubles on each grid.
+/// A table of the half-space's coefficients is solved with the operators of the half-space: all that is held beside them are the tables, which
+/// are even: of offsets >= 0, mx by my doubles on each grid.
 #[test]
 fn reported_bytes_hold_the_coefficients() {
     let (mx, my) = (40, 36);
@@ -99,8 +102,50 @@ fn reported_bytes_hold_the_coefficients() {
     let table = Table::new(mx, my, &values, &grid).expect("a table");
     let bytes = |scene: &Scene<'_>| solve(scene, &Options::default()).expect("a solution").2.bytes;
     let more = bytes(&Scene { influence: Some(table), ..plain.clone() }) - bytes(&plain);
-    let tables: usize = [(40, 36), (20, 18), (10, 9), (5, 5)].map(|(mx, my)| 32 * mx * my).iter().sum();
+    let tables: usize = [(40, 36), (20, 18), (10, 9), (5, 5)].map(|(mx, my)| 8 * mx * my).iter().sum();
     assert_eq!(more, tables as u64);
     let periodic = Periodic::new(HalfSpace::new(0.5, 0.5, 1.0), (true, true), &grid).unwrap();
     assert_eq!(Coefficients::from(periodic).bytes(), 8 * 21 * 19);
+}
+
+/// A table of the half-space's coefficients, times a factor, in which offsets `(kx, .)` and `(-kx, .)` differ by a part `skew`.
+fn own_table(grid: &Grid, factor: f64, skew: f64) -> Vec<f64> {
+    let (mx, my) = (grid.mx as i64, grid.my as i64);
+    let half_space = HalfSpace::new(grid.dx, grid.dy, 1.0 / factor);
+    let offsets = (0..4 * mx * my).map(|i| (i % (2 * mx) - mx, i / (2 * mx) - my));
+    offsets.map(|(kx, ky)| (1.0 + skew * kx.signum() as f64) * half_space.at(kx, ky)).collect()
+}
+
+/// On a window of the grid, in both precisions of it, from nothing: the very bits. A skew below 1e-7 leaves the table symmetric for the solver,
+/// but its spectrum has another period.
+#[test]
+fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_last_result() {
+    let grid = Grid::new(90, 72, 0.5, 0.6).expect("a grid");
+    let place = |i: usize| ((i % 90) as f64 - 44.0, (i / 90) as f64 - 36.0);
+    let h: Vec<f64> = (0..grid.len()).map(place).map(|(x, y)| 1e-3 * (x * x + y * y)).collect();
+    let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.2));
+    let with = |values: &[f64]| Scene { influence: Some(Table::new(90, 72, values, &grid).unwrap()), ..plain.clone() };
+    for precision in [Precision::Mixed, Precision::Double] {
+        let options = Options { precision, ..Options::default() };
+        let previous = Options { initial_guess: InitialGuess::Previous, ..options };
+        let first = own_table(&grid, 1.0, 0.0);
+        let mut handle = Solver::new(&with(&first), &options).unwrap();
+        assert_eq!(handle.solve(&plain, &options, None, None).unwrap().0, Outcome::Converged);
+        for (factor, skew) in [(1.5, 0.0), (1.0, 1e-8), (0.9, 1e-8), (1.2, 0.0), (1.2, 0.0)] {
+            let values = own_table(&grid, factor, skew);
+            let (new, _, _) = solve(&with(&values), &options).unwrap();
+            handle.set_influence(Table::new(90, 72, &values, &grid).unwrap()).unwrap();
+            for initial in [&previous, &options] {
+                assert_eq!(handle.solve(&plain, initial, None, None).unwrap().0, Outcome::Converged);
+                let (p, mut u) = (&handle.state().p, vec![0.0; grid.len()]);
+                for j in (0..p.len()).filter(|&j| p[j] > 0.0) {
+                    for (i, u) in u.iter_mut().enumerate() {
+                        *u += p[j] * values[(i / 90 + 72 - j / 90) * 180 + i % 90 + 90 - j % 90];
+                    }
+                }
+                assert_conditions(&h, 0.2, p, &u, &format!("{factor} {skew} {initial:?}"));
+            }
+            assert!(handle.state().p == new.state().p, "{factor} {skew} {precision:?}");
+        }
+    }
 }

@@ -46,6 +46,8 @@ pub struct CoarseGrids {
     /// The coarsest last.
     pub(super) grids: Vec<Coarse>,
     threads: Threads,
+    /// Whether the coefficients are those of the finest grid now.
+    are_current: bool,
 }
 
 impl CoarseGrids {
@@ -64,7 +66,27 @@ impl CoarseGrids {
                 limits: Vec::new(),
             });
         }
-        Ok(CoarseGrids { finest: grid.len(), grids, threads: threads.clone() })
+        Ok(CoarseGrids { finest: grid.len(), grids, threads: threads.clone(), are_current: true })
+    }
+
+    /// The finest grid has other coefficients.
+    pub fn forget_coefficients(&mut self) {
+        self.are_current = false;
+    }
+
+    /// Takes those of the finest grid, `grid`, if that has others.
+    pub fn renew(&mut self, grid: &Grid, influence: &Coefficients) -> Result<()> {
+        if self.are_current {
+            return Ok(());
+        }
+        let (mut fine, mut influence) = (*grid, influence.clone());
+        for coarse in &mut self.grids {
+            influence = influence.coarsen(&fine, &coarse.state.grid)?;
+            fine = coarse.state.grid;
+            coarse.level.renew(influence.clone(), None);
+        }
+        self.are_current = true;
+        Ok(())
     }
 
     /// Bytes held.

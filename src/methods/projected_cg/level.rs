@@ -51,6 +51,20 @@ impl Inner {
         })
     }
 
+    /// See [`Iteration::renew`].
+    fn renew(
+        &mut self,
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        operator: Option<&Operator<f64>>,
+    ) -> Result<()> {
+        match self {
+            Inner::Single(iteration) => iteration.renew(influence, factor, grid, operator),
+            Inner::Double(iteration) => iteration.renew(influence, factor, grid, operator),
+        }
+    }
+
     fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         match self {
             Inner::Single(iteration) => iteration.correct(state, set),
@@ -101,6 +115,8 @@ struct Windowed {
     units: Scaling,
     /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
     part: Option<State>,
+    /// Whether it is of the coefficients that there are now.
+    is_current: bool,
 }
 
 /// One grid.
@@ -142,6 +158,15 @@ impl Level {
     /// Lets go of the operator of the whole grid.
     pub fn forget_operator(&mut self) {
         self.operator = None;
+    }
+
+    /// Takes other coefficients on the same grid, and the operator of the whole grid if there is one. What the window holds is kept for
+    /// them, and follows when it is needed.
+    pub fn renew(&mut self, influence: Coefficients, operator: Option<Arc<Operator<f64>>>) {
+        (self.influence, self.operator) = (influence, operator);
+        if let Some(windowed) = &mut self.windowed {
+            windowed.is_current = false;
+        }
     }
 
     /// The influence of an element on itself.
@@ -211,7 +236,7 @@ impl Level {
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
         let threads = &self.threads.clone();
-        let Windowed { window, inner, units, part } = self.choose_window(state)?;
+        let Windowed { window, inner, units, part, .. } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
         if S::LIMITED {
             reserve(&mut limits, grid.len(), "limits of the pressures")?;
@@ -285,20 +310,23 @@ impl Level {
         };
         // The operator of a window depends on its size only.
         let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
+        let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
+        let factor = units.influence;
         let windowed = match self.windowed.take().filter(fits) {
-            Some(windowed) => {
+            Some(mut windowed) => {
+                if !windowed.is_current {
+                    windowed.inner.renew(&self.influence, factor, &grid, operator)?;
+                }
                 let part = match (part, windowed.part) {
                     (Some(new), None) => Some(new()?),
                     (part, known) => known.filter(|_| part.is_some()),
                 };
-                Windowed { window, units, inner: windowed.inner, part }
+                Windowed { window, units, inner: windowed.inner, part, is_current: true }
             }
             None => {
-                let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-                let factor = units.influence;
                 let inner = Inner::new(&self.influence, &grid, operator, factor, self.precision, &self.threads)?;
                 let part = part.map(|new| new()).transpose()?;
-                Windowed { window, inner, units, part }
+                Windowed { window, inner, units, part, is_current: true }
             }
         };
         Ok(self.windowed.insert(windowed))

@@ -17,6 +17,8 @@ use crate::threads::Threads;
 pub struct Predictor {
     p: Vec<f64>,
     u: Vec<f64>,
+    /// Whether u is of other coefficients than those of now.
+    is_of_others: bool,
 }
 
 impl Predictor {
@@ -25,10 +27,16 @@ impl Predictor {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
+    /// The coefficients are others from now on: u is near A p.
+    pub fn forget_coefficients(&mut self) {
+        self.is_of_others = true;
+    }
+
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
     /// iteration truncates it, and owes u the change.
     pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<Freshness> {
         state.scale_to_approach();
+        let displacement = if std::mem::take(&mut self.is_of_others) { Freshness::Near } else { Freshness::Exact };
         if self.p.is_empty() {
             let n = state.p.len();
             (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
@@ -70,7 +78,7 @@ impl Predictor {
         let threads = threads.for_a_pass(state.p.len());
         threads.for_each_row_pair((&mut state.p, mx), (&mut self.p, mx), |_, now, before| move_on(now, before));
         threads.for_each_row_pair((&mut state.u, mx), (&mut self.u, mx), |_, now, before| move_on(now, before));
-        let mut displacement = Freshness::Exact;
+        let mut displacement = if step == 0.0 { Freshness::Exact } else { displacement };
         for ((p, inside), h) in state.p.iter_mut().zip(&mut state.contact).zip(&state.h) {
             *inside = *p != 0.0;
             if *inside && h.is_infinite() {

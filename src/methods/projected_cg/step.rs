@@ -69,6 +69,13 @@ impl ProjectedCg {
         self.finest.forget_operator();
     }
 
+    /// The problem has other coefficients: memory and plans are kept for them, and what is not computed here follows when it is needed.
+    pub fn renew(&mut self, problem: &Problem) {
+        self.finest.renew(problem.coefficients.clone(), Some(problem.operator.clone()));
+        self.coarse.iter_mut().for_each(CoarseGrids::forget_coefficients);
+        self.predictor.forget_coefficients();
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);
@@ -127,7 +134,10 @@ fn coarse_grids<'a>(
     precision: Precision,
 ) -> Result<&'a mut CoarseGrids> {
     match coarse {
-        Some(coarse) => Ok(coarse),
+        Some(coarse) => {
+            coarse.renew(&problem.grid, &problem.coefficients)?;
+            Ok(coarse)
+        }
         none => Ok(none.insert(CoarseGrids::new(&problem.grid, &problem.coefficients, precision, &problem.threads)?)),
     }
 }

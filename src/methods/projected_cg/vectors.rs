@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::keep;
 use crate::operator::fft::Real;
-use crate::operator::{reserve, zeros, Operator, Workspace};
+use crate::operator::{reserve, zeros, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
@@ -62,10 +62,7 @@ impl<T: Real> Iteration<T> {
         grid: &Grid,
         threads: &Threads,
     ) -> Result<Iteration<T>> {
-        let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
-        if preconditioner.is_none() {
-            log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
-        }
+        let preconditioner = preconditioner(influence, factor, grid, threads)?;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
         let directions = || zeros(n, "search directions");
@@ -86,6 +83,29 @@ impl<T: Real> Iteration<T> {
         })
     }
 
+    /// Takes other coefficients, times `factor`, on the same grid, of which `whole` is the operator in double precision if that is
+    /// known: plans and memory are kept where they fit. Not to be used after an error.
+    pub fn renew(
+        &mut self,
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        whole: Option<&Operator<f64>>,
+    ) -> Result<()> {
+        let periods = self.operator.periods();
+        match whole {
+            Some(whole) => self.operator = whole.in_precision(factor)?,
+            None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
+        }
+        if self.operator.periods() != periods {
+            self.workspace = self.operator.workspace()?;
+        }
+        // What the one before held serves the next.
+        self.preconditioner = None;
+        self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
+        Ok(())
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
@@ -102,6 +122,19 @@ impl<T: Real> Iteration<T> {
             *u = q.to_double();
         }
     }
+}
+
+fn preconditioner<T: Real>(
+    influence: &Coefficients,
+    factor: f64,
+    grid: &Grid,
+    threads: &Threads,
+) -> Result<Option<Preconditioner<T>>> {
+    let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
+    if preconditioner.is_none() {
+        log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
+    }
+    Ok(preconditioner)
 }
 
 impl<T: Real> Drop for Iteration<T> {
