@@ -161,8 +161,12 @@ impl<T: Real> ColumnTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
-        let length = self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len());
-        scratch.resize(scratch.len().max(length), Complex::default());
+        scratch.resize(scratch.len().max(self.scratch_length()), Complex::default());
+    }
+
+    /// Its length.
+    pub fn scratch_length(&self) -> usize {
+        self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len())
     }
 
     /// Transforms the columns that stand one after the other in `columns`, in place.

@@ -37,7 +37,9 @@ impl<T: Real> PerRow<T> {
         let mut values = matrices(my, 1, px / 2 + 1)?;
         let nan = Complex::new(f64::NAN, f64::NAN);
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
-        let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| transform.scratch()).collect();
+        // Rows may be long: their scratch is as large as an array of the grid then.
+        let scratch = |_| zeros(transform.scratch_length(), MATRICES);
+        let mut pieces = (0..threads.pieces()).map(scratch).collect::<Result<Vec<_>>>()?;
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
