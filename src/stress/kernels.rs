@@ -59,6 +59,11 @@ impl Asked {
     pub fn count(&self) -> usize {
         self.list().count()
     }
+
+    /// Where a kernel stands in the list, if it was asked for.
+    pub fn place(&self, load: usize, component: usize) -> Option<usize> {
+        self.list().position(|of| of == (load, component))
+    }
 }
 
 /// Kernels of one depth, and the memory that they are computed in.
@@ -66,8 +71,6 @@ pub struct Kernels {
     asked: Asked,
     /// Of each kernel asked for, `[ky][kx]`.
     tables: Vec<f64>,
-    /// Where the table of a load and component is.
-    place: [[Option<usize>; 6]; 3],
     /// Point forces along one row, per kernel, and means in x of the last rows.
     points: Vec<f64>,
     means: Vec<f64>,
@@ -77,12 +80,9 @@ impl Kernels {
     /// Memory for the kernels asked for.
     pub fn new(asked: Asked) -> Result<Kernels> {
         let (what, (mx, my)) = ("the kernels of a depth", asked.offsets);
-        let mut place = [[None; 6]; 3];
-        asked.list().enumerate().for_each(|(k, (load, c))| place[load][c] = Some(k));
         Ok(Kernels {
             asked,
             tables: zeros(asked.count() * mx * my, what)?,
-            place,
             points: zeros(asked.count() * width(mx), what)?,
             means: zeros(asked.count() * ROWS * mx, what)?,
         })
@@ -91,22 +91,28 @@ impl Kernels {
     /// The table of a load and component, if it was asked for.
     pub fn table(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.asked.offsets.0 * self.asked.offsets.1;
-        self.place[load][component].map(|k| &self.tables[k * n..(k + 1) * n])
+        self.asked.place(load, component).map(|k| &self.tables[k * n..(k + 1) * n])
     }
 
     /// Computes all at depth z, in units of `body.unit()`.
     pub fn compute(&mut self, body: &Body, z: f64) {
-        self.fill_far(body, z);
-        if z < FAR {
-            self.fill_near(body, z);
+        self.combine(body, &[(z, 1.0)]);
+    }
+
+    /// Computes sums of the kernels of some depths, in units of `body.unit()`, times factors.
+    pub fn combine(&mut self, body: &Body, depths: &[(f64, f64)]) {
+        self.fill_far(body, depths);
+        let least = depths.iter().fold(f64::INFINITY, |least, (z, _)| z.min(least));
+        if least < FAR {
+            self.fill_near(body, depths, least);
         }
     }
 
     /// Means of point forces, at all offsets.
-    fn fill_far(&mut self, body: &Body, z: f64) {
+    fn fill_far(&mut self, body: &Body, depths: &[(f64, f64)]) {
         let ((mx, my), halo) = (self.asked.offsets, HALO as i64);
         for row in 0..my + 2 * HALO {
-            self.fill_points(body, row as i64 - halo, z);
+            self.fill_points(body, row as i64 - halo, depths);
             let (points, slot) = (self.points.chunks_exact(width(mx)), row % ROWS);
             for (points, means) in points.zip(self.means.chunks_exact_mut(ROWS * mx)) {
                 in_x(points, &mut means[slot * mx..(slot + 1) * mx]);
@@ -121,24 +127,26 @@ impl Kernels {
     }
 
     /// Point forces at offsets `-HALO..` of one row.
-    fn fill_points(&mut self, body: &Body, ky: i64, z: f64) {
+    fn fill_points(&mut self, body: &Body, ky: i64, depths: &[(f64, f64)]) {
         let ((dx, dy), width) = (body.element(), width(self.asked.offsets.0));
         let y = ky as f64 * dy;
         for first in (0..width).step_by(LANES) {
             let x: Lanes = std::array::from_fn(|i| ((first + i) as f64 - HALO as f64) * dx);
             let mut values: Values = [[[0.0; LANES]; 6]; 3];
-            point_force::add(body, self.asked.loaded, (&x, y, z), dx * dy, &mut values);
+            for (z, factor) in depths {
+                point_force::add(body, self.asked.loaded, (&x, y, *z), dx * dy * factor, &mut values);
+            }
             for ((load, c), points) in self.asked.list().zip(self.points.chunks_exact_mut(width)) {
                 points[first..first + LANES].copy_from_slice(&values[load][c]);
             }
         }
     }
 
-    /// Gauss points and the closed form, at the offsets that are near.
-    fn fill_near(&mut self, body: &Body, z: f64) {
+    /// Gauss points and the closed form, at the offsets at which the least depth is near.
+    fn fill_near(&mut self, body: &Body, depths: &[(f64, f64)], least: f64) {
         let ((mx, my), (dx, dy)) = (self.asked.offsets, body.element());
         // Offsets in x at which the distance is less than that.
-        let within = |distance: f64, y: f64| {
+        let within = |distance: f64, y: f64, z: f64| {
             let x2 = distance * distance - y * y - z * z;
             if x2 > 0.0 {
                 ((x2.sqrt() / dx).ceil() as usize).min(mx)
@@ -148,27 +156,31 @@ impl Kernels {
         };
         for ky in 0..my {
             let y = ky as f64 * dy;
-            let (near, far) = (within(NEAR, y), within(FAR, y));
+            let far = within(FAR, y, least);
             if far == 0 {
                 break;
             }
-            for kx in 0..near {
-                let values = element::stresses(body, self.asked.loaded, (kx as f64 * dx, y, z), (dx, dy));
-                self.store((kx, ky), |load, c| values[load][c]);
-            }
-            for first in (near..far).step_by(LANES) {
-                let values = by_gauss(body, self.asked.loaded, (first as f64 * dx, y, z));
-                for kx in first..far.min(first + LANES) {
-                    self.store((kx, ky), |load, c| values[load][c][kx - first]);
+            self.tables.chunks_exact_mut(mx * my).for_each(|table| table[ky * mx..ky * mx + far].fill(0.0));
+            for &(z, factor) in depths {
+                let near = within(NEAR, y, z);
+                for kx in 0..near {
+                    let values = element::stresses(body, self.asked.loaded, (kx as f64 * dx, y, z), (dx, dy));
+                    self.add((kx, ky), |load, c| factor * values[load][c]);
+                }
+                for first in (near..far).step_by(LANES) {
+                    let values = by_gauss(body, self.asked.loaded, (first as f64 * dx, y, z));
+                    for kx in first..far.min(first + LANES) {
+                        self.add((kx, ky), |load, c| factor * values[load][c][kx - first]);
+                    }
                 }
             }
         }
     }
 
-    fn store(&mut self, (kx, ky): (usize, usize), value: impl Fn(usize, usize) -> f64) {
+    fn add(&mut self, (kx, ky): (usize, usize), value: impl Fn(usize, usize) -> f64) {
         let (mx, my) = self.asked.offsets;
         for ((load, c), table) in self.asked.list().zip(self.tables.chunks_exact_mut(mx * my)) {
-            table[ky * mx + kx] = value(load, c);
+            table[ky * mx + kx] += value(load, c);
         }
     }
 }

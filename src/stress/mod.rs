@@ -26,6 +26,8 @@ mod point_force;
 mod points;
 mod product;
 mod tensor;
+mod transform;
+mod waves;
 
 pub use depth::{Depth, Maximum, Wanted};
 pub use loads::Loads;

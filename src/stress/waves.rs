@@ -1,0 +1,286 @@
+//! Sums of the waves of a periodic load over their aliases, in lanes: see the formulas of [`periodic`](super::periodic).
+
+use std::f64::consts::{LOG2_E, PI};
+
+use super::point_force::{Lanes, Values, LANES};
+use super::{Body, Loaded};
+use crate::error::Result;
+use crate::memory::zeros;
+
+/// `exp(-37) = 9e-17`: waves that have faded.
+const FADED: f64 = 37.0;
+/// Of a bin, at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`.
+const MOST_ALIASES: usize = 13;
+/// Depths that a kernel is carried on from to the surface: 1, 2, ... sides.
+pub const NODES: usize = 10;
+
+/// How waves fade: by `exp(-k z)`; nearer the surface than a side by what Lagrange's polynomial in z makes of that at the nodes.
+pub enum Fading {
+    /// Of a depth of a side and more.
+    Deep(f64),
+    /// By the weights of the nodes.
+    Near([f64; NODES]),
+}
+
+impl Fading {
+    /// Of the depth z, in longer sides.
+    pub fn new(z: f64) -> Fading {
+        if z >= 1.0 {
+            return Fading::Deep(z);
+        }
+        let node = |j: usize| j as f64 + 1.0;
+        Fading::Near(std::array::from_fn(|j| {
+            let others = (0..NODES).filter(|&i| i != j);
+            others.map(|i| (z - node(i)) / (node(j) - node(i))).product()
+        }))
+    }
+
+    /// The wave number from which on all has faded.
+    fn most(&self) -> f64 {
+        match self {
+            Fading::Deep(z) => FADED / z,
+            Fading::Near(_) => FADED,
+        }
+    }
+
+    /// `E = exp(-k z)` and `z E`, or what stands for them.
+    #[inline]
+    fn of(&self, k: &Lanes) -> (Lanes, Lanes) {
+        match self {
+            Fading::Deep(z) => {
+                let e = exp_of_minus(&k.map(|k| k * z));
+                (e, e.map(|e| z * e))
+            }
+            Fading::Near(weights) => {
+                let x = exp_of_minus(k);
+                let (mut e, mut ze) = ([0.0; LANES], [0.0; LANES]);
+                for (j, weight) in weights.iter().enumerate().rev() {
+                    let of_depth = (j as f64 + 1.0) * weight;
+                    for i in 0..LANES {
+                        e[i] = (e[i] + weight) * x[i];
+                        ze[i] = (ze[i] + of_depth) * x[i];
+                    }
+                }
+                (e, ze)
+            }
+        }
+    }
+}
+
+/// Waves of one direction: the wave numbers of its bins and of their aliases, and what an element makes of them.
+struct Direction {
+    /// Period of the wave numbers: `2 pi` over an element's side.
+    period: f64,
+    m: usize,
+    bins: usize,
+    /// `[alias][bin]`, bins in whole lanes; the last bin is repeated.
+    numbers: Vec<f64>,
+    means: Vec<f64>,
+    aliases: usize,
+}
+
+impl Direction {
+    fn new(m: usize, side: f64) -> Result<Direction> {
+        let bins = m / 2 + 1;
+        let n = MOST_ALIASES * bins.next_multiple_of(LANES);
+        let what = "the waves of a depth";
+        let (numbers, means) = (zeros(n, what)?, zeros(n, what)?);
+        Ok(Direction { period: 2.0 * PI / side, m, bins, numbers, means, aliases: 0 })
+    }
+
+    fn width(&self) -> usize {
+        self.bins.next_multiple_of(LANES)
+    }
+
+    /// Sets up what is up to `most`, and tells how many bins have any of it.
+    fn enter(&mut self, most: f64) -> usize {
+        let width = self.width();
+        let place = |bin: usize| bin.min(self.bins - 1) as f64 / self.m as f64;
+        // Bins are at 0 to 1/2 of the period.
+        let first = (-most / self.period - 0.5).ceil() as i64;
+        let last = (most / self.period).floor() as i64;
+        self.aliases = 0;
+        let rows = self.numbers.chunks_exact_mut(width).zip(self.means.chunks_exact_mut(width));
+        for (alias, (numbers, means)) in (first..=last).zip(rows) {
+            for bin in 0..width {
+                let part = PI * (place(bin) + alias as f64);
+                numbers[bin] = self.period * (place(bin) + alias as f64);
+                means[bin] = if part == 0.0 { 1.0 } else { part.sin() / part };
+            }
+            self.aliases += 1;
+        }
+        // With aliases no bin is left out.
+        match (most / self.period * self.m as f64).floor() as usize {
+            whole if self.aliases == 1 => self.bins.min(whole + 1),
+            _ => self.bins,
+        }
+    }
+
+    /// Wave number and mean of an alias of a bin.
+    fn of_bin(&self, alias: usize, bin: usize) -> (f64, f64) {
+        let place = alias * self.width() + bin;
+        (self.numbers[place], self.means[place])
+    }
+
+    /// The same of bins from `first` on.
+    fn of_lanes(&self, alias: usize, first: usize) -> (Lanes, Lanes) {
+        let place = alias * self.width() + first;
+        let lanes = |values: &[f64]| std::array::from_fn(|i| values[place + i]);
+        (lanes(&self.numbers), lanes(&self.means))
+    }
+}
+
+/// The spectra of the kernels of one depth.
+pub struct Aliased {
+    directions: [Direction; 2],
+    /// Bins in x and in y with waves that have not faded: all others are 0.
+    pub left: (usize, usize),
+}
+
+impl Aliased {
+    /// Memory for the waves of a body.
+    pub fn new(body: &Body) -> Result<Aliased> {
+        let (dx, dy) = body.element();
+        let directions = [Direction::new(body.grid.mx, dx)?, Direction::new(body.grid.my, dy)?];
+        Ok(Aliased { directions, left: (0, 0) })
+    }
+
+    /// Computes the spectra: `store(bin in x, first bin in y, spectra)` is told all that are left.
+    pub fn compute(
+        &mut self,
+        body: &Body,
+        loaded: Loaded,
+        fading: &Fading,
+        mut store: impl FnMut(usize, usize, &Values),
+    ) {
+        let most = fading.most();
+        let [x, y] = &mut self.directions;
+        self.left = (x.enter(most), y.enter(most));
+        let nu = body.poisson_ratio;
+        for i in 0..self.left.0 {
+            for first in (0..self.left.1).step_by(LANES) {
+                let mut sum: Values = [[[0.0; LANES]; 6]; 3];
+                for alias in 0..x.aliases {
+                    let (kx, mean_x) = x.of_bin(alias, i);
+                    for alias in 0..y.aliases {
+                        let (ky, means) = y.of_lanes(alias, first);
+                        let least = ky[0].abs().min(ky[LANES - 1].abs());
+                        if kx * kx + least * least <= most * most {
+                            add(nu, loaded, (kx, &ky), (mean_x, &means), fading, &mut sum);
+                        }
+                    }
+                }
+                if i == 0 && first == 0 {
+                    // The mean of the load does not stretch sideways.
+                    let sideways = 2.0 * nu - nu / (1.0 - nu);
+                    (sum[0][0][0], sum[0][1][0]) = (sum[0][0][0] + sideways, sum[0][1][0] + sideways);
+                }
+                store(i, first, &sum);
+            }
+        }
+    }
+}
+
+/// Adds waves: the spectra of [`periodic`](super::periodic) without their factors i, two of which make -1.
+#[inline]
+fn add(
+    nu: f64,
+    loaded: Loaded,
+    (kx, ky): (f64, &Lanes),
+    (mean_x, means): (f64, &Lanes),
+    fading: &Fading,
+    sum: &mut Values,
+) {
+    let k: Lanes = std::array::from_fn(|i| (kx * kx + ky[i] * ky[i]).sqrt());
+    let (mut e, ze) = fading.of(&k);
+    let [mut l, mut m, mut kz] = [[0.0; LANES]; 3];
+    for i in 0..LANES {
+        // The mean of the load, k = 0, has no direction.
+        let inverse = 1.0 / k[i].max(f64::MIN_POSITIVE);
+        let load = mean_x * means[i];
+        (l[i], m[i]) = (kx * inverse, ky[i] * inverse);
+        (e[i], kz[i]) = (load * e[i], load * k[i] * ze[i]);
+    }
+    if loaded[0] {
+        let h = 1.0 - 2.0 * nu;
+        let sum = &mut sum[0];
+        for i in 0..LANES {
+            let (l, m, e, kz) = (l[i], m[i], e[i], kz[i]);
+            let both = h * e - kz;
+            sum[0][i] -= 2.0 * nu * e + l * l * both;
+            sum[1][i] -= 2.0 * nu * e + m * m * both;
+            sum[2][i] -= e + kz;
+            sum[3][i] += l * m * both;
+            sum[4][i] += l * kz;
+            sum[5][i] += m * kz;
+        }
+    }
+    if loaded[1] {
+        by_traction(nu, (&l, &m, &e, &kz), [0, 1, 2, 3, 4, 5], &mut sum[1]);
+    }
+    if loaded[2] {
+        by_traction(nu, (&m, &l, &e, &kz), [1, 0, 2, 3, 5, 4], &mut sum[2]);
+    }
+}
+
+/// A traction along the first of two directions; `place` says where its components stand.
+#[inline]
+fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], sum: &mut [Lanes; 6]) {
+    for i in 0..LANES {
+        let (l, m, e, kz) = (l[i], m[i], e[i], kz[i]);
+        let both = 2.0 * nu * e + kz;
+        sum[place[0]][i] += l * (2.0 * (1.0 + nu) * e - l * l * both);
+        sum[place[1]][i] += l * (2.0 * nu * e - m * m * both);
+        sum[place[2]][i] += l * kz;
+        sum[place[3]][i] += m * (e - l * l * both);
+        sum[place[4]][i] += l * l * kz - e;
+        sum[place[5]][i] -= l * m * kz;
+    }
+}
+
+/// `exp(-x)` of `0 <= x < 700`, in lanes: `2^-n exp(r)` with `|r| <= ln(2)/2` and Taylor's series of it.
+#[inline]
+fn exp_of_minus(x: &Lanes) -> Lanes {
+    /// Added to a number of less than 2^51 it leaves its nearest integer in the last bits.
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    /// ln 2 in two parts, of which the first has 32 bits: its multiples are exact.
+    const UPPER: f64 = 0.693_147_180_369_123_8;
+    const LOWER: f64 = 1.908_214_929_270_587_7e-10;
+    std::array::from_fn(|i| {
+        let shifted = x[i] * LOG2_E + SHIFT;
+        let n = shifted - SHIFT;
+        let r = (n * UPPER - x[i]) + n * LOWER;
+        let power = f64::from_bits(1.0_f64.to_bits().wrapping_sub(shifted.to_bits() << 52));
+        let series = TAYLOR.iter().rev().fold(0.0, |sum, term| sum * r + term);
+        power * series
+    })
+}
+
+/// `1/n!`: the first that is left out is 4e-18 at ln(2)/2.
+const TAYLOR: [f64; 14] = {
+    let mut terms = [1.0; 14];
+    let mut n = 1;
+    while n < 14 {
+        terms[n] = terms[n - 1] / n as f64;
+        n += 1;
+    }
+    terms
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The library's `exp` is within one unit of the last place, and so is this: a product of two roundings.
+    #[test]
+    fn exp_of_minus_is_exp() {
+        for step in 0..7000 {
+            let x: Lanes = std::array::from_fn(|i| 0.1 * step as f64 + 0.0123 * i as f64);
+            for (found, x) in exp_of_minus(&x).into_iter().zip(x) {
+                let exact = (-x).exp();
+                assert!((found - exact).abs() <= 3.0 * f64::EPSILON * exact, "{x}: {found} for {exact}");
+            }
+        }
+        assert_eq!(exp_of_minus(&[0.0; LANES]), [1.0; LANES]);
+    }
+}
