@@ -11,7 +11,7 @@
 
 use super::kernels::{is_odd, Asked, Kernels};
 use super::periodic::Waves;
-use super::transform::{Memory, Transforms, BLOCK};
+use super::transform::{gap, Memory, Transforms, BLOCK};
 use super::{Body, Loads};
 use crate::error::Result;
 use crate::memory::zeros;
@@ -148,14 +148,20 @@ impl Product {
         };
         for first in (0..left.0).step_by(BLOCK) {
             let count = BLOCK.min(left.0 - first);
-            memory.columns[..count * py].fill(Complex::default());
+            let columns = memory.columns.chunks_exact_mut(py).take(count);
+            columns.for_each(|column| column[gap(left.1, py)].fill(Complex::default()));
+            let mut first_load = true;
             for (load, transform) in self.loads.iter().enumerate() {
                 let (Some(transform), Some(spectrum)) = (transform, spectrum(load)) else { continue };
                 for (k, column) in memory.columns.chunks_exact_mut(py).take(count).enumerate() {
                     let bin = first + k;
-                    let s = &spectrum[bin * half..][..left.1];
-                    add_product(column, &transform[bin * py..][..py], s, is_odd(load, c));
+                    let (load_bins, s) = (&transform[bin * py..][..py], &spectrum[bin * half..][..left.1]);
+                    match first_load {
+                        true => put_product(column, load_bins, s, is_odd(load, c), |sum, value| *sum = value),
+                        false => put_product(column, load_bins, s, is_odd(load, c), |sum, value| *sum += value),
+                    }
                 }
+                first_load = false;
             }
             self.transforms.columns_back(count, memory);
             for (iy, row) in stress.chunks_exact_mut(nb).enumerate() {
@@ -167,30 +173,37 @@ impl Product {
     }
 }
 
-/// Adds `i^(number of odd directions) S . load` of one column, where S is given at bins in y >= 0.
-fn add_product(sum: &mut [Complex<f64>], load: &[Complex<f64>], s: &[f64], (odd_x, odd_y): (bool, bool)) {
+/// Puts `i^(number of odd directions) S . load` of one column, where S is given at bins in y >= 0.
+fn put_product(
+    column: &mut [Complex<f64>],
+    load: &[Complex<f64>],
+    s: &[f64],
+    (odd_x, odd_y): (bool, bool),
+    put: impl Fn(&mut Complex<f64>, Complex<f64>),
+) {
     let sign = if odd_y { -1.0 } else { 1.0 };
     match (odd_x, odd_y) {
-        (false, false) => add_turned(sum, load, s, sign, |value| value),
-        (true, true) => add_turned(sum, load, s, sign, |value| -value),
-        _ => add_turned(sum, load, s, sign, |value| Complex::new(-value.im, value.re)),
+        (false, false) => put_turned(column, load, s, sign, put, |value| value),
+        (true, true) => put_turned(column, load, s, sign, put, |value| -value),
+        _ => put_turned(column, load, s, sign, put, |value| Complex::new(-value.im, value.re)),
     }
 }
 
 #[inline]
-fn add_turned(
-    sum: &mut [Complex<f64>],
+fn put_turned(
+    column: &mut [Complex<f64>],
     load: &[Complex<f64>],
     s: &[f64],
     sign: f64,
+    put: impl Fn(&mut Complex<f64>, Complex<f64>),
     turn: impl Fn(Complex<f64>) -> Complex<f64>,
 ) {
-    let half = sum.len() / 2 + 1;
-    let ((lower, upper), (load_lower, load_upper)) = (sum.split_at_mut(half), load.split_at(half));
-    for ((sum, load), s) in lower.iter_mut().zip(load_lower).zip(s) {
-        *sum += turn(load * s);
+    let half = column.len() / 2 + 1;
+    let ((lower, upper), (load_lower, load_upper)) = (column.split_at_mut(half), load.split_at(half));
+    for ((value, load), s) in lower.iter_mut().zip(load_lower).zip(s) {
+        put(value, turn(load * s));
     }
-    for ((sum, load), s) in upper.iter_mut().rev().zip(load_upper.iter().rev()).zip(&s[1..]) {
-        *sum += turn(load * (sign * s));
+    for ((value, load), s) in upper.iter_mut().rev().zip(load_upper.iter().rev()).zip(&s[1..]) {
+        put(value, turn(load * (sign * s)));
     }
 }

@@ -98,7 +98,7 @@ impl Transforms {
         let sign = |odd: bool| if odd { -1.0 } else { 1.0 };
         for (two, in_x) in table.chunks(2 * mx).zip(in_x.chunks_mut(2 * width)) {
             let (one, other) = two.split_at(mx);
-            row.fill(Complex::default());
+            row[gap(mx, px)].fill(Complex::default());
             for (kx, re) in one.iter().enumerate() {
                 let value = Complex::new(*re, other.get(kx).copied().unwrap_or(0.0));
                 row[kx] = value;
@@ -124,7 +124,7 @@ impl Transforms {
         for first in (0..nb).step_by(2 * BLOCK) {
             let pairs = BLOCK.min((width - first) / 2);
             let columns = &mut columns[..pairs * py];
-            columns.fill(Complex::default());
+            columns.chunks_exact_mut(py).for_each(|column| column[gap(my, py)].fill(Complex::default()));
             for (ky, in_x) in in_x.chunks_exact(width).take(my).enumerate() {
                 for (column, two) in columns.chunks_exact_mut(py).zip(in_x[first..].chunks_exact(2)) {
                     let value = Complex::new(two[0], two[1]);
@@ -160,12 +160,20 @@ impl Transforms {
     }
 
     /// Back in x: rows of `out`, `mx` values each, times a factor, of their bins `[row][bin in x >= 0]`, of which `left` are not 0.
-    pub fn rows_back(&self, bins: &[Complex<f64>], left: usize, factor: f64, memory: &mut Memory, out: &mut [f64], mx: usize) {
+    pub fn rows_back(
+        &self,
+        bins: &[Complex<f64>],
+        left: usize,
+        factor: f64,
+        memory: &mut Memory,
+        out: &mut [f64],
+        mx: usize,
+    ) {
         let (px, nb) = (self.rows.length(), self.bins().0);
         let Memory { row, scratch, .. } = memory;
         for (two, out) in bins.chunks(2 * nb).zip(out.chunks_mut(2 * mx)) {
             let (one, other) = two.split_at(nb);
-            row[left..].fill(Complex::default());
+            row[gap(left, px)].fill(Complex::default());
             let second = |bin: usize| other.get(bin).copied().unwrap_or_default();
             for bin in 0..left {
                 let (a, b) = (one[bin], second(bin));
@@ -181,4 +189,9 @@ impl Transforms {
             other.iter_mut().zip(&*row).for_each(|(out, value)| *out = factor * value.im);
         }
     }
+}
+
+/// What is left of a period where the first values and their mirror images stand.
+pub fn gap(values: usize, period: usize) -> std::ops::Range<usize> {
+    values..values.max(period + 1 - values)
 }

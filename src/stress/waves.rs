@@ -43,9 +43,9 @@ impl Fading {
         }
     }
 
-    /// `E = exp(-k z)` and `z E`, or what stands for them.
+    /// `E = exp(-k z)` and `z E`, or what stands for them, where no k is less than `least`.
     #[inline]
-    fn of(&self, k: &Lanes) -> (Lanes, Lanes) {
+    fn of(&self, k: &Lanes, least: f64) -> (Lanes, Lanes) {
         match self {
             Fading::Deep(z) => {
                 let e = exp_of_minus(&k.map(|k| k * z));
@@ -54,7 +54,9 @@ impl Fading {
             Fading::Near(weights) => {
                 let x = exp_of_minus(k);
                 let (mut e, mut ze) = ([0.0; LANES], [0.0; LANES]);
-                for (j, weight) in weights.iter().enumerate().rev() {
+                // Of deeper nodes nothing is left: weights are up to 252 = exp(5.6).
+                let nodes = ((FADED + 5.6) / least.max(1.0)) as usize + 1;
+                for (j, weight) in weights.iter().enumerate().take(nodes).rev() {
                     let of_depth = (j as f64 + 1.0) * weight;
                     for i in 0..LANES {
                         e[i] = (e[i] + weight) * x[i];
@@ -165,8 +167,10 @@ impl Aliased {
                     for alias in 0..y.aliases {
                         let (ky, means) = y.of_lanes(alias, first);
                         let least = ky[0].abs().min(ky[LANES - 1].abs());
-                        if kx * kx + least * least <= most * most {
-                            add(nu, loaded, (kx, &ky), (mean_x, &means), fading, &mut sum);
+                        let least = (kx * kx + least * least).sqrt();
+                        if least <= most {
+                            let loads = means.map(|mean| mean_x * mean);
+                            add(nu, loaded, (kx, &ky), &loads, (fading, least), &mut sum);
                         }
                     }
                 }
@@ -181,25 +185,24 @@ impl Aliased {
     }
 }
 
-/// Adds waves: the spectra of [`periodic`](super::periodic) without their factors i, two of which make -1.
+/// Adds waves of these loads: the spectra of [`periodic`](super::periodic) without their factors i, two of which make -1.
 #[inline]
 fn add(
     nu: f64,
     loaded: Loaded,
     (kx, ky): (f64, &Lanes),
-    (mean_x, means): (f64, &Lanes),
-    fading: &Fading,
+    loads: &Lanes,
+    (fading, least): (&Fading, f64),
     sum: &mut Values,
 ) {
     let k: Lanes = std::array::from_fn(|i| (kx * kx + ky[i] * ky[i]).sqrt());
-    let (mut e, ze) = fading.of(&k);
+    let (mut e, ze) = fading.of(&k, least);
     let [mut l, mut m, mut kz] = [[0.0; LANES]; 3];
     for i in 0..LANES {
         // The mean of the load, k = 0, has no direction.
         let inverse = 1.0 / k[i].max(f64::MIN_POSITIVE);
-        let load = mean_x * means[i];
         (l[i], m[i]) = (kx * inverse, ky[i] * inverse);
-        (e[i], kz[i]) = (load * e[i], load * k[i] * ze[i]);
+        (e[i], kz[i]) = (loads[i] * e[i], loads[i] * k[i] * ze[i]);
     }
     if loaded[0] {
         let h = 1.0 - 2.0 * nu;
@@ -268,19 +271,5 @@ const TAYLOR: [f64; 14] = {
 };
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The library's `exp` is within one unit of the last place, and so is this: a product of two roundings.
-    #[test]
-    fn exp_of_minus_is_exp() {
-        for step in 0..7000 {
-            let x: Lanes = std::array::from_fn(|i| 0.1 * step as f64 + 0.0123 * i as f64);
-            for (found, x) in exp_of_minus(&x).into_iter().zip(x) {
-                let exact = (-x).exp();
-                assert!((found - exact).abs() <= 3.0 * f64::EPSILON * exact, "{x}: {found} for {exact}");
-            }
-        }
-        assert_eq!(exp_of_minus(&[0.0; LANES]), [1.0; LANES]);
-    }
-}
+#[path = "../../tests/unit/stress_waves.rs"]
+mod tests;
