@@ -35,7 +35,7 @@ pub struct Product {
 /// Kernels of one depth.
 enum Source {
     Free(Kernels),
-    Periodic(Waves),
+    Periodic(Box<Waves>),
 }
 
 /// Memory for the products of one depth.
@@ -81,7 +81,7 @@ impl Product {
         let tables = if self.body.periodic && !self.near { 0 } else { 3 };
         Ok(Workspace {
             source: match self.body.periodic {
-                true => Source::Periodic(Waves::new(&self.body, asked, self.near)?),
+                true => Source::Periodic(Box::new(Waves::new(&self.body, asked, self.near)?)),
                 false => Source::Free(Kernels::new(asked)?),
             },
             near: false,
