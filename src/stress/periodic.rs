@@ -28,7 +28,7 @@
 
 use super::kernels::{is_odd, Asked, Kernels};
 use super::point_force::LANES;
-use super::waves::{Aliased, Fading};
+use super::waves::{Aliased, Fading, NODES};
 use super::Body;
 use crate::error::{Error, Result};
 use crate::memory::zeros;
@@ -98,8 +98,10 @@ impl Waves {
     pub fn compute(&mut self, body: &Body, z: f64) {
         let fading = Fading::new(z);
         if let (Fading::Near(weights), Some(images)) = (&fading, &mut self.images) {
-            let nodes = weights.iter().enumerate().map(|(j, weight)| (j as f64 + 1.0, -weight));
-            let bracket: Vec<_> = std::iter::once((z, 1.0)).chain(nodes).collect();
+            let mut bracket = [(z, 1.0); NODES + 1];
+            for (j, ((place, factor), weight)) in bracket[1..].iter_mut().zip(weights).enumerate() {
+                (*place, *factor) = (j as f64 + 1.0, -weight);
+            }
             images.compute(body, &self.asked, &bracket);
         }
         let Waves { asked, aliased, spectrum, bins: (columns, rows), .. } = self;

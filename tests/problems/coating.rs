@@ -96,6 +96,86 @@ fn coefficients_add_up_to_those_of_larger_elements() {
     println!("largest error of nine elements: {worst:e}");
 }
 
+/// Nodes and weights of Gauss and Legendre's rule on [0, 1], by Newton's method on the polynomial.
+fn gauss(n: usize) -> Vec<(f64, f64)> {
+    let rule = |k: usize| {
+        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 0.0;
+        for _ in 0..6 {
+            let (mut p, mut before) = (1.0, 0.0);
+            for j in (0..n).map(|j| j as f64) {
+                (p, before) = (((2.0 * j + 1.0) * x * p - j * before) / (j + 1.0), p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 - 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(rule).collect()
+}
+
+/// The coefficient at an offset in x by its definition: Hankel's integral `F(rho) = integral of (B(s) - 1) J0(s rho) ds` at each of
+/// `n x n` Gauss points of each of `parts x parts` parts of the element, and Love's integral of 1/r.
+fn by_hankel_integrals(
+    mu: f64,
+    nu: [f64; 2],
+    t: f64,
+    (dx, dy): (f64, f64),
+    kx: usize,
+    (parts, n): (usize, usize),
+) -> f64 {
+    let transfer = Transfer::new(mu, nu);
+    let farthest = (kx as f64 + 1.0) * dx.max(dy) / t;
+    // Panels grow from the length of a stiff plate to a part of a wave; B - 1 is 1e-21 and less beyond 25.
+    let (mut s, mut width, mut waves) = (0.0, 0.02 / mu.max(1.0), Vec::new());
+    while s < 25.0 {
+        for (x, weight) in gauss(12) {
+            let s = s + x * width;
+            waves.push((s, weight * width * (transfer.at(s) - 1.0)));
+        }
+        s += width;
+        width = (1.4 * width).min(0.3).min(5.0 / farthest);
+    }
+    let mut sum = 0.0;
+    let points: Vec<(f64, f64)> = (0..parts)
+        .flat_map(|k| gauss(n).into_iter().map(move |(x, w)| ((k as f64 + x) / parts as f64 - 0.5, w / parts as f64)))
+        .collect();
+    for (x, wx) in &points {
+        // Even in y.
+        for (y, wy) in points.iter().filter(|(y, _)| *y > 0.0) {
+            let rho = ((kx as f64 + x) * dx).hypot(y * dy) / t;
+            let f: f64 = waves.iter().map(|(s, part)| part * libm::j0(s * rho)).sum();
+            sum += 2.0 * wx * wy * f;
+        }
+    }
+    HalfSpace::new(dx, dy, PI).at(kx as i64, 0) + dx * dy / t * sum
+}
+
+/// A coefficient is far below the two parts of its definition where the coating is soft: these lose 1/B(0) of their digits.
+#[test]
+fn coefficients_are_direct_hankel_integrals() {
+    let mut worst: f64 = 0.0;
+    for mu in RATIOS {
+        let nu = [0.3, 0.25];
+        for (t, dy, offsets, points) in [
+            (1e3, 1.0, &[0, 1, 5, 700, 16384][..], (1, 4)),
+            (10.0, 0.8, &[0, 1, 4, 9, 60], (1, 6)),
+            (1.0, 0.125, &[0, 1, 2, 9, 23], (1, 12)),
+            (0.4, 1.0, &[0, 1, 7], (2, 12)),
+        ] {
+            let table = coated(mu, nu, t, &Grid::new(offsets[offsets.len() - 1] + 1, 1, 1.0, dy).unwrap());
+            for &kx in offsets {
+                let exact = by_hankel_integrals(mu, nu, t, (1.0, dy), kx, points);
+                let error = (table.at(kx as i64, 0) / exact - 1.0).abs();
+                let tolerance = if (0.01..=100.0).contains(&mu) { 1e-10 } else { 1e-8 };
+                assert!(error <= tolerance, "mu {mu} t {t} offset {kx}: {error:e}");
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("largest difference from Hankel integrals: {worst:e}");
+}
+
 #[test]
 fn thin_thick_and_equal_coatings_are_what_they_should_be() {
     let grid = Grid::new(40, 40, 1.0, 1.0).unwrap();

@@ -219,6 +219,27 @@ fn under_a_ball_are_the_stresses_of_hertz() {
     }
 }
 
+/// The largest shear is .3100205 p0 at .480864 a (from the closed form on the axis). The depths are .001 a apart, and the place is
+/// within two of them.
+#[test]
+fn the_largest_shear_under_a_ball_is_at_its_depth() {
+    let (body, pressure) = ball(32, 0);
+    let depths: Vec<f64> = (0..81).map(|k| 0.44 + 0.001 * k as f64).collect();
+    let wanted = Wanted { maximum_shear: true, ..Wanted::default() };
+    let mut maximum = None;
+    for (k, depth) in all_depths(&body, &Loads::pressure(&pressure), &depths, &wanted, 2).iter().enumerate() {
+        Maximum::join(&mut maximum, &depth.maximum_shear, k, &body.grid);
+    }
+    let Maximum { value, depth, ix, iy } = maximum.unwrap();
+    println!("{value} at {}", depths[depth]);
+    assert!(
+        (value - 0.3100205).abs() <= 1e-4 && (depths[depth] - 0.480864).abs() <= 2e-3,
+        "{value} at {}",
+        depths[depth]
+    );
+    assert_eq!((ix, iy), (32, 32));
+}
+
 /// The reference is a polar quadrature of point forces over the disc, without a grid: von Mises maximum .647593 p0 at x = .2703 a, z = .4441 a.
 #[test]
 fn a_sliding_ball_yields_first_where_it_should() {
