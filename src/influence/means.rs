@@ -55,16 +55,31 @@ pub fn in_y(rows: &[f64], middle: usize, out: &mut [f64]) {
     combine(std::array::from_fn(|k| &rows[slot(k) * n..(slot(k) + 1) * n]), out);
 }
 
-fn combine([a, b, c, d, e, f, g, h, i]: [&[f64]; ROWS], out: &mut [f64]) {
-    let n = out.len();
-    let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
-    let (f, g, h, i) = (&f[..n], &g[..n], &h[..n], &i[..n]);
-    for (k, out) in out.iter_mut().enumerate() {
-        *out = MEAN[0] * e[k]
-            + MEAN[1] * (d[k] + f[k])
-            + MEAN[2] * (c[k] + g[k])
-            + MEAN[3] * (b[k] + h[k])
-            + MEAN[4] * (a[k] + i[k]);
+fn combine(rows: [&[f64]; ROWS], out: &mut [f64]) {
+    pulp::Arch::new().dispatch(Combine { rows, out });
+}
+
+/// Compiled for the vectors of this machine.
+struct Combine<'a> {
+    rows: [&'a [f64]; ROWS],
+    out: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let ([a, b, c, d, e, f, g, h, i], n) = (self.rows, self.out.len());
+        let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
+        let (f, g, h, i) = (&f[..n], &g[..n], &h[..n], &i[..n]);
+        for (k, out) in self.out.iter_mut().enumerate() {
+            *out = MEAN[0] * e[k]
+                + MEAN[1] * (d[k] + f[k])
+                + MEAN[2] * (c[k] + g[k])
+                + MEAN[3] * (b[k] + h[k])
+                + MEAN[4] * (a[k] + i[k]);
+        }
     }
 }
 

@@ -26,39 +26,58 @@ pub type Lanes = [f64; LANES];
 pub type Values = [[Lanes; 6]; 3];
 
 /// Adds to `sum` the stresses by forces of size `force` of the loads wanted, at places `(x, y, z)` from them.
-pub fn add(body: &Body, loaded: Loaded, (x, y, z): (&Lanes, f64, f64), force: f64, sum: &mut Values) {
-    let h = 1.0 - 2.0 * body.poisson_ratio;
-    let scale = force / (2.0 * std::f64::consts::PI);
-    let [mut l, mut m, mut n, mut w, mut s] = [[0.0; LANES]; 5];
-    for i in 0..LANES {
-        let inverse = 1.0 / (x[i] * x[i] + y * y + z * z).sqrt();
-        (l[i], m[i], n[i]) = (x[i] * inverse, y * inverse, z * inverse);
-        w[i] = 1.0 / (1.0 + n[i]);
-        s[i] = scale * inverse * inverse;
-    }
-    if loaded[0] {
+pub fn add(body: &Body, loaded: Loaded, place: (&Lanes, f64, f64), force: f64, sum: &mut Values) {
+    pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, place, force, sum });
+}
+
+/// The same, compiled for the vectors of this machine.
+struct Add<'a> {
+    nu: f64,
+    loaded: Loaded,
+    place: (&'a Lanes, f64, f64),
+    force: f64,
+    sum: &'a mut Values,
+}
+
+impl pulp::NullaryFnOnce for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Add { nu, loaded, place: (x, y, z), force, sum } = self;
+        let h = 1.0 - 2.0 * nu;
+        let scale = force / (2.0 * std::f64::consts::PI);
+        let [mut l, mut m, mut n, mut w, mut s] = [[0.0; LANES]; 5];
         for i in 0..LANES {
-            let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);
-            let g = (2.0 + n) * w * w;
-            let out = &mut sum[0];
-            out[0][i] += s * (h * (n - w + l * l * g) - 3.0 * l * l * n);
-            out[1][i] += s * (h * (n - w + m * m * g) - 3.0 * m * m * n);
-            out[2][i] += s * (-3.0 * n * n * n);
-            out[3][i] += s * (l * m * (h * g - 3.0 * n));
-            out[4][i] += s * (-3.0 * l * n * n);
-            out[5][i] += s * (-3.0 * m * n * n);
+            let inverse = 1.0 / (x[i] * x[i] + y * y + z * z).sqrt();
+            (l[i], m[i], n[i]) = (x[i] * inverse, y * inverse, z * inverse);
+            w[i] = 1.0 / (1.0 + n[i]);
+            s[i] = scale * inverse * inverse;
         }
-    }
-    if loaded[1] {
-        in_x(h, (&l, &m, &n, &w, &s), [0, 1, 2, 3, 4, 5], &mut sum[1]);
-    }
-    if loaded[2] {
-        in_x(h, (&m, &l, &n, &w, &s), [1, 0, 2, 3, 5, 4], &mut sum[2]);
+        if loaded[0] {
+            for i in 0..LANES {
+                let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);
+                let g = (2.0 + n) * w * w;
+                let out = &mut sum[0];
+                out[0][i] += s * (h * (n - w + l * l * g) - 3.0 * l * l * n);
+                out[1][i] += s * (h * (n - w + m * m * g) - 3.0 * m * m * n);
+                out[2][i] += s * (-3.0 * n * n * n);
+                out[3][i] += s * (l * m * (h * g - 3.0 * n));
+                out[4][i] += s * (-3.0 * l * n * n);
+                out[5][i] += s * (-3.0 * m * n * n);
+            }
+        }
+        if loaded[1] {
+            in_x(h, (&l, &m, &n, &w, &s), [0, 1, 2, 3, 4, 5], &mut sum[1]);
+        }
+        if loaded[2] {
+            in_x(h, (&m, &l, &n, &w, &s), [1, 0, 2, 3, 5, 4], &mut sum[2]);
+        }
     }
 }
 
 /// A force along the first of two directions; `place` says where its components stand.
-#[inline]
+#[inline(always)]
 fn in_x(h: f64, (l, m, n, w, s): (&Lanes, &Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], out: &mut [Lanes; 6]) {
     for i in 0..LANES {
         let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);

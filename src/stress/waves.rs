@@ -44,7 +44,7 @@ impl Fading {
     }
 
     /// `E = exp(-k z)` and `z E`, or what stands for them, where no k is less than `least`.
-    #[inline]
+    #[inline(always)]
     fn of(&self, k: &Lanes, least: f64) -> (Lanes, Lanes) {
         match self {
             Fading::Deep(z) => {
@@ -159,21 +159,11 @@ impl Aliased {
         let [x, y] = &mut self.directions;
         self.left = (x.enter(most), y.enter(most));
         let nu = body.poisson_ratio;
+        let cpu = pulp::Arch::new();
         for i in 0..self.left.0 {
             for first in (0..self.left.1).step_by(LANES) {
                 let mut sum: Values = [[[0.0; LANES]; 6]; 3];
-                for alias in 0..x.aliases {
-                    let (kx, mean_x) = x.of_bin(alias, i);
-                    for alias in 0..y.aliases {
-                        let (ky, means) = y.of_lanes(alias, first);
-                        let least = ky[0].abs().min(ky[LANES - 1].abs());
-                        let least = (kx * kx + least * least).sqrt();
-                        if least <= most {
-                            let loads = means.map(|mean| mean_x * mean);
-                            add(nu, loaded, (kx, &ky), &loads, (fading, least), &mut sum);
-                        }
-                    }
-                }
+                cpu.dispatch(AddAliases { nu, loaded, x: (x, i), y: (y, first), fading, sum: &mut sum });
                 if i == 0 && first == 0 {
                     // The mean of the load does not stretch sideways.
                     let sideways = 2.0 * nu - nu / (1.0 - nu);
@@ -185,8 +175,40 @@ impl Aliased {
     }
 }
 
+/// Adds all aliases of a bin in x and of bins in y from one on; compiled for the vectors of this machine, as all that it calls.
+struct AddAliases<'a> {
+    nu: f64,
+    loaded: Loaded,
+    x: (&'a Direction, usize),
+    y: (&'a Direction, usize),
+    fading: &'a Fading,
+    sum: &'a mut Values,
+}
+
+impl pulp::NullaryFnOnce for AddAliases<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let ((x, bin), (y, first)) = (self.x, self.y);
+        let most = self.fading.most();
+        for alias in 0..x.aliases {
+            let (kx, mean_x) = x.of_bin(alias, bin);
+            for alias in 0..y.aliases {
+                let (ky, means) = y.of_lanes(alias, first);
+                let least = ky[0].abs().min(ky[LANES - 1].abs());
+                let least = (kx * kx + least * least).sqrt();
+                if least <= most {
+                    let loads = means.map(|mean| mean_x * mean);
+                    add(self.nu, self.loaded, (kx, &ky), &loads, (self.fading, least), self.sum);
+                }
+            }
+        }
+    }
+}
+
 /// Adds waves of these loads: the spectra of [`periodic`](super::periodic) without their factors i, two of which make -1.
-#[inline]
+#[inline(always)]
 fn add(
     nu: f64,
     loaded: Loaded,
@@ -227,7 +249,7 @@ fn add(
 }
 
 /// A traction along the first of two directions; `place` says where its components stand.
-#[inline]
+#[inline(always)]
 fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], sum: &mut [Lanes; 6]) {
     for i in 0..LANES {
         let (l, m, e, kz) = (l[i], m[i], e[i], kz[i]);
@@ -242,7 +264,7 @@ fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), place: 
 }
 
 /// `exp(-x)` of `0 <= x < 700`, in lanes: `2^-n exp(r)` with `|r| <= ln(2)/2` and Taylor's series of it.
-#[inline]
+#[inline(always)]
 fn exp_of_minus(x: &Lanes) -> Lanes {
     /// Added to a number of less than 2^51 it leaves its nearest integer in the last bits.
     const SHIFT: f64 = 6_755_399_441_055_744.0;
