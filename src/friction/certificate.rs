@@ -10,13 +10,11 @@
 //!
 //! The error of q obeys `(q - q*)' A (q - q*) <= sum_C (s.q + g |s|)`.
 
-use super::problem::{add, dot, plus, square, Problem, Scale, State};
+use super::problem::{add, dot, plus, square, Problem, State};
+use super::vectors::{self, BLOCK};
 
 /// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
-
-/// Rolling slowly: what the displacements' round-off leaves of the rigid slip.
-const ROUND_OFF: f64 = 1.5e-8;
 
 /// The measures of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,11 +31,7 @@ pub struct Certificate {
 
 /// What residuals are compared with.
 pub fn scale(problem: &Problem, state: &State) -> f64 {
-    let (rigid, displacement) = (problem.rms_rigid(), problem.rms(|i| state.u[i]));
-    match problem.scale {
-        Scale::SlipOrDisplacement => rigid.max(displacement),
-        Scale::Slip => rigid.max(ROUND_OFF * displacement),
-    }
+    problem.scale.of(problem.rms_rigid(), problem.rms(|i| state.u[i]))
 }
 
 /// A length relative to another one; nothing is nothing relative to nothing.
@@ -52,22 +46,31 @@ pub fn relative(value: f64, scale: f64) -> f64 {
 impl Certificate {
     /// Of a state whose u is A q.
     pub fn of(problem: &Problem, state: &State) -> Certificate {
-        let (mut squares, mut gap, mut work, mut slip_count) = (0.0, 0.0, 0.0, 0);
-        for i in problem.contact() {
-            let (q, g, s) = (state.q[i], problem.bound[i], problem.slip_at(i, &state.u));
-            let (length, slides) = (square(q).sqrt(), square(s).sqrt());
-            let on_circle = length >= g * ON_THE_CIRCLE;
-            slip_count += usize::from(on_circle);
-            squares += rest(s, q, length, on_circle);
-            gap += dot(s, q) + g * slides;
-            work += g * square(add(problem.rigid[i], problem.offset)).sqrt();
-        }
+        let blocks = (0..problem.bound.len()).step_by(BLOCK);
+        let sums = vectors::over(problem.threads(), blocks, |start, _| {
+            let [mut squares, mut gap, mut work, mut slips] = [0.0; 4];
+            for i in start..(start + BLOCK).min(problem.bound.len()) {
+                let g = problem.bound[i];
+                if !(g > 0.0) {
+                    continue;
+                }
+                let (q, s) = (state.q[i], problem.slip_at(i, &state.u));
+                let (length, slides) = (square(q).sqrt(), square(s).sqrt());
+                let on_circle = length >= g * ON_THE_CIRCLE;
+                slips += f64::from(u8::from(on_circle));
+                squares += rest(s, q, length, on_circle);
+                gap += dot(s, q) + g * slides;
+                work += g * square(add(problem.rigid[i], problem.offset)).sqrt();
+            }
+            [squares, gap, work, slips]
+        });
+        let [squares, gap, work, slips] = sums;
         let rms = (squares / problem.count().max(1) as f64).sqrt();
         Certificate {
             residual: relative(rms, scale(problem, state)),
             gap: relative(gap.max(0.0), work),
-            stick_count: problem.count() - slip_count,
-            slip_count,
+            stick_count: problem.count() - slips as usize,
+            slip_count: slips as usize,
         }
     }
 }

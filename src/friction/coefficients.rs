@@ -20,14 +20,16 @@
 //! c needs no series: as a difference of distances it is a product of positive terms, without cancellation,
 //!
 //! ```text
-//! c = (X+^2 - X-^2)(Y+^2 - Y-^2) (1/(r++ + r-+) + 1/(r+- + r--)) / ((r++ + r+-)(r-+ + r--))
+//! c = (X+^2 - X-^2)(Y+^2 - Y-^2) (r++ + r-+ + r+- + r--) / ((r++ + r-+)(r+- + r--)(r++ + r+-)(r-+ + r--))
 //! ```
 //!
 //! Offsets are in elements and need not be whole: rolling asks for displacements between the centres.
 
+use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::series::{Series, Shape};
 use super::tables::Tables;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
@@ -37,14 +39,11 @@ use crate::scene::Bodies;
 /// The coefficients of one offset: `Axx, Ayy, Axy`.
 pub type Entry = [f64; 3];
 
-/// Terms of the series at most.
-const MOST_TERMS: usize = 8;
-
 /// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice, as for the normal coefficients.
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
-/// Polynomials `p_k(t) = sum_j series[k][j] t^j`.
-type Series = [[f64; MOST_TERMS + 2]; MOST_TERMS + 1];
+/// Offsets whose series are summed side by side.
+const LANES: usize = 4;
 
 /// What the bodies' materials make of tractions: `1/G`, `nu/G` and `K/G` of both together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,13 +79,6 @@ pub struct Tangential {
     series: [Series; 2],
     /// The caller's own, in place of these.
     own: Option<Tables>,
-}
-
-/// The series of a and b, which depend on the ratio dx/dy only.
-#[derive(Debug)]
-struct Shape {
-    a: Series,
-    b: Series,
 }
 
 impl Tangential {
@@ -138,59 +130,112 @@ impl Tangential {
         self.compliance
     }
 
+    /// These over others, where they are a multiple of them.
+    pub fn times(&self, other: &Tangential) -> Option<f64> {
+        let is_multiple = self.own.is_none()
+            && other.own.is_none()
+            && self.compliance == other.compliance
+            && Arc::ptr_eq(&self.shape, &other.shape);
+        is_multiple.then_some(self.dx / other.dx)
+    }
+
     /// The coefficients at an offset, in elements; of own tables at the next whole one.
     pub fn at(&self, x: f64, y: f64) -> Entry {
         if let Some(own) = &self.own {
             return own.at(x.round() as i64, y.round() as i64);
         }
         let (kx, ky, sign) = (x.abs(), y.abs(), if (x < 0.0) == (y < 0.0) { 1.0 } else { -1.0 });
-        let (dx, dy) = (self.dx, self.dy);
-        let Compliance { shear, poisson, .. } = self.compliance;
-        let xy = sign * poisson / PI * mixed(kx, ky, dx, dy);
-        let (px, py) = (kx * dx, ky * dy);
-        let (r2, half_diagonal2) = (px * px + py * py, 0.25 * (dx * dx + dy * dy));
-        let z = half_diagonal2 / r2;
-        let beyond = |s: usize| z * (SERIES[s].0 * SERIES[s].0) <= 1.0;
-        if !beyond(0) {
-            let (a, b) = near(kx, ky, dx, dy);
-            return [(shear * (a + b) - poisson * a) / PI, (shear * (a + b) - poisson * b) / PI, xy];
-        }
-        let t = px * px / r2;
-        let sums = match (beyond(1), beyond(2), beyond(3)) {
-            (false, ..) => self.sums::<8>(z, t),
-            (_, false, _) => self.sums::<6>(z, t),
-            (_, _, false) => self.sums::<4>(z, t),
-            _ => self.sums::<2>(z, t),
+        let (px, py) = (kx * self.dx, ky * self.dy);
+        let beyond = SERIES.map(|(distance, _)| self.is_beyond(distance, px, py));
+        let one = |[[xx], [yy]]: [[f64; 1]; 2]| [xx, yy];
+        let [xx, yy] = match beyond {
+            [false, ..] => self.near(kx, ky),
+            [_, false, ..] => one(self.far::<8, 1>([px], py)),
+            [_, _, false, _] => one(self.far::<6, 1>([px], py)),
+            [.., false] => one(self.far::<4, 1>([px], py)),
+            _ => one(self.far::<2, 1>([px], py)),
         };
-        let scale = dx * dy / r2.sqrt();
-        [scale * sums[0], scale * sums[1], xy]
+        [xx, yy, sign * self.mixed(kx, ky)]
     }
 
-    fn sums<const K: usize>(&self, z: f64, t: f64) -> [f64; 2] {
+    /// The coefficients at the offsets `(0.., ky)`.
+    pub fn fill_row(&self, ky: usize, out: &mut [Entry]) {
+        if self.own.is_some() {
+            out.iter_mut().enumerate().for_each(|(kx, entry)| *entry = self.at(kx as f64, ky as f64));
+            return;
+        }
+        // The distance grows along the row: one segment after the other, each with its own number of terms.
+        let (y, count) = (ky as f64 * self.dy, out.len());
+        let starts = SERIES.map(|(distance, _)| {
+            let first = (0..count).position(|kx| self.is_beyond(distance, kx as f64 * self.dx, y));
+            first.unwrap_or(count)
+        });
+        let (near, far) = out.split_at_mut(starts[0]);
+        for (kx, entry) in near.iter_mut().enumerate() {
+            let [xx, yy] = self.near(kx as f64, ky as f64);
+            *entry = [xx, yy, 0.0];
+        }
+        let [s8, s6, s4, s2] = starts;
+        let (far8, rest) = far.split_at_mut(s6 - s8);
+        let (far6, rest) = rest.split_at_mut(s4 - s6);
+        let (far4, far2) = rest.split_at_mut(s2 - s4);
+        self.fill_far::<8>(s8, y, far8);
+        self.fill_far::<6>(s6, y, far6);
+        self.fill_far::<4>(s4, y, far4);
+        self.fill_far::<2>(s2, y, far2);
+        for (kx, entry) in out.iter_mut().enumerate() {
+            entry[2] = self.mixed(kx as f64, ky as f64);
+        }
+    }
+
+    fn fill_far<const K: usize>(&self, first: usize, y: f64, out: &mut [Entry]) {
+        for (chunk, entries) in out.chunks_mut(LANES).enumerate() {
+            let x = from_fn(|lane| (first + LANES * chunk + lane) as f64 * self.dx);
+            let [xx, yy] = self.far::<K, LANES>(x, y);
+            entries.iter_mut().enumerate().for_each(|(lane, entry)| *entry = [xx[lane], yy[lane], 0.0]);
+        }
+    }
+
+    /// Whether an offset is so many half-diagonals away, or more.
+    fn is_beyond(&self, half_diagonals: f64, x: f64, y: f64) -> bool {
+        0.25 * (self.dx * self.dx + self.dy * self.dy) * (half_diagonals * half_diagonals) <= x * x + y * y
+    }
+
+    /// Axx and Ayy by the series, at some offsets of one row side by side.
+    fn far<const K: usize, const L: usize>(&self, x: [f64; L], y: f64) -> [[f64; L]; 2] {
+        let (half_diagonal2, area) = (0.25 * (self.dx * self.dx + self.dy * self.dy), self.dx * self.dy);
+        let inverse = x.map(|x| 1.0 / (x * x + y * y));
+        let t: [f64; L] = from_fn(|l| x[l] * x[l] * inverse[l]);
         self.series.each_ref().map(|series| {
-            let mut sum = 0.0;
+            let mut sum = [0.0; L];
             for k in (0..=K).rev() {
-                let mut value = series[k][k + 1];
+                let mut value = [series[k][k + 1]; L];
                 for j in (0..=k).rev() {
-                    value = value * t + series[k][j];
+                    value = from_fn(|l| value[l] * t[l] + series[k][j]);
                 }
-                sum = sum * z + value;
+                sum = from_fn(|l| sum[l] * (half_diagonal2 * inverse[l]) + value[l]);
             }
-            sum
+            from_fn(|l| area * inverse[l].sqrt() * sum[l])
         })
     }
-}
 
-/// c at an offset `kx, ky >= 0`.
-fn mixed(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
-    let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
-    let r = |x: f64, y: f64| (x * x + y * y).sqrt();
-    let (pp, pm, mp, mm) = (r(xp, yp), r(xp, ym), r(xm, yp), r(xm, ym));
-    let squares = (2.0 * kx * dx * dx) * (2.0 * ky * dy * dy);
-    if squares == 0.0 {
-        return 0.0;
+    /// Axx and Ayy at an offset `kx, ky >= 0` nearer than the series reaches.
+    fn near(&self, kx: f64, ky: f64) -> [f64; 2] {
+        let Compliance { shear, poisson, .. } = self.compliance;
+        let (a, b) = near(kx, ky, self.dx, self.dy);
+        [(shear * (a + b) - poisson * a) / PI, (shear * (a + b) - poisson * b) / PI]
     }
-    squares * (1.0 / (pp + mp) + 1.0 / (pm + mm)) / ((pp + pm) * (mp + mm))
+
+    /// Axy at an offset `kx, ky >= 0`. Lengths are in units of dx: products of four of them stay within range.
+    fn mixed(&self, kx: f64, ky: f64) -> f64 {
+        let aspect = self.dy / self.dx;
+        let (xp, xm, yp, ym) = (kx + 0.5, kx - 0.5, (ky + 0.5) * aspect, (ky - 0.5) * aspect);
+        let r = |x: f64, y: f64| (x * x + y * y).sqrt();
+        let (pp, pm, mp, mm) = (r(xp, yp), r(xp, ym), r(xm, yp), r(xm, ym));
+        let squares = 4.0 * kx * ky * (aspect * aspect);
+        let c = squares * ((pp + mp) + (pm + mm)) / ((pp + mp) * (pm + mm) * ((pp + pm) * (mp + mm)));
+        self.compliance.poisson / PI * (self.dx * c)
+    }
 }
 
 /// a and b at an offset `kx, ky >= 0` nearer than the series reaches.
@@ -222,68 +267,4 @@ fn along(k: f64, d: f64, y: f64) -> (f64, f64) {
     let squares = (plus + minus) * d;
     let sine = y * y * squares / (rp * rm * (plus * rm + minus * rp));
     (sine, ((d + squares / (rp + rm)) / (minus + rm)).ln_1p())
-}
-
-impl Shape {
-    fn new(dx: f64, dy: f64) -> Shape {
-        Shape { a: series(dx, dy, [1.0, 0.0, 0.0]), b: series(dx, dy, [0.0, 0.0, 1.0]) }
-    }
-}
-
-/// A homogeneous polynomial `sum_p c[p] X^p Y^(degree - p)` over `r^power`.
-#[derive(Clone)]
-struct Fraction {
-    coefficients: Vec<f64>,
-    power: f64,
-}
-
-impl Fraction {
-    /// `d/dX (N/r^m) = (N_X r^2 - m X N)/r^(m + 2)`, or the same in Y.
-    fn derivative(&self, in_x: bool) -> Fraction {
-        let degree = self.coefficients.len() - 1;
-        let mut coefficients = vec![0.0; degree + 2];
-        for (p, c) in self.coefficients.iter().enumerate() {
-            let exponent = if in_x { p } else { degree - p } as f64;
-            // Of X^p Y^q: X^(p+1) Y^q and X^(p-1) Y^(q+2), or X^p Y^(q+1) and X^(p+2) Y^(q-1).
-            let (raised, crossed) = if in_x { (p + 1, p.wrapping_sub(1)) } else { (p, p + 2) };
-            coefficients[raised] += (exponent - self.power) * c;
-            if exponent > 0.0 {
-                coefficients[crossed] += exponent * c;
-            }
-        }
-        Fraction { coefficients, power: self.power + 2.0 }
-    }
-}
-
-/// The polynomials of the mean over the element of `N(X, Y)/r^3`, N of degree 2: the sum of
-/// `hx^(2i) hy^(2j)/((2i + 1)! (2j + 1)!)` times the derivatives of order 2i in X and 2j in Y, half-widths in units of the
-/// half-diagonal.
-fn series(dx: f64, dy: f64, numerator: [f64; 3]) -> Series {
-    let diagonal = dx.hypot(dy);
-    let moment = |h: f64, i: usize| (2..=2 * i + 1).fold(h.powi(2 * i as i32), |m, k| m / k as f64);
-    let mut series = [[0.0; MOST_TERMS + 2]; MOST_TERMS + 1];
-    let mut in_x = Fraction { coefficients: numerator.to_vec(), power: 3.0 };
-    for i in 0..=MOST_TERMS {
-        let mut term = in_x.clone();
-        for j in 0..=MOST_TERMS - i {
-            let factor = moment(dx / diagonal, i) * moment(dy / diagonal, j);
-            add_in_t(&term.coefficients, factor, &mut series[i + j]);
-            term = term.derivative(false).derivative(false);
-        }
-        in_x = in_x.derivative(true).derivative(true);
-    }
-    series
-}
-
-/// Adds `factor sum_p c[p] X^p Y^(2m - p)`, p even, as a polynomial in `t = X^2 = 1 - Y^2`.
-fn add_in_t(coefficients: &[f64], factor: f64, polynomial: &mut [f64]) {
-    let m = (coefficients.len() - 1) / 2;
-    for half in 0..=m {
-        let (c, rest) = (factor * coefficients[2 * half], m - half);
-        let mut binomial = 1.0;
-        for i in 0..=rest {
-            polynomial[half + i] += if i % 2 == 0 { c } else { -c } * binomial;
-            binomial *= (rest - i) as f64 / (i + 1) as f64;
-        }
-    }
 }

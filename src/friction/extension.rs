@@ -11,11 +11,12 @@
 //!
 //! On rough surfaces, whose C is many small spots, it saves up to a third of the products (docs/friction.md).
 
-use super::problem::{add, plus};
+use super::problem::plus;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
+use crate::threads::Threads;
 
 /// Coarser grids: C reaches eight elements far.
 const LEVELS: usize = 3;
@@ -30,105 +31,205 @@ pub struct Extension {
 
 /// One grid.
 struct Fields {
-    grid: Grid,
-    /// Whether a value is known: in C, or where a child's is.
-    known: Vec<bool>,
+    mx: usize,
+    my: usize,
+    /// Those that work on it.
+    threads: Threads,
+    /// 0 where a value is known: in C, or where a child's is; [`DECAY`] elsewhere.
+    decay: Vec<f64>,
+    /// 1 over the number of known children, 0 where there is none; of the given grid there are no children.
+    share: Vec<f64>,
     /// Coarse values; of the given grid none.
     values: Vec<Vector>,
+    /// One row for each row of this grid: the next coarser grid's values between its rows, or this one's summed up along x.
+    rows: Vec<Vector>,
+}
+
+impl Fields {
+    fn new(mx: usize, my: usize, is_given: bool, threads: &Threads) -> Result<Fields> {
+        let what = "the continuation of residuals";
+        let coarse = if is_given { 0 } else { mx * my };
+        let rows = zeros(my * mx.div_ceil(2), what)?;
+        let (decay, share, values) = (zeros(mx * my, what)?, zeros(coarse, what)?, zeros(coarse, what)?);
+        Ok(Fields { mx, my, threads: threads.suited_to(mx * my), decay, share, values, rows })
+    }
 }
 
 impl Extension {
     /// For a grid.
-    pub fn new(grid: &Grid) -> Result<Extension> {
-        let what = "the continuation of residuals";
-        let mut grid = *grid;
-        let mut grids = vec![Fields { grid, known: zeros(grid.len(), what)?, values: Vec::new() }];
+    pub fn new(grid: &Grid, threads: &Threads) -> Result<Extension> {
+        let (mut mx, mut my) = (grid.mx, grid.my);
+        let mut grids = vec![Fields::new(mx, my, true, threads)?];
         for _ in 0..LEVELS {
-            grid = Grid { mx: grid.mx.div_ceil(2), my: grid.my.div_ceil(2), dx: 2.0 * grid.dx, dy: 2.0 * grid.dy };
-            grids.push(Fields { grid, known: zeros(grid.len(), what)?, values: zeros(grid.len(), what)? });
+            (mx, my) = (mx.div_ceil(2), my.div_ceil(2));
+            grids.push(Fields::new(mx, my, false, threads)?);
         }
         Ok(Extension { grids })
     }
 
     /// C has changed: where `bound` is positive.
     pub fn contact_changed(&mut self, bound: &[f64]) {
-        self.grids[0].known.iter_mut().zip(bound).for_each(|(known, g)| *known = *g > 0.0);
+        let decay = |is_known: bool| if is_known { 0.0 } else { DECAY };
+        self.grids[0].decay.iter_mut().zip(bound).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
         for l in 1..self.grids.len() {
-            let (fine, coarse) = self.pair(l);
-            for k in 0..coarse.known.len() {
-                coarse.known[k] = fine.known_children(k, &coarse.grid).next().is_some();
+            let (fine, coarse) = pair(&mut self.grids, l);
+            let (mx, fine_mx) = (coarse.mx, fine.mx);
+            let shares = coarse.share.chunks_exact_mut(mx).zip(coarse.decay.chunks_exact_mut(mx));
+            for ((share, decay_of), rows) in shares.zip(fine.decay.chunks(2 * fine_mx)) {
+                share.fill(0.0);
+                for row in rows.chunks_exact(fine_mx) {
+                    for (count, children) in share.iter_mut().zip(row.chunks(2)) {
+                        *count += children.iter().filter(|decay| **decay == 0.0).count() as f64;
+                    }
+                }
+                for (share, decay_of) in share.iter_mut().zip(decay_of) {
+                    *decay_of = decay(*share > 0.0);
+                    *share = if *share > 0.0 { 1.0 / *share } else { 0.0 };
+                }
             }
         }
     }
 
-    /// E r: fills in what is not known of `r`.
+    /// E r: fills in what is not known of `r`, which is zero there.
     pub fn fill(&mut self, r: &mut [Vector]) {
         for l in 1..self.grids.len() {
-            let (fine, coarse) = self.pair(l);
+            let (fine, coarse) = pair(&mut self.grids, l);
+            let (mx, share) = (fine.mx, &coarse.share);
             let from = if l == 1 { &*r } else { &fine.values };
-            for k in 0..coarse.values.len() {
-                let (mut sum, mut count) = ([0.0; 2], 0);
-                for child in fine.known_children(k, &coarse.grid) {
-                    (sum, count) = (add(sum, from[child]), count + 1);
-                }
-                coarse.values[k] = sum.map(|sum| sum / f64::from(count.max(1)));
-            }
+            fine.threads.for_each_plain_row(&mut coarse.values, coarse.mx, |iy, to| {
+                let end = (2 * (iy + 1)).min(fine.my);
+                sum_of_children(&from[2 * iy * mx..end * mx], mx, to);
+                let share = &share[iy * to.len()..(iy + 1) * to.len()];
+                to.iter_mut().zip(share).for_each(|(to, share)| *to = to.map(|sum| share * sum));
+            });
         }
         for l in (1..self.grids.len()).rev() {
-            let (fine, coarse) = self.pair(l);
-            let Fields { grid, known, values } = fine;
+            let (fine, coarse) = pair(&mut self.grids, l);
+            let Fields { mx, decay, values, rows, threads, .. } = fine;
             let to = if l == 1 { &mut *r } else { values };
-            for i in (0..to.len()).filter(|&i| !known[i]) {
-                to[i] = [0.0; 2];
-                coarse.around(i, grid.mx, |k, weight| to[i] = plus(to[i], DECAY * weight, coarse.values[k]));
-            }
+            threads.for_each_row_pair((to, *mx), (rows, coarse.mx), |iy, to, between| {
+                let [(own, near), (other, far)] = neighbours(iy, coarse.my);
+                let (own, other) = (coarse.row(own), coarse.row(other));
+                for ((between, own), other) in between.iter_mut().zip(own).zip(other) {
+                    *between = plus(own.map(|value| near * value), far, *other);
+                }
+                add_between(between, &decay[iy * *mx..(iy + 1) * *mx], to);
+            });
         }
     }
 
     /// E' z in C; elsewhere z is left as it is.
     pub fn fold(&mut self, z: &mut [Vector]) {
         for l in 1..self.grids.len() {
-            let (fine, coarse) = self.pair(l);
-            let from = if l == 1 { &*z } else { &fine.values };
-            let mut sums = std::mem::take(&mut coarse.values);
-            sums.fill([0.0; 2]);
-            for i in (0..from.len()).filter(|&i| !fine.known[i]) {
-                coarse.around(i, fine.grid.mx, |k, weight| sums[k] = plus(sums[k], DECAY * weight, from[i]));
-            }
-            coarse.values = sums;
+            let (fine, coarse) = pair(&mut self.grids, l);
+            let Fields { mx, my, decay, values, rows, threads, .. } = fine;
+            let (mx, my, width) = (*mx, *my, coarse.mx);
+            let from = if l == 1 { &*z } else { values };
+            threads.for_each_plain_row(rows, width, |iy, sums| {
+                let row = iy * mx..(iy + 1) * mx;
+                sum_between(&from[row.clone()], &decay[row], sums);
+            });
+            let (rows, coarse_my) = (&*rows, coarse.my);
+            threads.for_each_plain_row(&mut coarse.values, width, |k, sums| {
+                sums.fill([0.0; 2]);
+                for iy in (2 * k).saturating_sub(1)..(2 * k + 3).min(my) {
+                    let weight: f64 =
+                        neighbours(iy, coarse_my).iter().filter(|near| near.0 == k).map(|near| near.1).sum();
+                    let row = &rows[iy * width..(iy + 1) * width];
+                    sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = plus(*sum, weight, *value));
+                }
+            });
         }
         for l in (1..self.grids.len()).rev() {
-            let (fine, coarse) = self.pair(l);
-            for k in (0..coarse.values.len()).filter(|&k| coarse.known[k]) {
-                let share = 1.0 / fine.known_children(k, &coarse.grid).count() as f64;
-                for child in coarse.grid.children(&fine.grid, k).filter(|&child| fine.known[child]) {
-                    let to = if l == 1 { &mut z[child] } else { &mut fine.values[child] };
-                    *to = plus(*to, share, coarse.values[k]);
+            let (fine, coarse) = pair(&mut self.grids, l);
+            let Fields { mx, decay, values, threads, .. } = fine;
+            let to = if l == 1 { &mut *z } else { values };
+            let (mx, width) = (*mx, coarse.mx);
+            threads.for_each_plain_row(to, mx, |iy, to| {
+                let row = (iy / 2) * width..(iy / 2 + 1) * width;
+                let known = decay[iy * mx..(iy + 1) * mx].chunks(2);
+                let from = coarse.values[row.clone()].iter().zip(&coarse.share[row]);
+                for ((to, known), (value, share)) in to.chunks_mut(2).zip(known).zip(from) {
+                    for (to, decay) in to.iter_mut().zip(known) {
+                        let share = if *decay == 0.0 { *share } else { 0.0 };
+                        *to = plus(*to, share, *value);
+                    }
                 }
-            }
+            });
         }
-    }
-
-    /// The grid before l, and l.
-    fn pair(&mut self, l: usize) -> (&mut Fields, &mut Fields) {
-        let (fine, coarse) = self.grids.split_at_mut(l);
-        (&mut fine[l - 1], &mut coarse[0])
     }
 }
 
-impl Fields {
-    /// The elements that are known in element k of the next coarser grid.
-    fn known_children(&self, k: usize, coarse: &Grid) -> impl Iterator<Item = usize> + '_ {
-        coarse.children(&self.grid, k).filter(|&child| self.known[child])
-    }
+/// The grid before l, and l.
+fn pair(grids: &mut [Fields], l: usize) -> (&mut Fields, &mut Fields) {
+    let (fine, coarse) = grids.split_at_mut(l);
+    (&mut fine[l - 1], &mut coarse[0])
+}
 
-    /// The elements between which the centre of element i of the next finer grid lies, `width` wide, and their weights.
-    fn around(&self, i: usize, width: usize, mut take: impl FnMut(usize, f64)) {
-        for (ix, in_x) in neighbours(i % width, self.grid.mx) {
-            for (iy, in_y) in neighbours(i / width, self.grid.my) {
-                take(self.grid.index(ix, iy), in_x * in_y);
-            }
+impl Fields {
+    /// A row of the values.
+    fn row(&self, iy: usize) -> &[Vector] {
+        &self.values[iy * self.mx..(iy + 1) * self.mx]
+    }
+}
+
+/// The sums of up to two rows, `mx` long, by pairs along x.
+fn sum_of_children(rows: &[Vector], mx: usize, to: &mut [Vector]) {
+    to.fill([0.0; 2]);
+    for row in rows.chunks_exact(mx) {
+        let pairs = row.chunks_exact(2);
+        if let ([last], Some(to)) = (pairs.remainder(), to.last_mut()) {
+            *to = plus(*to, 1.0, *last);
         }
+        for (to, pair) in to.iter_mut().zip(pairs) {
+            *to = [to[0] + (pair[0][0] + pair[1][0]), to[1] + (pair[0][1] + pair[1][1])];
+        }
+    }
+}
+
+/// Adds to a fine row `factor` times the coarse row, interpolated.
+fn add_between(coarse: &[Vector], factor: &[f64], fine: &mut [Vector]) {
+    let ends = [0, fine.len() - 1];
+    for i in ends.into_iter().take(fine.len()) {
+        let [(own, near), (other, far)] = neighbours(i, coarse.len());
+        let value = plus(coarse[own].map(|value| near * value), far, coarse[other]);
+        fine[i] = plus(fine[i], factor[i], value);
+    }
+    if fine.len() < 3 {
+        return;
+    }
+    // Between the ends come the right child of k and the left child of k + 1.
+    let inner = 1..fine.len() - 1;
+    let (to, factor) = (&mut fine[inner.clone()], &factor[inner]);
+    for (k, (to, factor)) in to.chunks_mut(2).zip(factor.chunks(2)).enumerate() {
+        let (left, right) = (coarse[k], coarse[k + 1]);
+        to[0] = plus(to[0], factor[0], plus(left.map(|value| 0.75 * value), 0.25, right));
+        if let ([_, to], [_, factor]) = (to, factor) {
+            *to = plus(*to, *factor, plus(right.map(|value| 0.75 * value), 0.25, left));
+        }
+    }
+}
+
+/// The transpose of [`add_between`]: `factor` times a fine row, summed up on a coarse one.
+fn sum_between(fine: &[Vector], factor: &[f64], coarse: &mut [Vector]) {
+    coarse.fill([0.0; 2]);
+    let ends = [0, fine.len() - 1];
+    for i in ends.into_iter().take(fine.len()) {
+        for (k, weight) in neighbours(i, coarse.len()) {
+            coarse[k] = plus(coarse[k], weight * factor[i], fine[i]);
+        }
+    }
+    if fine.len() < 3 {
+        return;
+    }
+    let inner = 1..fine.len() - 1;
+    let (from, factor) = (&fine[inner.clone()], &factor[inner]);
+    for (k, (from, factor)) in from.chunks(2).zip(factor.chunks(2)).enumerate() {
+        let value = |i: usize| from[i].map(|value| factor[i] * value);
+        let left = value(0);
+        let right = if from.len() == 2 { value(1) } else { [0.0; 2] };
+        coarse[k] = plus(plus(coarse[k], 0.75, left), 0.25, right);
+        coarse[k + 1] = plus(plus(coarse[k + 1], 0.25, left), 0.75, right);
     }
 }
 
@@ -146,10 +247,11 @@ mod tests {
     /// `w . E r = E' w . r` for C in spots, on a grid of odd sides and on a row.
     #[test]
     fn folding_is_the_transpose_of_filling() {
-        for (mx, my) in [(21, 13), (17, 1)] {
+        for (mx, my) in [(21, 13), (17, 1), (16, 10), (2, 3), (1, 24)] {
             let value = |i: usize, seed: usize| ((i * 37 + seed) % 101) as f64 / 101.0 - 0.5;
             let bound: Vec<f64> = (0..mx * my).map(|i| if (i * 29 + i / 7) % 5 < 2 { 1.0 } else { 0.0 }).collect();
-            let mut extension = Extension::new(&Grid::new(mx, my, 1.0, 1.0).unwrap()).unwrap();
+            let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
+            let mut extension = Extension::new(&grid, &Threads::One).unwrap();
             extension.contact_changed(&bound);
             let r: Vec<Vector> = (0..mx * my).map(|i| [bound[i] * value(i, 3), bound[i] * value(i, 8)]).collect();
             let w: Vec<Vector> = (0..mx * my).map(|i| [value(i, 50), value(i, 77)]).collect();

@@ -11,10 +11,12 @@
 
 use super::certificate::ON_THE_CIRCLE;
 use super::extension::neighbours;
+use super::march::Rolling;
 use super::operators::Operators;
 use super::problem::{add, onto_disc, plus, square, Problem, State};
+use super::quadrant::Quadrant;
 use super::shift::Memory;
-use super::Vector;
+use super::{Tangential, Vector};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
@@ -59,17 +61,26 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     Some(Grid { mx, my, dx, dy })
 }
 
-/// The grids of a box, the finest first.
-pub fn levels(operators: Operators, grid: Grid, single: bool, threads: &Threads) -> Result<Vec<Level>> {
-    let tangential = operators.tangential.clone();
+/// The grids of a box, the finest first. `single`: whether directions may be multiplied in single precision; on coarser grids that
+/// serves for all.
+pub fn levels(
+    tangential: &Tangential,
+    grid: Grid,
+    rolling: Option<Rolling>,
+    single: bool,
+    threads: &Threads,
+) -> Result<Vec<Level>> {
+    let by = |rolling: Option<Rolling>| rolling.map_or((0.0, 0.0), |rolling| rolling.by);
+    let mut quadrant = Quadrant::new(tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
+    let operators = Operators::new(&quadrant, &grid, rolling, (single, false), threads)?;
     let mut levels = vec![Level::new(grid, operators)?];
-    let mut next = coarser(&grid);
-    while let Some(grid) = next {
-        let tangential = tangential.for_element(grid.dx, grid.dy)?;
-        let last = &levels[levels.len() - 1].problem;
-        let rolling = last.operators.step().map(|rolling| rolling.on(&last.grid, &grid));
-        levels.push(Level::new(grid, Operators::new(&tangential, &grid, rolling, single, threads)?)?);
-        next = coarser(&grid);
+    let (mut last, mut rolling) = (grid, rolling);
+    while let Some(grid) = coarser(&last) {
+        let tangential = quadrant.tangential().for_element(grid.dx, grid.dy)?;
+        rolling = rolling.map(|rolling| rolling.on(&last, &grid));
+        quadrant = quadrant.coarser(&tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
+        levels.push(Level::new(grid, Operators::new(&quadrant, &grid, rolling, (single, true), threads)?)?);
+        last = grid;
     }
     Ok(levels)
 }

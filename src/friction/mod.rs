@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`coefficients`] | influence of tangential tractions |
+//! | [`coefficients`], `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
 //! | [`Toeplitz`], `spectrum`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
@@ -27,7 +27,9 @@ mod nested;
 mod newton;
 mod operators;
 mod problem;
+mod quadrant;
 mod sensitivity;
+mod series;
 mod shift;
 mod solution;
 mod solver;

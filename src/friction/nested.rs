@@ -57,7 +57,7 @@ pub fn solve(
             let (fine, coarse) = levels.split_at_mut(l);
             interpolate(&coarse[0], &mut fine[l - 1])?;
             let Level { problem, state, .. } = &mut fine[l - 1];
-            problem.refresh(state);
+            problem.refresh_to(state, tolerance);
         }
     }
     let level = &mut levels[0];

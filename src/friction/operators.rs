@@ -2,6 +2,7 @@
 
 use super::coefficients::Tangential;
 use super::march::{March, Rolling};
+use super::quadrant::Quadrant;
 use super::toeplitz::{unit_of, Toeplitz, Workspace};
 use super::Vector;
 use crate::error::Result;
@@ -13,7 +14,8 @@ use crate::threads::Threads;
 pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
-    exact: (Toeplitz<f64>, Workspace<f64>),
+    /// None: single precision serves for all, on a coarser grid.
+    exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
     fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
@@ -28,28 +30,32 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// On a grid. `single`: whether directions may be multiplied in single precision.
+    /// On a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision, `only`:
+    /// whether all may.
     pub fn new(
-        tangential: &Tangential,
+        quadrant: &Quadrant,
         grid: &Grid,
         rolling: Option<Rolling>,
-        single: bool,
+        (single, only): (bool, bool),
         threads: &Threads,
     ) -> Result<Operators> {
         let threads = &threads.suited_to(grid.len());
-        let exact = match rolling {
-            Some(rolling) => Toeplitz::rolling(tangential, grid, rolling.by, threads)?,
-            None => Toeplitz::new(tangential, grid, threads)?,
+        let tangential = quadrant.tangential();
+        let (exact, fast) = if single && only {
+            (None, Some(product(quadrant, grid, rolling, threads)?))
+        } else {
+            let exact = product(quadrant, grid, rolling, threads)?;
+            let fast = single.then(|| exact.in_precision()).transpose()?;
+            (Some(exact), fast)
         };
-        let fast = single.then(|| exact.in_precision()).transpose()?;
-        let inverse = Toeplitz::inverse(tangential, grid, threads)?;
+        let inverse = Toeplitz::nearly_inverse(quadrant, grid, threads)?;
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         let rolling = rolling.map(|rolling| (rolling, March::new(&rolling)));
         // Between the centres as the march has it.
         let there = rolling.as_ref().map_or([0.0; 2], |(_, march)| march.ahead_of(|x, y| tangential.at(x, y)));
         Ok(Operators {
             tangential: tangential.clone(),
-            exact: with_workspace(exact)?,
+            exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
             inverse: inverse.map(with_workspace).transpose()?,
             rolling,
@@ -65,20 +71,26 @@ impl Operators {
         self.rolling.as_ref().map(|(rolling, _)| *rolling)
     }
 
-    /// `u = A q` in double precision, or B q.
-    pub fn multiply(&mut self, q: &[Vector], u: &mut [Vector]) {
-        let (operator, workspace) = &mut self.exact;
-        operator.apply(q, 1.0, u, workspace);
+    /// `u = A q` in double precision, or B q; on coarser grids in the precision that there is, for q of the order of `unit`.
+    pub fn multiply(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
+        match (&mut self.exact, &mut self.fast) {
+            (Some((operator, workspace)), _) => operator.apply(q, 1.0, u, workspace),
+            (_, Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
+            _ => unreachable!("there is one of them"),
+        }
         self.products += 1;
     }
 
-    /// The same to single precision, for q of the order of `unit`.
+    /// The same to single precision.
     pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
-        match &mut self.fast {
-            Some((operator, workspace)) => operator.apply(q, unit_of(unit), u, workspace),
-            None => self.exact.0.apply(q, 1.0, u, &mut self.exact.1),
-        }
+        let Some((operator, workspace)) = &mut self.fast else { return self.multiply(q, unit, u) };
+        operator.apply(q, unit_of(unit), u, workspace);
         self.products += 1;
+    }
+
+    /// Whether [`multiply_fast`](Self::multiply_fast) is as good as [`multiply`](Self::multiply).
+    pub fn fast_is_exact(&self) -> bool {
+        self.exact.is_none() || self.fast.is_none()
     }
 
     /// About `q = A^-1 u`, for tractions of the order of `unit`.
@@ -92,9 +104,23 @@ impl Operators {
 
     /// Bytes of the spectra.
     pub fn bytes(&self) -> usize {
-        let single =
-            |of: &Option<(Toeplitz<f32>, Workspace<f32>)>| of.as_ref().map_or(0, |(operator, _)| operator.bytes());
-        self.exact.0.bytes() + single(&self.fast) + single(&self.inverse)
+        fn of<T: Real>(operator: &Option<(Toeplitz<T>, Workspace<T>)>) -> usize {
+            operator.as_ref().map_or(0, |(operator, _)| operator.bytes())
+        }
+        of(&self.exact) + of(&self.fast) + of(&self.inverse)
+    }
+}
+
+/// A, or in steady rolling B.
+fn product<T: Real>(
+    quadrant: &Quadrant,
+    grid: &Grid,
+    rolling: Option<Rolling>,
+    threads: &Threads,
+) -> Result<Toeplitz<T>> {
+    match rolling {
+        Some(rolling) => Toeplitz::rolling(quadrant, grid, rolling.by, threads),
+        None => Toeplitz::direct(quadrant, grid, threads),
     }
 }
 

@@ -15,6 +15,7 @@ use std::ops::Range;
 
 use super::extension::Extension;
 use super::operators::Operators;
+use super::vectors;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -24,6 +25,9 @@ use crate::threads::Threads;
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
 
+/// A product in single precision leaves a residual far below this.
+const SINGLE: f64 = 1e-6;
+
 /// What residuals are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
@@ -31,6 +35,19 @@ pub enum Scale {
     SlipOrDisplacement,
     /// The rigid slip of the step: rolling.
     Slip,
+}
+
+/// Rolling slowly: what the displacements' round-off leaves of the rigid slip.
+const ROUND_OFF: f64 = 1.5e-8;
+
+impl Scale {
+    /// Of the rms of both.
+    pub fn of(self, rigid: f64, displacement: f64) -> f64 {
+        match self {
+            Scale::SlipOrDisplacement => rigid.max(displacement),
+            Scale::Slip => rigid.max(ROUND_OFF * displacement),
+        }
+    }
 }
 
 /// The tangential problem of one grid, a box around C.
@@ -95,8 +112,8 @@ impl Problem {
             slip: zeros(n, FIELDS)?,
             offset: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
+            extension: Extension::new(&grid, &operators.threads)?,
             operators,
-            extension: Extension::new(&grid)?,
             runs: Vec::new(),
             count: 0,
             rms_bound: 0.0,
@@ -151,8 +168,9 @@ impl Problem {
     }
 
     /// rms over C of a field.
-    pub fn rms(&self, value: impl Fn(usize) -> Vector) -> f64 {
-        let sum: f64 = self.contact().map(|i| square(value(i))).sum();
+    pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
+        let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }, 0.0];
+        let [sum, _] = vectors::sum(self.threads(), self.bound.len(), squared);
         (sum / self.count.max(1) as f64).sqrt()
     }
 
@@ -168,11 +186,24 @@ impl Problem {
 
     /// q feasible to the last bit, and u = A q by a fresh product.
     pub fn refresh(&mut self, state: &mut State) {
-        for (q, &g) in state.q.iter_mut().zip(&self.bound) {
-            *q = clip(*q, g);
-        }
-        self.operators.multiply(&state.q, &mut state.u);
+        self.clip(state);
+        self.operators.multiply(&state.q, self.rms_bound, &mut state.u);
         state.is_exact = true;
+    }
+
+    /// The same to single precision, where that is enough to go on from.
+    pub fn refresh_to(&mut self, state: &mut State, tolerance: f64) {
+        if tolerance < SINGLE {
+            return self.refresh(state);
+        }
+        self.clip(state);
+        self.operators.multiply_fast(&state.q, self.rms_bound, &mut state.u);
+        state.is_exact = self.operators.fast_is_exact();
+    }
+
+    fn clip(&self, state: &mut State) {
+        let (bound, threads) = (&self.bound, self.threads());
+        vectors::map(threads, &mut state.q, |i, q| clip(q, bound[i]));
     }
 
     /// Products since the last call.

@@ -13,7 +13,7 @@
 
 use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
 use super::tangent::{Side, Tangent};
-use super::vectors::Fields;
+use super::vectors::{self, Fields, BLOCK};
 use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
@@ -81,20 +81,9 @@ struct Steps {
     energy: f64,
 }
 
-impl Steps {
-    /// What of the last direction is kept: the parts are those of `z . (A + D) t`.
-    fn beta(&self, parts: impl Iterator<Item = f64>) -> f64 {
-        if self.energy > 0.0 {
-            (parts.fold(0.0, |sum, part| sum - part) / self.energy).max(0.0)
-        } else {
-            0.0
-        }
-    }
-}
-
 /// Iterates from what the state holds.
 pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Outcome {
-    let Goal { tolerance, limit, watch, .. } = goal;
+    let Goal { tolerance, limit, certified, watch } = goal;
     let a0 = problem.operators.self_influence;
     let cap = 0.3 / (a0 * (problem.count().max(1) as f64).sqrt());
     let slip = problem.rms_slip();
@@ -105,7 +94,7 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
     loop {
         let sight = memory.tangent.predict(problem, state, rho);
         if sight.residual < tolerance {
-            if state.is_exact {
+            if state.is_exact || !certified {
                 return Outcome::Converged;
             }
             problem.refresh(state);
@@ -132,61 +121,103 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
 
 /// One iteration.
 fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &mut Steps) {
-    let Memory { tangent, direction, chord, product, debt, given, z, .. } = memory;
     let unit = problem.rms_bound();
+    let Memory { tangent, given, z, .. } = memory;
     tangent.precondition(problem, &tangent.driving, unit, given, z);
-    let f = steps.held_back;
-    let along_last = |i: usize| dot(z[i], plus(product[i], tangent.curvature[i], direction[i]));
-    let beta = steps.beta(problem.contact().map(along_last));
-    // Outside C there are still continued residuals.
-    given.fill([0.0; 2]);
-    for i in problem.contact() {
-        let t = tangent.project(i, plus(z[i], beta, direction[i]));
-        let moved = moved(tangent, problem.bound[i], i, state.q[i], t, f);
-        chord[i] = [(moved[0] - state.q[i][0]) / f, (moved[1] - state.q[i][1]) / f];
-        given[i] = plus(chord[i], 1.0 / f, debt[i]);
-        direction[i] = t;
-    }
-    problem.operators.multiply_fast(given, unit, product);
-    let (mut energy, mut gain) = (0.0, 0.0);
-    for i in problem.contact() {
-        let along = if tangent.side[i] == Side::Slip { direction[i] } else { chord[i] };
-        energy += dot(along, product[i]) + tangent.curvature[i] * square(along);
-        gain += dot(tangent.driving[i], along);
-    }
-    let mut length = gain / energy;
-    steps.energy = energy;
-    if !(length >= 0.25 * f && length <= 4.0 * f) {
-        length = if length > 0.0 && length < 0.25 * f { length.max(0.1 * f) } else { f };
-        steps.energy = 0.0;
-    }
-    let (mut owed, mut gone) = (0.0, 0.0);
-    for i in problem.contact() {
-        let (q, g) = (state.q[i], problem.bound[i]);
-        let straight = plus(q, length, chord[i]);
-        let new = match tangent.side[i] {
-            Side::Slip => moved(tangent, g, i, q, direction[i], length),
-            _ => onto_disc(straight, g),
-        };
-        debt[i] = add(plus(debt[i], -length / f, debt[i]), [new[0] - straight[0], new[1] - straight[1]]);
-        owed += square(debt[i]).sqrt();
-        gone += square([new[0] - q[0], new[1] - q[1]]).sqrt();
-        state.u[i] = plus(state.u[i], length, product[i]);
-        if tangent.side[i] != Side::Slip {
-            direction[i] = chord[i];
-        }
-        state.q[i] = new;
-    }
+    choose_direction(problem, state, memory, steps);
+    problem.operators.multiply_fast(&memory.given, unit, &mut memory.product);
+    let length = choose_length(problem, memory, steps);
+    let (owed, gone) = go(problem, state, memory, (length, steps.held_back));
     state.is_exact = false;
     if owed > MOST_DEBT * gone {
+        let Memory { debt, given, z, .. } = memory;
         given.copy_from_slice(debt);
         problem.operators.multiply_fast(given, unit, z);
-        for i in problem.contact() {
-            state.u[i] = add(state.u[i], z[i]);
-            debt[i] = [0.0; 2];
-        }
+        vectors::add_all(problem.threads(), &mut state.u, &[(1.0, z)]);
+        debt.fill([0.0; 2]);
     }
     steps.held_back = length.clamp(LEAST_HELD_BACK, 1.0);
+}
+
+/// The direction t, its chord, and what is multiplied: the chord with the debt.
+fn choose_direction(problem: &Problem, state: &State, memory: &mut Memory, steps: &Steps) {
+    let Memory { tangent, direction, chord, product, debt, given, z, .. } = memory;
+    let (threads, f) = (problem.threads(), steps.held_back);
+    // z is 0 outside C.
+    let along_last = |i: usize| [dot(z[i], plus(product[i], tangent.curvature[i], direction[i])), 0.0];
+    let beta = match steps.energy > 0.0 {
+        true => (-vectors::sum(threads, z.len(), along_last)[0] / steps.energy).max(0.0),
+        false => 0.0,
+    };
+    let blocks = direction.chunks_mut(BLOCK).zip(chord.chunks_mut(BLOCK)).zip(given.chunks_mut(BLOCK));
+    vectors::over(threads, blocks, |start, ((direction, chord), given)| {
+        for k in 0..direction.len() {
+            let i = start + k;
+            if tangent.side[i] == Side::Outside {
+                (direction[k], chord[k], given[k]) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+                continue;
+            }
+            let q = state.q[i];
+            let t = tangent.project(i, plus(z[i], beta, direction[k]));
+            let moved = moved(tangent, problem.bound[i], i, q, t, f);
+            chord[k] = [(moved[0] - q[0]) / f, (moved[1] - q[1]) / f];
+            given[k] = plus(chord[k], 1.0 / f, debt[i]);
+            direction[k] = t;
+        }
+        []
+    });
+}
+
+/// How far to go along the chord.
+fn choose_length(problem: &Problem, memory: &Memory, steps: &mut Steps) -> f64 {
+    let Memory { tangent, direction, chord, product, .. } = memory;
+    let [energy, gain] = vectors::sum(problem.threads(), chord.len(), |i| {
+        let along = if tangent.side[i] == Side::Slip { direction[i] } else { chord[i] };
+        [dot(along, product[i]) + tangent.curvature[i] * square(along), dot(tangent.driving[i], along)]
+    });
+    let (length, f) = (gain / energy, steps.held_back);
+    steps.energy = energy;
+    if length >= 0.25 * f && length <= 4.0 * f {
+        return length;
+    }
+    steps.energy = 0.0;
+    if length > 0.0 && length < 0.25 * f {
+        length.max(0.1 * f)
+    } else {
+        f
+    }
+}
+
+/// Goes so far, of what the chord was taken for; the sums of what is owed then and of how far elements went.
+fn go(problem: &Problem, state: &mut State, memory: &mut Memory, (length, f): (f64, f64)) -> (f64, f64) {
+    let Memory { tangent, direction, chord, product, debt, .. } = memory;
+    let states = state.q.chunks_mut(BLOCK).zip(state.u.chunks_mut(BLOCK));
+    let blocks = states.zip(direction.chunks_mut(BLOCK).zip(debt.chunks_mut(BLOCK)));
+    let [owed, gone] = vectors::over(problem.threads(), blocks, |start, ((q, u), (direction, debt))| {
+        let (mut owed, mut gone) = (0.0, 0.0);
+        for k in 0..q.len() {
+            let i = start + k;
+            if tangent.side[i] == Side::Outside {
+                continue;
+            }
+            let g = problem.bound[i];
+            let straight = plus(q[k], length, chord[i]);
+            let new = match tangent.side[i] {
+                Side::Slip => moved(tangent, g, i, q[k], direction[k], length),
+                _ => onto_disc(straight, g),
+            };
+            debt[k] = add(plus(debt[k], -length / f, debt[k]), [new[0] - straight[0], new[1] - straight[1]]);
+            owed += square(debt[k]).sqrt();
+            gone += square([new[0] - q[k][0], new[1] - q[k][1]]).sqrt();
+            u[k] = plus(u[k], length, product[i]);
+            if tangent.side[i] != Side::Slip {
+                direction[k] = chord[i];
+            }
+            q[k] = new;
+        }
+        [owed, gone]
+    });
+    (owed, gone)
 }
 
 /// Where element i goes from q by `a t`.

@@ -5,7 +5,6 @@ use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
 use super::nested::{self, Work};
-use super::operators::Operators;
 use super::problem::{square, Problem, Scale};
 use super::sensitivity;
 use super::shift::Memory;
@@ -179,8 +178,7 @@ impl Solver {
             return Ok(());
         }
         self.levels.clear();
-        let operators = Operators::new(&self.tangential, &grid, rolling, self.single, &self.threads)?;
-        self.levels = levels(operators, grid, self.single, &self.threads)?;
+        self.levels = levels(&self.tangential, grid, rolling, self.single, &self.threads)?;
         Ok(())
     }
 
@@ -234,7 +232,7 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         match friction.motion {
             Motion::SteadyRolling => return Ok(()),
-            Motion::Shift => problem.operators.multiply(&state.q, &mut state.u),
+            Motion::Shift => problem.operators.multiply(&state.q, problem.rms_bound(), &mut state.u),
             Motion::TransientRolling => {
                 let by = friction.elements_rolled(&self.grid);
                 let displaced = displaced(&mut self.displaced, &self.tangential, problem.grid, by, &self.threads)?;

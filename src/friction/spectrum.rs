@@ -1,4 +1,12 @@
 //! The transforms of tangential coefficients.
+//!
+//! With both components of a traction as one complex number, `q = qx + i qy`, the transform Z of q at a wave k, and W, the conjugate of
+//! the one at -k, the displacements `ux + i uy` have the transform
+//!
+//! ```text
+//! U(k) = alpha Z + delta W,    conj U(-k) = alpha W + epsilon Z
+//! alpha = (Sxx + Syy)/2,    delta = (Sxx - Syy)/2 + i Sxy,    epsilon = (Sxx - Syy)/2 - i Sxy
+//! ```
 
 use super::coefficients::Entry;
 use crate::error::Result;
@@ -10,11 +18,12 @@ use crate::threads::Threads;
 /// What memory is for.
 pub const SPECTRUM: &str = "the spectrum of tangential influence";
 
-/// `Sxx, Syy, Sxy` of each wave, the normalisation `1/(px py)` folded in, one column of them per x bin.
+/// What waves are multiplied by, the normalisation `1/(px py)` folded in, one column of them for each x bin up to px/2.
 pub enum Spectrum<T> {
-    /// Real: `py/2 + 1` waves a column.
+    /// Sxx, Syy and Sxy are real: alpha, and the real and the imaginary part of delta, `py/2 + 1` waves a column. The other ones have
+    /// the conjugate of delta; epsilon is the conjugate of delta.
     Even(Vec<[T; 3]>),
-    /// Complex: `py` waves a column.
+    /// alpha, delta, epsilon: `py` waves a column.
     General(Vec<[Complex<T>; 3]>),
 }
 
@@ -29,7 +38,7 @@ pub enum Kind {
 pub fn general<T: Real>(
     grid: &Grid,
     (px, py): (usize, usize),
-    fill: impl Fn(f64, f64) -> Entry + Sync + Send,
+    fill: impl Fn(i64, i64) -> Entry + Sync + Send,
     unit: f64,
     threads: &Threads,
 ) -> Result<Spectrum<T>> {
@@ -38,31 +47,38 @@ pub fn general<T: Real>(
     let mut in_x: Vec<[Complex<f64>; 3]> = zeros((2 * grid.my - 1) * nb, SPECTRUM)?;
     let mut scratch = SetUp::for_pieces(threads, &rows, &columns);
     threads.for_each_row(&mut in_x, nb, &mut scratch, |i, out, piece| {
-        let ky = (i as i64 - (my - 1)) as f64;
+        let ky = i as i64 - (my - 1);
         piece.row.fill([0.0; 3]);
         for kx in 1 - mx..mx {
-            piece.row[kx.rem_euclid(px as i64) as usize] = fill(kx as f64, ky);
+            piece.row[kx.rem_euclid(px as i64) as usize] = fill(kx, ky);
         }
         piece.transform_row(&rows, |k, component, bin| out[k][component] = bin);
     });
     let mut spectrum: Vec<[Complex<T>; 3]> = zeros(nb * py, SPECTRUM)?;
     let scale = 1.0 / (unit * px as f64 * py as f64);
+    let rounded = |value: Complex<f64>| Complex::new(T::of(scale * value.re), T::of(scale * value.im));
     threads.for_each_row(&mut spectrum, py, &mut scratch, |kx, out, piece| {
+        let SetUp { column, waves, scratch, .. } = piece;
         for component in 0..3 {
-            piece.column.fill(Complex::default());
+            column.fill(Complex::default());
             for i in 0..2 * my - 1 {
-                piece.column[(i - (my - 1)).rem_euclid(py as i64) as usize] = in_x[i as usize * nb + kx][component];
+                column[(i - (my - 1)).rem_euclid(py as i64) as usize] = in_x[i as usize * nb + kx][component];
             }
-            columns.forward(&mut piece.column, &mut piece.scratch);
-            for (value, bin) in out.iter_mut().zip(&piece.column) {
-                value[component] = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
-            }
+            columns.forward(column, scratch);
+            waves.iter_mut().zip(&*column).for_each(|(wave, bin)| wave[component] = *bin);
+        }
+        for (value, &[xx, yy, xy]) in out.iter_mut().zip(&*waves) {
+            let (half, turned) = ((xx - yy) * 0.5, Complex::<f64>::i() * xy);
+            *value = [(xx + yy) * 0.5, half + turned, half - turned].map(rounded);
         }
     });
     Ok(Spectrum::General(spectrum))
 }
 
-/// Of coefficients that are even or odd: `fill(x, y)` gives those at offsets less than `given`.
+/// Of coefficients that are even or odd: `fill(x, y)` gives those at offsets less than `given`. None if an inverse is not positive definite.
+///
+/// One complex transform a row, and a column, has all three: those of xx and of yy are real and even, that of xy is imaginary and odd,
+/// so that `xx + xy + i yy` keeps them apart.
 pub fn even<T: Real>(
     (px, py): (usize, usize),
     given: (usize, usize),
@@ -71,50 +87,71 @@ pub fn even<T: Real>(
     unit: f64,
     threads: &Threads,
 ) -> Result<Option<Spectrum<T>>> {
-    let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
-    let (nb, half) = (rows.bins(), py / 2 + 1);
-    let mut scratch = SetUp::for_pieces(threads, &rows, &columns);
+    let (rows, columns) = (ColumnTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+    let (nb, half) = (px / 2 + 1, py / 2 + 1);
+    let mut scratch: Vec<(Vec<Complex<f64>>, Vec<Complex<f64>>)> = (0..threads.pieces())
+        .map(|_| {
+            let mut scratch = rows.scratch();
+            columns.fit(&mut scratch);
+            (vec![Complex::default(); px.max(py)], scratch)
+        })
+        .collect();
     let mut in_x: Vec<Entry> = zeros(given.1 * nb, SPECTRUM)?;
-    threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, piece| {
-        piece.row.fill([0.0; 3]);
-        for kx in 0..given.0 {
-            let [xx, yy, xy] = fill(kx, ky);
-            // Where there is one offset only half-way around, the even ones stand there, and the odd ones are 0.
-            piece.row[kx] = [xx, yy, xy];
-            if kx > 0 {
-                piece.row[px - kx] = [xx, yy, -xy];
-            }
-        }
-        piece.transform_row(&rows, |k, component, bin| out[k][component] = if component < 2 { bin.re } else { bin.im });
+    threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {
+        let row = &mut row[..px];
+        transform_even(&rows, row, given.0, |kx| fill(kx, ky), scratch);
+        out.iter_mut().enumerate().for_each(|(k, out)| *out = apart(row, k));
     });
     let mut spectrum: Vec<[T; 3]> = zeros(nb * half, SPECTRUM)?;
-    let scale = 1.0 / (px as f64 * py as f64);
+    let scale = 1.0 / (unit * px as f64 * py as f64);
     let is_positive = std::sync::atomic::AtomicBool::new(true);
-    threads.for_each_row(&mut spectrum, half, &mut scratch, |kx, out, piece| {
-        let mut waves = vec![[0.0; 3]; half];
-        // xx and yy are the real and the imaginary part of one transform.
-        piece.fill_column(py, given.1, 1.0, |ky| Complex::new(in_x[ky * nb + kx][0], in_x[ky * nb + kx][1]));
-        columns.forward(&mut piece.column, &mut piece.scratch);
-        waves.iter_mut().zip(&piece.column).for_each(|(wave, bin)| (wave[0], wave[1]) = (bin.re, bin.im));
-        // i from either direction.
-        piece.fill_column(py, given.1, -1.0, |ky| Complex::new(in_x[ky * nb + kx][2], 0.0));
-        columns.forward(&mut piece.column, &mut piece.scratch);
-        waves.iter_mut().zip(&piece.column).for_each(|(wave, bin)| wave[2] = -bin.im);
-        for (value, [xx, yy, xy]) in out.iter_mut().zip(waves) {
-            let wave = match kind {
-                Kind::Direct => [xx, yy, xy],
+    threads.for_each_row(&mut spectrum, half, &mut scratch, |kx, out, (column, scratch)| {
+        let column = &mut column[..py];
+        transform_even(&columns, column, given.1, |ky| in_x[ky * nb + kx], scratch);
+        for (k, value) in out.iter_mut().enumerate() {
+            let [xx, yy, odd] = apart(column, k);
+            // i from either direction.
+            let [xx, yy, xy] = match kind {
+                Kind::Direct => [xx, yy, -odd],
                 Kind::Inverse => {
-                    let determinant = xx * yy - xy * xy;
+                    let determinant = xx * yy - odd * odd;
                     if !(determinant > 0.0 && xx > 0.0) {
                         is_positive.store(false, std::sync::atomic::Ordering::Relaxed);
                     }
-                    [yy / determinant, xx / determinant, -xy / determinant]
+                    [yy / determinant, xx / determinant, odd / determinant]
                 }
             };
-            *value = wave.map(|value| T::of(scale / unit * value));
+            *value = [0.5 * (xx + yy), 0.5 * (xx - yy), xy].map(|value| T::of(scale * value));
         }
     });
     Ok(is_positive.into_inner().then_some(Spectrum::Even(spectrum)))
+}
+
+/// The transform of `xx + xy + i yy`, whose values at offsets less than `given` are those of `at`; on the other side xy has the other sign.
+/// Where there is one offset only half-way around, xy is 0.
+fn transform_even(
+    transform: &ColumnTransform<f64>,
+    values: &mut [Complex<f64>],
+    given: usize,
+    at: impl Fn(usize) -> Entry,
+    scratch: &mut [Complex<f64>],
+) {
+    let period = values.len();
+    values[given..(period + 1 - given).max(given)].fill(Complex::default());
+    for k in 0..given {
+        let [xx, yy, xy] = at(k);
+        if k > 0 {
+            values[period - k] = Complex::new(xx - xy, yy);
+        }
+        values[k] = Complex::new(xx + xy, yy);
+    }
+    transform.forward(values, scratch);
+}
+
+/// Of a transform of `xx + xy + i yy` those of xx and yy at a wave, and the imaginary part of that of xy.
+fn apart(transformed: &[Complex<f64>], k: usize) -> Entry {
+    let (value, mirrored) = (transformed[k], transformed[(transformed.len() - k) % transformed.len()]);
+    [0.5 * (value.re + mirrored.re), 0.5 * (value.im + mirrored.im), 0.5 * (value.im - mirrored.im)]
 }
 
 /// Memory of one piece of a set-up.
@@ -123,6 +160,7 @@ struct SetUp {
     values: Vec<f64>,
     bins: Vec<Complex<f64>>,
     column: Vec<Complex<f64>>,
+    waves: Vec<[Complex<f64>; 3]>,
     scratch: Vec<Complex<f64>>,
 }
 
@@ -135,6 +173,7 @@ impl SetUp {
             values: vec![0.0; rows.length()],
             bins: vec![Complex::default(); rows.bins()],
             column: vec![Complex::default(); columns.length()],
+            waves: vec![[Complex::default(); 3]; columns.length()],
             scratch: scratch.clone(),
         };
         (0..threads.pieces()).map(piece).collect()
@@ -146,18 +185,6 @@ impl SetUp {
             self.values.iter_mut().zip(&self.row).for_each(|(value, entry)| *value = entry[component]);
             rows.forward(&mut self.values, &mut self.bins, &mut self.scratch);
             self.bins.iter().enumerate().for_each(|(k, bin)| take(k, component, *bin));
-        }
-    }
-
-    /// A column of values at offsets less than `given`, and `sign` times them on the other side.
-    fn fill_column(&mut self, py: usize, given: usize, sign: f64, value: impl Fn(usize) -> Complex<f64>) {
-        self.column.fill(Complex::default());
-        for ky in 0..given {
-            let value = value(ky);
-            self.column[ky] = value;
-            if ky > 0 {
-                self.column[py - ky] = value * sign;
-            }
         }
     }
 }

@@ -9,9 +9,9 @@
 //! States come from the natural map and not from |q| = g: that makes the iterations robust. On a circle of radius g the slope of the
 //! slip along the tangent is as if a layer of compliance D lay between the bodies.
 
-use super::certificate::{relative, rest, scale, ON_THE_CIRCLE};
-use super::problem::{dot, plus, square, Problem, State};
-use super::vectors;
+use super::certificate::{relative, rest, ON_THE_CIRCLE};
+use super::problem::{add, dot, plus, square, Problem, State};
+use super::vectors::{self, BLOCK};
 use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
@@ -39,6 +39,8 @@ pub struct Tangent {
     pub normal: Vec<Vector>,
     /// D; 0 where nothing slips.
     pub curvature: Vec<f64>,
+    /// E of the preconditioner: 1 where nothing slips.
+    pub mixing: Vec<f64>,
     /// `P(-s)`.
     pub driving: Vec<Vector>,
     /// Elements that slip.
@@ -62,6 +64,7 @@ impl Tangent {
             side: zeros(n, what)?,
             normal: zeros(n, what)?,
             curvature: zeros(n, what)?,
+            mixing: zeros(n, what)?,
             driving: zeros(n, what)?,
             slip_count: 0,
         })
@@ -69,34 +72,46 @@ impl Tangent {
 
     /// Predicts from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Sight {
-        let (mut squares, mut excess) = (0.0, 0.0);
-        self.slip_count = 0;
-        for i in 0..problem.bound.len() {
-            if !(problem.bound[i] > 0.0) {
-                (self.side[i], self.curvature[i], self.driving[i]) = (Side::Outside, 0.0, [0.0; 2]);
-                continue;
-            }
-            let (q, g, s) = (state.q[i], problem.bound[i], problem.slip_at(i, &state.u));
-            let length = square(q).sqrt();
-            squares += rest(s, q, length, length >= g * ON_THE_CIRCLE);
-            excess += (length - g).max(0.0).powi(2);
-            let tau = plus(q, -rho, s);
-            let reach = square(tau).sqrt();
-            if reach > g {
-                let n = [tau[0] / reach, tau[1] / reach];
-                self.slip_count += 1;
-                (self.side[i], self.normal[i], self.curvature[i]) = (Side::Slip, n, (reach / g - 1.0) / rho);
-                self.driving[i] = plus([-s[0], -s[1]], dot(s, n), n);
-            } else {
-                (self.side[i], self.curvature[i]) = (Side::Stick, 0.0);
-                self.driving[i] = [-s[0], -s[1]];
-            }
-        }
-        let rms = |sum: f64| (sum / problem.count().max(1) as f64).sqrt();
-        Sight {
-            residual: relative(rms(squares), scale(problem, state)),
-            excess: relative(rms(excess), problem.rms_bound()),
-        }
+        let (u, a0) = (&state.u, problem.operators.self_influence);
+        let Tangent { side, normal, curvature, mixing, driving, .. } = self;
+        let (sides, normals) = (side.chunks_mut(BLOCK), normal.chunks_mut(BLOCK));
+        let (curvatures, mixings, drivings) =
+            (curvature.chunks_mut(BLOCK), mixing.chunks_mut(BLOCK), driving.chunks_mut(BLOCK));
+        let blocks = sides.zip(normals).zip(curvatures.zip(mixings)).zip(drivings);
+        let sums =
+            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixing)), driving)| {
+                let [mut squares, mut excess, mut slips, mut rigid, mut displaced] = [0.0; 5];
+                for k in 0..side.len() {
+                    let i = start + k;
+                    let g = problem.bound[i];
+                    (curvature[k], mixing[k]) = (0.0, 1.0);
+                    if !(g > 0.0) {
+                        (side[k], driving[k]) = (Side::Outside, [0.0; 2]);
+                        continue;
+                    }
+                    let (q, s) = (state.q[i], problem.slip_at(i, u));
+                    let length = square(q).sqrt();
+                    squares += rest(s, q, length, length >= g * ON_THE_CIRCLE);
+                    excess += (length - g).max(0.0).powi(2);
+                    rigid += square(add(problem.rigid[i], problem.offset));
+                    displaced += square(u[i]);
+                    let tau = plus(q, -rho, s);
+                    let reach = square(tau).sqrt();
+                    (side[k], driving[k]) = (Side::Stick, [-s[0], -s[1]]);
+                    if reach > g {
+                        let n = [tau[0] / reach, tau[1] / reach];
+                        slips += 1.0;
+                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, (reach / g - 1.0) / rho);
+                        mixing[k] = 1.0 / (1.0 + MIXED * curvature[k] / a0);
+                        driving[k] = plus([-s[0], -s[1]], dot(s, n), n);
+                    }
+                }
+                [squares, excess, slips, rigid, displaced]
+            });
+        self.slip_count = sums[2] as usize;
+        let [squares, excess, _, rigid, displaced] = sums.map(|sum| (sum / problem.count().max(1) as f64).sqrt());
+        let scale = problem.scale.of(rigid, displaced);
+        Sight { residual: relative(squares, scale), excess: relative(excess, problem.rms_bound()) }
     }
 
     /// P v at element i, 0 outside C.
@@ -123,12 +138,8 @@ impl Tangent {
     /// dominates, its own inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
-        let mixing = |i: usize| 1.0 / (1.0 + MIXED * self.curvature[i] / a0);
         let threads = problem.threads().clone();
-        vectors::fill(&threads, mixed, |i| {
-            let e = mixing(i);
-            [e * r[i][0], e * r[i][1]]
-        });
+        vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
         // The march starts from nothing at each leading edge: what is beside C does not help it.
         let is_continued = problem.operators.rolling.is_none();
         if is_continued {
@@ -138,19 +149,17 @@ impl Tangent {
         if is_continued {
             problem.extension.fold(z);
         }
-        let own = |i: usize| (1.0 - mixing(i)) / (self.curvature[i] + a0);
+        // The own inverse, where something slips.
+        let own = |i: usize| match self.side[i] {
+            Side::Slip => (1.0 - self.mixing[i]) / (self.curvature[i] + a0),
+            _ => 0.0,
+        };
         let Some((_, march)) = &problem.operators.rolling else {
-            vectors::map(&threads, z, |i, z| {
-                let e = mixing(i);
-                plus(self.project_inside(i, [e * z[0], e * z[1]]), own(i), r[i])
-            });
+            vectors::map(&threads, z, |i, z| plus(self.project_inside(i, z.map(|z| self.mixing[i] * z)), own(i), r[i]));
             return;
         };
-        vectors::map(&threads, z, |i, z| {
-            let e = mixing(i);
-            self.project_inside(i, [e * z[0], e * z[1]])
-        });
-        march.solve(&problem.grid, self, mixing, &threads, z);
+        vectors::map(&threads, z, |i, z| self.project_inside(i, z.map(|z| self.mixing[i] * z)));
+        march.solve(&problem.grid, self, |i| self.mixing[i], &threads, z);
         vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
     }
 }

@@ -8,20 +8,24 @@
 //! wave, of which a quarter of the plane is kept (Sxy changes its sign with the wave's y). Coefficients between the centres, of which
 //! rolling asks, are neither: their transforms are complex.
 //!
-//! The two components of a row are transformed one by one and then stand side by side, bin by bin: a block of columns holds all that a
-//! wave needs.
+//! Both components are one complex number, `qx + i qy`: one complex transform has the place of two real ones. A wave k is multiplied
+//! together with -k ([`spectrum`](super::spectrum) has the formulas), so a block of columns comes with its mirror image.
 
 use std::ops::Range;
 
 use super::coefficients::{Entry, Tangential};
+use super::quadrant::Quadrant;
 use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
-use crate::operator::columns::{for_each_block, BLOCK};
-use crate::operator::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
+use crate::operator::columns::{for_each_mirrored_block, BLOCK};
+use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
 use crate::threads::Threads;
+
+/// Displacements at the centres.
+const HERE: (f64, f64) = (0.0, 0.0);
 
 /// What memory is for.
 const WORKSPACE: &str = "the workspace of tangential products";
@@ -30,7 +34,7 @@ const WORKSPACE: &str = "the workspace of tangential products";
 pub struct Toeplitz<T: Real> {
     mx: usize,
     my: usize,
-    rows: RowTransform<T>,
+    rows: ColumnTransform<T>,
     columns: ColumnTransform<T>,
     spectrum: Spectrum<T>,
     threads: Threads,
@@ -41,7 +45,7 @@ pub struct Toeplitz<T: Real> {
 /// Memory of products.
 #[derive(Default)]
 pub struct Workspace<T: Real> {
-    /// `[my][px/2 + 1][2]`.
+    /// `[my][px]`.
     bins: Vec<Complex<T>>,
     pieces: Vec<Piece<T>>,
 }
@@ -49,9 +53,8 @@ pub struct Workspace<T: Real> {
 /// That of one piece of the work.
 #[derive(Default)]
 struct Piece<T: Real> {
-    row: Vec<T>,
-    bins: Vec<Complex<T>>,
     columns: Vec<Complex<T>>,
+    mirrored: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
 }
 
@@ -67,56 +70,65 @@ pub fn unit_of(value: f64) -> f64 {
 impl<T: Real> Toeplitz<T> {
     /// Products with the coefficients of `tangential` on `grid`.
     pub fn new(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
-        let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
-        let given = (grid.mx, grid.my);
-        let fill = |x: usize, y: usize| tangential.at(x as f64, y as f64);
-        let unit = unit_of(tangential.at(0.0, 0.0)[0]);
-        let product = spectrum::even(period, given, fill, Kind::Direct, unit, threads)?;
-        let spectrum = product.unwrap_or_else(|| unreachable!("only an inverse may not be"));
-        Ok(Toeplitz::with(grid, period, spectrum, unit, threads))
+        Toeplitz::direct(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
     }
 
     /// The inverse of a circulant near A, with a period one element longer than the grid: a preconditioner. None where that is not
     /// positive definite.
     pub fn inverse(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
+        Toeplitz::nearly_inverse(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
+    }
+
+    /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
+    pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
+        let quadrant = Quadrant::new(tangential, grid, by, threads)?;
+        Toeplitz::general(&quadrant, grid, |x, y| quadrant.displaced(x, y, by), threads)
+    }
+
+    /// Products with coefficients that were computed.
+    pub fn direct(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
+        let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
+        let fill = |x: usize, y: usize| quadrant.at(x as i64, y as i64);
+        let unit = unit_of(quadrant.at(0, 0)[0]);
+        let product = spectrum::even(period, (grid.mx, grid.my), fill, Kind::Direct, unit, threads)?;
+        let spectrum = product.unwrap_or_else(|| unreachable!("only an inverse may not be"));
+        Ok(Toeplitz::with(grid, period, spectrum, unit, threads))
+    }
+
+    /// See [`inverse`](Self::inverse).
+    pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         let length = |m: usize| if m == 1 { 1 } else { good_length(m + 1) };
         let period = (length(grid.mx), length(grid.my));
         let given = (period.0 / 2 + 1, period.1 / 2 + 1);
         // An odd function has no value half-way around.
         let half_way = |k: usize, period: usize| 2 * k == period;
         let fill = |x: usize, y: usize| {
-            let [xx, yy, xy] = tangential.at(x as f64, y as f64);
+            let [xx, yy, xy] = quadrant.at(x as i64, y as i64);
             [xx, yy, if half_way(x, period.0) || half_way(y, period.1) { 0.0 } else { xy }]
         };
-        let unit = 1.0 / unit_of(tangential.at(0.0, 0.0)[0]);
+        let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
         let inverse = spectrum::even(period, given, fill, Kind::Inverse, unit, threads)?;
         Ok(inverse.map(|spectrum| Toeplitz::with(grid, period, spectrum, unit, threads)))
     }
 
-    /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
-    pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
-        let fill = |x: f64, y: f64| tangential.at(x + by.0, y + by.1);
-        Toeplitz::general(tangential, grid, fill, threads)
-    }
-
     /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
-    pub fn rolling(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
-        let fill = |x: f64, y: f64| {
-            let (here, there) = (tangential.at(x, y), tangential.at(x + by.0, y + by.1));
+    pub fn rolling(quadrant: &Quadrant, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
+        let fill = |x: i64, y: i64| {
+            let (here, there) = (quadrant.at(x, y), quadrant.displaced(x, y, by));
             [here[0] - there[0], here[1] - there[1], here[2] - there[2]]
         };
-        Toeplitz::general(tangential, grid, fill, threads)
+        Toeplitz::general(quadrant, grid, fill, threads)
     }
 
     /// Of coefficients that are neither even nor odd: `fill(x, y)` gives that of an offset.
     fn general(
-        tangential: &Tangential,
+        quadrant: &Quadrant,
         grid: &Grid,
-        fill: impl Fn(f64, f64) -> Entry + Sync + Send,
+        fill: impl Fn(i64, i64) -> Entry + Sync + Send,
         threads: &Threads,
     ) -> Result<Toeplitz<T>> {
         let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
-        let unit = unit_of(tangential.at(0.0, 0.0)[0]);
+        let unit = unit_of(quadrant.at(0, 0)[0]);
         let spectrum = spectrum::general(grid, period, fill, unit, threads)?;
         Ok(Toeplitz::with(grid, period, spectrum, unit, threads))
     }
@@ -125,7 +137,7 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz {
             mx: grid.mx,
             my: grid.my,
-            rows: RowTransform::new(px),
+            rows: ColumnTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
             threads: threads.clone(),
@@ -154,17 +166,10 @@ impl<T: Real> Toeplitz<T> {
         let piece = |_| {
             let mut scratch = self.rows.scratch();
             self.columns.fit(&mut scratch);
-            Piece {
-                row: vec![T::zero(); px],
-                bins: vec![Complex::default(); self.rows.bins()],
-                columns: vec![Complex::default(); BLOCK * py],
-                scratch,
-            }
+            let columns = vec![Complex::default(); BLOCK * py];
+            Piece { mirrored: columns.clone(), columns, scratch }
         };
-        Ok(Workspace {
-            bins: zeros(self.my * 2 * self.rows.bins(), WORKSPACE)?,
-            pieces: (0..self.threads.pieces()).map(piece).collect(),
-        })
+        Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.pieces()).map(piece).collect() })
     }
 
     /// Bytes of the spectrum.
@@ -179,22 +184,23 @@ impl<T: Real> Toeplitz<T> {
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], workspace: &mut Workspace<T>) {
         let n = self.mx * self.my;
         assert!(q.len() == n && u.len() == n);
-        let nb = self.rows.bins();
+        let (px, length) = (self.rows.length(), self.columns.length());
         let Workspace { bins, pieces } = workspace;
         let loaded = rows_with_traction(q, self.mx);
-        self.forward(q, 1.0 / unit, &loaded, &mut bins[..self.my * 2 * nb], pieces);
-        let length = self.columns.length();
-        for_each_block(&mut bins[..self.my * 2 * nb], 2 * nb, &self.threads, pieces, |block, piece| {
-            let columns = &mut piece.columns[..block.columns() * length];
-            block.gather(loaded.clone(), length, columns);
+        self.forward(q, 1.0 / unit, &loaded, bins, pieces);
+        for_each_mirrored_block(bins, px, &self.threads, pieces, |block, piece| {
+            let count = block.columns() * length;
+            let (columns, mirrored) = (&mut piece.columns[..count], &mut piece.mirrored[..count]);
+            block.gather(loaded.clone(), length, columns, mirrored);
             self.columns.forward(columns, &mut piece.scratch);
-            for (pair, columns) in columns.chunks_exact_mut(2 * length).enumerate() {
-                self.multiply(block.first() / 2 + pair, columns);
-            }
+            self.columns.forward(mirrored, &mut piece.scratch);
+            let pairs = columns.chunks_exact_mut(length).zip(mirrored.chunks_exact_mut(length));
+            pairs.enumerate().for_each(|(c, (z, w))| self.multiply(block.first() + c, z, w));
             self.columns.inverse(columns, &mut piece.scratch);
-            block.scatter(0..self.my, length, columns);
+            self.columns.inverse(mirrored, &mut piece.scratch);
+            block.scatter(0..self.my, length, columns, mirrored);
         });
-        self.back(unit * self.unit, u, &bins[..self.my * 2 * nb], pieces);
+        self.back(unit * self.unit, u, bins, pieces);
     }
 
     fn forward(
@@ -205,54 +211,54 @@ impl<T: Real> Toeplitz<T> {
         bins: &mut [Complex<T>],
         pieces: &mut [Piece<T>],
     ) {
-        let (mx, nb, first) = (self.mx, self.rows.bins(), loaded.start);
-        let rows = &mut bins[first * 2 * nb..loaded.end * 2 * nb];
-        self.threads.for_each_row(rows, 2 * nb, pieces, |i, out, piece| {
+        let (mx, px, first) = (self.mx, self.rows.length(), loaded.start);
+        let rows = &mut bins[first * px..loaded.end * px];
+        self.threads.for_each_row(rows, px, pieces, |i, row, piece| {
             let q = &q[(first + i) * mx..(first + i + 1) * mx];
-            for component in 0..2 {
-                let row = &mut piece.row[..];
-                row.iter_mut().zip(q).for_each(|(to, q)| *to = T::of(scale * q[component]));
-                row[mx..].fill(T::zero());
-                self.rows.forward(row, &mut piece.bins, &mut piece.scratch);
-                out.iter_mut().skip(component).step_by(2).zip(&piece.bins).for_each(|(to, bin)| *to = *bin);
+            for (to, q) in row.iter_mut().zip(q) {
+                *to = Complex::new(T::of(scale * q[0]), T::of(scale * q[1]));
+            }
+            row[mx..].fill(Complex::default());
+            self.rows.forward(row, &mut piece.scratch);
+        });
+    }
+
+    fn back(&self, scale: f64, u: &mut [Vector], bins: &mut [Complex<T>], pieces: &mut [Piece<T>]) {
+        let px = self.rows.length();
+        self.threads.for_each_row_pair_with((u, self.mx), (bins, px), pieces, |_, u, row, piece| {
+            self.rows.inverse(row, &mut piece.scratch);
+            for (u, value) in u.iter_mut().zip(row) {
+                *u = [scale * value.re.to_double(), scale * value.im.to_double()];
             }
         });
     }
 
-    fn back(&self, scale: f64, u: &mut [Vector], bins: &[Complex<T>], pieces: &mut [Piece<T>]) {
-        let nb = self.rows.bins();
-        self.threads.for_each_row(u, self.mx, pieces, |iy, u, piece| {
-            let from = &bins[iy * 2 * nb..(iy + 1) * 2 * nb];
-            for component in 0..2 {
-                piece.bins.iter_mut().zip(from.iter().skip(component).step_by(2)).for_each(|(to, bin)| *to = *bin);
-                self.rows.inverse(&mut piece.bins, &mut piece.row, &mut piece.scratch);
-                u.iter_mut().zip(&piece.row).for_each(|(u, value)| u[component] = scale * value.to_double());
-            }
-        });
-    }
-
-    /// Multiplies the transformed columns of both components of x bin `kx`.
-    fn multiply(&self, kx: usize, columns: &mut [Complex<T>]) {
+    /// Multiplies the waves of x bin `kx`, z, and the conjugates of their opposites, w.
+    fn multiply(&self, kx: usize, z: &mut [Complex<T>], w: &mut [Complex<T>]) {
         let py = self.columns.length();
-        let (x, y) = columns.split_at_mut(py);
         match &self.spectrum {
             Spectrum::Even(spectrum) => {
-                let waves = &spectrum[kx * (py / 2 + 1)..(kx + 1) * (py / 2 + 1)];
-                let (low_x, high_x) = x.split_at_mut(py / 2 + 1);
-                let (low_y, high_y) = y.split_at_mut(py / 2 + 1);
-                let turn = |x: &mut Complex<T>, y: &mut Complex<T>, [xx, yy, xy]: [T; 3]| {
-                    (*x, *y) = (*x * xx + *y * xy, *x * xy + *y * yy);
+                let half = py / 2 + 1;
+                let waves = &spectrum[kx * half..(kx + 1) * half];
+                let (low_z, high_z) = z.split_at_mut(half);
+                let (low_w, high_w) = w.split_at_mut(half);
+                let turn = |z: &mut Complex<T>, w: &mut Complex<T>, [alpha, beta, gamma]: [T; 3]| {
+                    let of_w = Complex::new(beta * w.re - gamma * w.im, beta * w.im + gamma * w.re);
+                    let of_z = Complex::new(beta * z.re + gamma * z.im, beta * z.im - gamma * z.re);
+                    (*z, *w) = (*z * alpha + of_w, *w * alpha + of_z);
                 };
-                for ((x, y), &wave) in low_x.iter_mut().zip(low_y).zip(waves) {
-                    turn(x, y, wave);
+                for ((z, w), &wave) in low_z.iter_mut().zip(low_w).zip(waves) {
+                    turn(z, w, wave);
                 }
-                for ((x, y), &[xx, yy, xy]) in high_x.iter_mut().rev().zip(high_y.iter_mut().rev()).zip(&waves[1..]) {
-                    turn(x, y, [xx, yy, -xy]);
+                for ((z, w), &[alpha, beta, gamma]) in
+                    high_z.iter_mut().rev().zip(high_w.iter_mut().rev()).zip(&waves[1..])
+                {
+                    turn(z, w, [alpha, beta, -gamma]);
                 }
             }
             Spectrum::General(spectrum) => {
-                for ((x, y), &[xx, yy, xy]) in x.iter_mut().zip(y).zip(&spectrum[kx * py..(kx + 1) * py]) {
-                    (*x, *y) = (*x * xx + *y * xy, *x * xy + *y * yy);
+                for ((z, w), &[alpha, delta, epsilon]) in z.iter_mut().zip(w).zip(&spectrum[kx * py..(kx + 1) * py]) {
+                    (*z, *w) = (*z * alpha + *w * delta, *w * alpha + *z * epsilon);
                 }
             }
         }

@@ -8,7 +8,7 @@ use crate::memory::unwritten;
 use crate::threads::Threads;
 
 /// Elements of a block: both fields of it stay in the nearest cache.
-const BLOCK: usize = 1024;
+pub const BLOCK: usize = 1024;
 
 /// Fields of one length that are used again.
 #[derive(Default)]
@@ -110,6 +110,18 @@ pub fn sum(threads: &Threads, n: usize, f: impl Fn(usize) -> Vector + Sync + Sen
         sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; 2], |s, v| plus(s, 1.0, v));
     });
     sums.iter().fold([0.0; 2], |s, v| plus(s, 1.0, *v))
+}
+
+/// Calls `work(first element, block)` on each of the blocks that several fields were cut into, and adds up what it returns.
+pub fn over<B: Send, const K: usize>(
+    threads: &Threads,
+    blocks: impl Iterator<Item = B>,
+    work: impl Fn(usize, &mut B) -> [f64; K] + Sync + Send,
+) -> [f64; K] {
+    let mut blocks: Vec<(B, [f64; K])> = blocks.map(|block| (block, [0.0; K])).collect();
+    threads.for_each(&mut blocks, |k, (block, sums)| *sums = work(k * BLOCK, block));
+    let added = |all: [f64; K], (_, sums): &(B, [f64; K])| std::array::from_fn(|k| all[k] + sums[k]);
+    blocks.iter().fold([0.0; K], added)
 }
 
 /// Four sums side by side: one would wait for each addition.

@@ -18,13 +18,23 @@ pub struct Block<'a, T> {
     rows: usize,
     width: usize,
     first: usize,
+    columns: usize,
     owner: PhantomData<&'a mut [Complex<T>]>,
+}
+
+/// Columns `k` of one half of a row-major matrix, and of the other half their mirror images `-k`, modulo the width. Column 0, and of an
+/// even width the one half-way, are their own.
+pub struct MirroredBlock<'a, T> {
+    here: Block<'a, T>,
+    /// Without those that are here: in the order of the matrix.
+    there: Block<'a, T>,
 }
 
 /// A pointer that several threads may hold: each derives blocks of its own from it.
 struct Shared<T>(*mut Complex<T>);
 
-// SAFETY: `for_each_block` is the only user, and gives each block of the matrix behind it to one thread at a time.
+// SAFETY: `for_each_block` and `for_each_mirrored_block` are the only users, and give each block of the matrix behind it to one thread
+// at a time.
 unsafe impl<T: Send> Sync for Shared<T> {}
 
 impl<T> Shared<T> {
@@ -47,10 +57,95 @@ pub fn for_each_block<T: Real, S: Send>(
     let blocks_per_piece = blocks.div_ceil(scratch.len());
     threads.for_each(scratch, |k, s| {
         for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(blocks) {
-            let block = &mut Block { data: shared.pointer(), rows, width, first: b * BLOCK, owner: PhantomData };
-            work(block, s);
+            let (first, owner) = (b * BLOCK, PhantomData);
+            let columns = BLOCK.min(width - first);
+            work(&mut Block { data: shared.pointer(), rows, width, first, columns, owner }, s);
         }
     });
+}
+
+/// Calls `work` on each block of columns of the matrix `data` with their mirror images, a run of blocks per piece of scratch.
+pub fn for_each_mirrored_block<T: Real, S: Send>(
+    data: &mut [Complex<T>],
+    width: usize,
+    threads: &Threads,
+    scratch: &mut [S],
+    work: impl Fn(&mut MirroredBlock<'_, T>, &mut S) + Sync + Send,
+) {
+    assert_eq!(data.len() % width, 0);
+    let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
+    let half = width / 2 + 1;
+    let blocks = half.div_ceil(BLOCK);
+    let blocks_per_piece = blocks.div_ceil(scratch.len());
+    threads.for_each(scratch, |k, s| {
+        for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(blocks) {
+            let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
+            // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
+            let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
+            let block = |first: usize, columns: usize| {
+                let (data, owner) = (shared.pointer(), PhantomData);
+                Block { data, rows, width, first, columns, owner }
+            };
+            let there = block(mirrored, behind - mirrored);
+            work(&mut MirroredBlock { here: block(first, end - first), there }, s);
+        }
+    });
+}
+
+impl<T: Real> MirroredBlock<'_, T> {
+    /// The first column of the first half.
+    pub fn first(&self) -> usize {
+        self.here.first
+    }
+
+    /// Number of columns in the first half.
+    pub fn columns(&self) -> usize {
+        self.here.columns
+    }
+
+    /// Columns of the first half that are their own mirror image, before those that are not: column 0.
+    fn own(&self) -> usize {
+        usize::from(self.here.first == 0)
+    }
+
+    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere; to `mirrored` the conjugates of the mirror images,
+    /// in the same order.
+    pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>], mirrored: &mut [Complex<T>]) {
+        let (columns, own) = (self.here.columns, self.own());
+        self.here.gather(rows.clone(), length, out);
+        for column in mirrored.chunks_exact_mut(length).take(columns) {
+            column[..rows.start].fill(Complex::default());
+            column[rows.end..].fill(Complex::default());
+        }
+        let mut row = rows.start;
+        while row < rows.end {
+            let tile = TILE.min(rows.end - row);
+            let at = |k: usize| row + k.min(tile - 1);
+            let here: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.here.row(at(k)));
+            let there: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.there.row(at(k)));
+            for (c, column) in mirrored.chunks_exact_mut(length).take(columns).enumerate() {
+                // The mirror images are in the order of the matrix, from behind; a column without one is its own.
+                let (from, c) = match self.there.columns.checked_sub(c + 1 - own) {
+                    Some(image) if c >= own => (&there, image),
+                    _ => (&here, c),
+                };
+                column[row..row + tile].iter_mut().zip(from).for_each(|(value, from)| *value = from[c].conj());
+            }
+            row += tile;
+        }
+    }
+
+    /// Copies the columns in `from`, each `length` long, to rows `rows`, and the conjugates of those in `mirrored` to their mirror images.
+    pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>], mirrored: &[Complex<T>]) {
+        let (own, there) = (self.own(), self.there.columns);
+        self.here.scatter(rows.clone(), length, from);
+        for row in rows {
+            let columns = mirrored.chunks_exact(length).skip(own).take(there);
+            for (value, column) in self.there.row_mut(row).iter_mut().rev().zip(columns) {
+                *value = column[row].conj();
+            }
+        }
+    }
 }
 
 impl<T: Real> Block<'_, T> {
@@ -61,7 +156,7 @@ impl<T: Real> Block<'_, T> {
 
     /// Number of columns: all blocks but the last have [`BLOCK`].
     pub fn columns(&self) -> usize {
-        (self.width - self.first).min(BLOCK)
+        self.columns
     }
 
     /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
@@ -104,8 +199,8 @@ impl<T: Real> Block<'_, T> {
     /// The block's part of a row.
     fn row(&self, row: usize) -> &[Complex<T>] {
         assert!(row < self.rows);
-        // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which
-        // `for_each_block` borrows exclusively, and no other block overlaps this one.
+        // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which those who make
+        // blocks borrow exclusively, and no other block overlaps this one.
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 

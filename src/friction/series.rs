@@ -1,0 +1,79 @@
+//! The series of tangential coefficients far from an element: polynomials in `t = (X/r)^2` for each power of `z = (d/r)^2`.
+
+/// Terms of the series at most.
+const MOST_TERMS: usize = 8;
+
+/// Polynomials `p_k(t) = sum_j series[k][j] t^j`.
+pub type Series = [[f64; MOST_TERMS + 2]; MOST_TERMS + 1];
+
+/// The series of a and b, which depend on the ratio dx/dy only.
+#[derive(Debug)]
+pub struct Shape {
+    pub a: Series,
+    pub b: Series,
+}
+
+impl Shape {
+    /// Of elements `dx` by `dy`.
+    pub fn new(dx: f64, dy: f64) -> Shape {
+        Shape { a: series(dx, dy, [1.0, 0.0, 0.0]), b: series(dx, dy, [0.0, 0.0, 1.0]) }
+    }
+}
+
+/// A homogeneous polynomial `sum_p c[p] X^p Y^(degree - p)` over `r^power`.
+#[derive(Clone)]
+struct Fraction {
+    coefficients: Vec<f64>,
+    power: f64,
+}
+
+impl Fraction {
+    /// `d/dX (N/r^m) = (N_X r^2 - m X N)/r^(m + 2)`, or the same in Y.
+    fn derivative(&self, in_x: bool) -> Fraction {
+        let degree = self.coefficients.len() - 1;
+        let mut coefficients = vec![0.0; degree + 2];
+        for (p, c) in self.coefficients.iter().enumerate() {
+            let exponent = if in_x { p } else { degree - p } as f64;
+            // Of X^p Y^q: X^(p+1) Y^q and X^(p-1) Y^(q+2), or X^p Y^(q+1) and X^(p+2) Y^(q-1).
+            let (raised, crossed) = if in_x { (p + 1, p.wrapping_sub(1)) } else { (p, p + 2) };
+            coefficients[raised] += (exponent - self.power) * c;
+            if exponent > 0.0 {
+                coefficients[crossed] += exponent * c;
+            }
+        }
+        Fraction { coefficients, power: self.power + 2.0 }
+    }
+}
+
+/// The polynomials of the mean over the element of `N(X, Y)/r^3`, N of degree 2: the sum of
+/// `hx^(2i) hy^(2j)/((2i + 1)! (2j + 1)!)` times the derivatives of order 2i in X and 2j in Y, half-widths in units of the
+/// half-diagonal.
+fn series(dx: f64, dy: f64, numerator: [f64; 3]) -> Series {
+    let diagonal = dx.hypot(dy);
+    let moment = |h: f64, i: usize| (2..=2 * i + 1).fold(h.powi(2 * i as i32), |m, k| m / k as f64);
+    let mut series = [[0.0; MOST_TERMS + 2]; MOST_TERMS + 1];
+    let mut in_x = Fraction { coefficients: numerator.to_vec(), power: 3.0 };
+    for i in 0..=MOST_TERMS {
+        let mut term = in_x.clone();
+        for j in 0..=MOST_TERMS - i {
+            let factor = moment(dx / diagonal, i) * moment(dy / diagonal, j);
+            add_in_t(&term.coefficients, factor, &mut series[i + j]);
+            term = term.derivative(false).derivative(false);
+        }
+        in_x = in_x.derivative(true).derivative(true);
+    }
+    series
+}
+
+/// Adds `factor sum_p c[p] X^p Y^(2m - p)`, p even, as a polynomial in `t = X^2 = 1 - Y^2`.
+fn add_in_t(coefficients: &[f64], factor: f64, polynomial: &mut [f64]) {
+    let m = (coefficients.len() - 1) / 2;
+    for half in 0..=m {
+        let (c, rest) = (factor * coefficients[2 * half], m - half);
+        let mut binomial = 1.0;
+        for i in 0..=rest {
+            polynomial[half + i] += if i % 2 == 0 { c } else { -c } * binomial;
+            binomial *= (rest - i) as f64 / (i + 1) as f64;
+        }
+    }
+}
