@@ -145,6 +145,7 @@ module contact_normal
     real(c_double) :: influence_scale = 0
     integer(c_int32_t) :: sensitivities = 0
     integer(c_int32_t) :: reserved = 0
+    type(c_ptr) :: influence_cross(2) = c_null_ptr
   end type
 
   ! What is simulated. Since 0.1.
@@ -284,6 +285,7 @@ module contact_normal
     real(c_double) :: tangential_products = 0
     real(c_double) :: tangential_seconds = 0
     real(c_double) :: sensitivities(9) = 0
+    real(c_double) :: error_tangential(2) = -1
   end type
 
   ! The accuracy that is asked for, what it may cost, and the grid that it took. Since 0.1.

@@ -568,7 +568,8 @@ typedef struct contact_normal_friction {
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
    xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
-   tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike.
+   tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or
+   `influence_cross` given.
    */
   const double *influence[3];
   /*
@@ -591,6 +592,12 @@ typedef struct contact_normal_friction {
    Must be 0.
    */
   int32_t reserved;
+  /*
+   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure, laid out and scaled as
+   those; both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
+   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
+   */
+  const double *influence_cross[2];
 } contact_normal_friction;
 
 /*
@@ -1114,6 +1121,11 @@ typedef struct contact_normal_report {
    creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
    */
   double sensitivities[9];
+  /*
+   Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
+   They are estimated of shifts and of steady rolling from rest, for bodies that are alike, when `error_force` is.
+   */
+  double error_tangential[2];
 } contact_normal_report;
 
 /*

@@ -3,10 +3,11 @@
 //! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
 //!
 //! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
-//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods.
+//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods friction.
 
 mod case;
 mod dense;
+mod friction;
 mod influence;
 mod limits;
 mod measure;
@@ -71,6 +72,10 @@ fn main() {
         if wanted("versus") {
             versus::versus(threads, sizes);
         }
+    }
+    if wanted("friction") {
+        measure::by_processor(false);
+        friction::shifts(threads, &sizes[..sizes.len().min(3)]);
     }
     measure::by_processor(processor);
     if wanted("influence") {

@@ -71,7 +71,8 @@ pub fn tangential(
 ) -> Result<(Outcome, Report, Solver), Error> {
     let compliance = Compliance { shear: 1.0, poisson: nu, unlike: 0.0 };
     let mut solver = Solver::new(grid, Tangential::new(grid.dx, grid.dy, compliance), true, &Threads::One);
-    let request = Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false };
+    let request =
+        Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false, estimates: false };
     let (end, report) = solver.solve(&request, &mut |_, _| true)?;
     Ok((end, report, solver))
 }

@@ -156,7 +156,7 @@ _FRICTION_PAIRS = ("previous_traction", "rigid_slip")
 
 
 def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    known = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence",
+    known = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence", "influence_cross",
              *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
     unknown = sorted(set(value) - set(known))
     if unknown:
@@ -189,6 +189,11 @@ def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
             getattr(effect, name)[k] = pointer(kept[-1])
     if value.get("influence") is not None:
         kept.extend(_tangential_influence(effect, value["influence"]))
+        for k, table in enumerate(value["influence_cross"] if value.get("influence_cross") is not None else ()):
+            kept.append(doubles(f"friction['influence_cross'][{k}]", table, kept[-1].shape))
+            effect.influence_cross[k] = pointer(kept[-1])
+    elif value.get("influence_cross") is not None:
+        raise ValueError("friction['influence_cross'] is given without friction['influence']")
     return effect, kept
 
 

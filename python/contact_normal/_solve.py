@@ -84,7 +84,8 @@ def solve(
         "spin_centre", "rolling_distance", "rolling_direction", "spin_offset"; "previous_traction" and "rigid_slip", pairs of (my, mx);
         "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
         by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
-        coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx). docs/friction.md has the signs.
+        coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz).
+        docs/friction.md has the signs.
     pressure, contact : array_like, (my, mx), optional
         Initial guess; `contact` (booleans or integers) is the contact area with `active_set="FIXED"`.
     progress : callable or bool, optional

@@ -93,6 +93,7 @@ class Friction(ctypes.Structure):
         ("influence_scale", c_double),
         ("sensitivities", c_int32),
         ("reserved", c_int32),
+        ("influence_cross", POINTER(c_double) * 2),
     ]
 
 
@@ -257,6 +258,7 @@ class Report(ctypes.Structure):
         ("tangential_products", c_double),
         ("tangential_seconds", c_double),
         ("sensitivities", c_double * 9),
+        ("error_tangential", c_double * 2),
     ]
 
 

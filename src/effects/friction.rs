@@ -79,6 +79,9 @@ pub struct TangentialInfluence<'a> {
     pub cy: usize,
     /// Axx, Ayy, Axy: displacements in x by tractions in x, in y by those in y, and of one by the other.
     pub coefficients: [&'a [f64]; 3],
+    /// Of unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
+    /// `-(Axz qx + Ayz qy)`.
+    pub cross: Option<[&'a [f64]; 2]>,
     /// Every coefficient is multiplied by this, positive.
     pub scale: f64,
 }
@@ -89,6 +92,9 @@ const WHOLE: f64 = 1e-9;
 /// The names of the tables.
 const TABLES: [&str; 3] = ["friction->influence[0] (xx)", "friction->influence[1] (yy)", "friction->influence[2] (xy)"];
 
+/// Those of unlike bodies.
+const CROSS_TABLES: [&str; 2] = ["friction->influence_cross[0] (xz)", "friction->influence_cross[1] (yz)"];
+
 /// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
 const SYMMETRY: f64 = 1e-7;
 
@@ -97,6 +103,12 @@ impl TangentialInfluence<'_> {
     pub fn at(&self, kx: i64, ky: i64) -> [f64; 3] {
         let k = (ky + self.cy as i64) as usize * 2 * self.cx + (kx + self.cx as i64) as usize;
         self.coefficients.map(|values| self.scale * values[k])
+    }
+
+    /// Axz and Ayz at an offset of the tables; 0 without.
+    pub fn cross_at(&self, kx: i64, ky: i64) -> [f64; 2] {
+        let k = (ky + self.cy as i64) as usize * 2 * self.cx + (kx + self.cx as i64) as usize;
+        self.cross.map_or([0.0; 2], |tables| tables.map(|values| self.scale * values[k]))
     }
 
     /// Refuses tables that do not reach offsets of `mx` by `my`, and what no coefficients of a half-space's kind are.
@@ -110,7 +122,8 @@ impl TangentialInfluence<'_> {
             }
         }
         let expected = self.cx.checked_mul(self.cy).and_then(|n| n.checked_mul(4));
-        for (name, values) in TABLES.iter().zip(self.coefficients) {
+        let cross = self.cross.iter().flatten();
+        for (name, values) in TABLES.iter().zip(&self.coefficients).chain(CROSS_TABLES.iter().zip(cross)) {
             if expected != Some(values.len()) {
                 return invalid(format!("{name} has {} values; it must have 2 cx by 2 cy", values.len()));
             }
@@ -131,17 +144,26 @@ impl TangentialInfluence<'_> {
 
     /// Those of one offset and of its mirrors.
     fn check_offset(&self, kx: i64, ky: i64, largest: f64) -> Result<()> {
-        let value = self.at(kx, ky);
-        let mirrors = [(kx, ky, 1.0), (-kx, ky, -1.0), (kx, -ky, -1.0), (-kx, -ky, 1.0)];
-        for (component, name) in TABLES.iter().enumerate() {
-            for (x, y, odd) in mirrors {
-                let (mirrored, sign) = (self.at(x, y)[component], if component == 2 { odd } else { 1.0 });
+        let all = |x: i64, y: i64| {
+            let ([xx, yy, xy], [xz, yz]) = (self.at(x, y), self.cross_at(x, y));
+            [xx, yy, xy, xz, yz]
+        };
+        let value = all(kx, ky);
+        // Of each component the sign that it takes where x, where y changes its own.
+        let signs = [(1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0)];
+        for (component, name) in TABLES.iter().chain(&CROSS_TABLES).enumerate() {
+            let (in_x, in_y) = signs[component];
+            for (x, y, sign) in [(kx, ky, 1.0), (-kx, ky, in_x), (kx, -ky, in_y), (-kx, -ky, in_x * in_y)] {
+                let mirrored = all(x, y)[component];
                 if !mirrored.is_finite() {
                     let rule = "coefficients must be finite";
                     return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {mirrored}; {rule}")));
                 }
                 if !((mirrored - sign * value[component]).abs() <= SYMMETRY * largest) {
-                    let (at, rule) = (value[component], "xx and yy must be even in x and in y, xy odd in both");
+                    let (at, rule) = match component {
+                        0..3 => (value[component], "xx and yy must be even in x and in y, xy odd in both"),
+                        _ => (value[component], "xz must be odd in x and even in y, yz even in x and odd in y"),
+                    };
                     return Err(Error::Unsupported(format!(
                         "{name} is {at} at offset ({kx}, {ky}) and {mirrored} at ({x}, {y}); {rule}"
                     )));
@@ -344,9 +366,12 @@ impl Effect for Friction<'_> {
         self.check(&scene.grid)?;
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
         let has_bodies = !others.iter().flatten().any(|other| other.replaces_bodies());
-        if self.influence.is_some() && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
+        let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
+        if lacks_cross && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
             return Err(Error::Unsupported(
-                "friction->influence has no coefficients of what couples the normal and the tangential problem of unlike bodies".into(),
+                "friction->influence has no coefficients of what couples the normal and the tangential problem of unlike bodies: \
+                 influence_cross is not given"
+                    .into(),
             ));
         }
         Ok(())

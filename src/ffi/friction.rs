@@ -10,6 +10,7 @@ use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous, Tangenti
 
 /// The tables of own coefficients.
 const TABLES: [&str; 3] = ["friction->influence[0]", "friction->influence[1]", "friction->influence[2]"];
+const CROSS_TABLES: [&str; 2] = ["friction->influence_cross[0]", "friction->influence_cross[1]"];
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -76,7 +77,8 @@ pub struct contact_normal_friction {
     /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
     /// y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
     /// xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
-    /// tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike.
+    /// tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or
+    /// `influence_cross` given.
     pub influence: [*const f64; 3],
     /// The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
     pub influence_cx: i32,
@@ -88,6 +90,10 @@ pub struct contact_normal_friction {
     pub sensitivities: i32,
     /// Must be 0.
     pub reserved: i32,
+    /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure, laid out and scaled as
+    /// those; both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
+    /// then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
+    pub influence_cross: [*const f64; 2],
 }
 
 versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
@@ -158,7 +164,7 @@ impl contact_normal_friction {
 
     /// cx, cy and the values of each table; none if there are no tables.
     fn table_size(&self) -> Result<Option<(usize, usize, usize)>, Refusal> {
-        if self.influence.iter().all(|table| table.is_null()) {
+        if self.influence.iter().chain(&self.influence_cross).all(|table| table.is_null()) {
             return Ok(None);
         }
         let cx = count("friction->influence_cx", self.influence_cx)?;
@@ -172,7 +178,11 @@ impl contact_normal_friction {
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
         let table = |k: usize| unsafe { required(TABLES[k], self.influence[k], size) };
         let coefficients = [table(0)?, table(1)?, table(2)?];
-        Ok(Some(TangentialInfluence { cx, cy, coefficients, scale: self.influence_scale }))
+        let has_cross = self.influence_cross.iter().any(|table| !table.is_null());
+        // SAFETY: as above.
+        let cross = |k: usize| unsafe { required(CROSS_TABLES[k], self.influence_cross[k], size) };
+        let cross = if has_cross { Some([cross(0)?, cross(1)?]) } else { None };
+        Ok(Some(TangentialInfluence { cx, cy, coefficients, cross, scale: self.influence_scale }))
     }
 
     fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
@@ -196,7 +206,8 @@ impl GivenEffect for contact_normal_friction {
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
         }
         if let Some((_, _, size)) = self.table_size()? {
-            for (name, table) in TABLES.into_iter().zip(self.influence) {
+            let cross = CROSS_TABLES.into_iter().zip(self.influence_cross);
+            for (name, table) in TABLES.into_iter().zip(self.influence).chain(cross) {
                 regions.input(name, table, size)?;
             }
         }

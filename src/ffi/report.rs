@@ -211,6 +211,9 @@ pub struct contact_normal_report {
     /// If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
     /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
     pub sensitivities: [f64; 9],
+    /// Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
+    /// They are estimated of shifts and of steady rolling from rest, for bodies that are alike, when `error_force` is.
+    pub error_tangential: [f64; 2],
 }
 
 versioned! {
@@ -223,6 +226,7 @@ versioned! {
     error_pressure: -1.0,
     halved_seconds: -1.0,
     halved_error_force: -1.0,
+    error_tangential: [-1.0; 2],
 }
 
 impl contact_normal_report {
@@ -245,6 +249,7 @@ impl contact_normal_report {
             (to.tangential_residual, to.tangential_gap) = (found.certificate.residual, found.certificate.gap);
             copy!(found.certificate => to: stick_count, slip_count);
             (to.tangential_products, to.tangential_seconds) = (found.products, found.seconds);
+            to.error_tangential = found.error;
             for (to, from) in to.sensitivities.iter_mut().zip(found.sensitivities.iter().flatten().flatten()) {
                 *to = *from;
             }

@@ -10,8 +10,9 @@
 //!
 //! The error of q obeys `(q - q*)' A (q - q*) <= sum_C (s.q + g |s|)`.
 
-use super::problem::{add, dot, plus, square, Problem, State};
+use super::problem::{add, dot, square, Problem, State};
 use super::vectors::{self, BLOCK};
+use super::Vector;
 
 /// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
@@ -55,11 +56,9 @@ impl Certificate {
                     continue;
                 }
                 let (q, s) = (state.q[i], problem.slip_at(i, &state.u));
-                let (length, slides) = (square(q).sqrt(), square(s).sqrt());
-                let on_circle = length >= g * ON_THE_CIRCLE;
-                slips += f64::from(u8::from(on_circle));
-                squares += rest(s, q, length, on_circle);
-                gap += dot(s, q) + g * slides;
+                slips += f64::from(u8::from(is_on_circle(q, g)));
+                squares += rest(s, q, g);
+                gap += dot(s, q) + g * square(s).sqrt();
                 work += g * square(add(problem.rigid[i], problem.offset)).sqrt();
             }
             [squares, gap, work, slips]
@@ -75,12 +74,18 @@ impl Certificate {
     }
 }
 
-/// The square of what is left of the slip s, q being |q| long.
+/// Whether q is on the circle of radius g.
 #[inline]
-pub fn rest(s: [f64; 2], q: [f64; 2], length: f64, on_circle: bool) -> f64 {
-    if !on_circle {
-        return square(s);
+pub fn is_on_circle(q: Vector, g: f64) -> bool {
+    square(q) >= (g * ON_THE_CIRCLE) * (g * ON_THE_CIRCLE)
+}
+
+/// The square of what is left of the slip s: on the circle, where s points against q, the part across q.
+#[inline]
+pub fn rest(s: Vector, q: Vector, g: f64) -> f64 {
+    if dot(s, q) < 0.0 && is_on_circle(q, g) {
+        let across = s[0] * q[1] - s[1] * q[0];
+        return across * across / square(q);
     }
-    let n = [q[0] / length, q[1] / length];
-    square(plus(s, -dot(s, n).min(0.0), n))
+    square(s)
 }

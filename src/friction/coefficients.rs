@@ -109,6 +109,11 @@ impl Tangential {
         Ok(Tangential { own: Some(Tables::new(influence)?), ..Tangential::new(dx, dy, no_bodies) })
     }
 
+    /// Whether these are the caller's own.
+    pub fn is_own(&self) -> bool {
+        self.own.is_some()
+    }
+
     /// Whether these are the caller's own, or there are none, as `influence` says.
     pub fn are_of(&self, influence: Option<&TangentialInfluence<'_>>) -> bool {
         match (&self.own, influence) {

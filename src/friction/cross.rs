@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::Vector;
+use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{gauss, Coefficients, Kernel};
@@ -27,21 +28,69 @@ use crate::threads::Threads;
 const FAR: f64 = 6.0;
 const TERMS: usize = 8;
 
+/// Where Axz and Ayz come from.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// The half-space: K/G.
+    HalfSpace(f64),
+    /// The caller's own tables.
+    Tables(CrossTables),
+}
+
+/// Axz and Ayz of the caller's own, at the offsets `-cx..cx` by `-cy..cy`.
+#[derive(Clone, Debug)]
+pub struct CrossTables {
+    cx: i64,
+    cy: i64,
+    values: Arc<Vec<Vector>>,
+}
+
+impl CrossTables {
+    /// Of tables that were checked; none if there are none.
+    pub fn new(influence: &TangentialInfluence<'_>) -> Result<Option<CrossTables>> {
+        if influence.cross.is_none() {
+            return Ok(None);
+        }
+        let (cx, cy) = (influence.cx as i64, influence.cy as i64);
+        let mut values: Vec<Vector> = zeros(4 * influence.cx * influence.cy, "the coefficients of unlike bodies")?;
+        for (k, value) in values.iter_mut().enumerate() {
+            *value = influence.cross_at(k as i64 % (2 * cx) - cx, k as i64 / (2 * cx) - cy);
+        }
+        Ok(Some(CrossTables { cx, cy, values: Arc::new(values) }))
+    }
+
+    /// The coefficients at an offset within the tables.
+    fn at(&self, x: i64, y: i64) -> Vector {
+        self.values[((y + self.cy) * 2 * self.cx + x + self.cx) as usize]
+    }
+
+    /// Whether they were made of these.
+    pub fn are_of(&self, influence: &TangentialInfluence<'_>) -> bool {
+        let (cx, cy) = (self.cx, self.cy);
+        influence.cross.is_some()
+            && (cx, cy) == (influence.cx as i64, influence.cy as i64)
+            && (-cy..cy).all(|y| (-cx..cx).all(|x| self.at(x, y) == influence.cross_at(x, y)))
+    }
+}
+
 /// Axz (component 0) or Ayz (1), displacements being taken at `by` from each centre, in elements.
 #[derive(Clone, Debug)]
 struct Cross {
     dx: f64,
     dy: f64,
-    /// `-K/(pi G)`.
-    factor: f64,
+    source: Source,
     component: usize,
     by: (f64, f64),
 }
 
 impl Kernel for Cross {
     fn at(&self, kx: i64, ky: i64) -> f64 {
-        let integrals = integrals(kx as f64 + self.by.0, ky as f64 + self.by.1, self.dx, self.dy);
-        self.factor * integrals[self.component]
+        let (x, y) = (kx as f64 + self.by.0, ky as f64 + self.by.1);
+        match &self.source {
+            Source::HalfSpace(unlike) => -unlike / PI * integrals(x, y, self.dx, self.dy)[self.component],
+            // Steps are whole elements.
+            Source::Tables(tables) => tables.at(x.round() as i64, y.round() as i64)[self.component],
+        }
     }
 
     fn is_even(&self, _grid: &Grid) -> bool {
@@ -120,11 +169,11 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// On a grid, with `unlike = K/G`; displacements are taken at `by` from each centre, in elements.
-    pub fn new(grid: &Grid, unlike: f64, by: (f64, f64), threads: &Threads) -> Result<Coupling> {
+    /// On a grid; displacements are taken at `by` from each centre, in elements.
+    pub fn new(grid: &Grid, source: &Source, by: (f64, f64), threads: &Threads) -> Result<Coupling> {
         let threads = &threads.suited_to(grid.len());
         let operator = |component: usize| {
-            let kernel = Cross { dx: grid.dx, dy: grid.dy, factor: -unlike / PI, component, by };
+            let kernel = Cross { dx: grid.dx, dy: grid.dy, source: source.clone(), component, by };
             Operator::new(&Coefficients::from(kernel), grid, threads)
         };
         let operators = [operator(0)?, operator(1)?];

@@ -39,6 +39,14 @@ impl Level {
         Ok(Level { problem: Problem::new(grid, operators)?, state: State::new(n)?, memory: Memory::new(n)? })
     }
 
+    /// The force, and the creepages that were found, of a step of rolling.
+    pub fn found(&self) -> (Vector, Vector) {
+        let Problem { grid, offset, operators, .. } = &self.problem;
+        let sum = super::forces::sum_of(&self.problem, &self.state.q);
+        let distance = operators.step().map_or(1.0, |rolling| rolling.distance);
+        (sum.map(|sum| sum * grid.element_area()), offset.map(|offset| offset / distance))
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>() + self.memory.fields.bytes()

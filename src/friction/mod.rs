@@ -3,7 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`coefficients`], `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
-//! | [`Toeplitz`], `spectrum`, [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
@@ -16,6 +16,7 @@
 
 mod certificate;
 pub mod coefficients;
+mod component;
 pub mod cross;
 pub mod dense;
 mod extension;
@@ -43,7 +44,7 @@ mod window;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
-pub use cross::Coupling;
+pub use cross::{Coupling, CrossTables, Source};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::{Request, Solver};
 pub use toeplitz::{Toeplitz, Workspace};

@@ -10,7 +10,9 @@ use crate::grid::Grid;
 use crate::progress::Outcome;
 
 /// Coarser grids are solved to this residual: what they leave wrong costs more on the finest.
-const COARSE: f64 = 1e-3;
+pub const COARSE: f64 = 1e-3;
+/// The one next to the finest to this one, where its forces count: they are then right to some 1e-5 of mu N.
+pub const COUNTS: f64 = 1e-4;
 /// Iterations at most on each of them.
 const COARSE_LIMIT: u64 = 60;
 /// With forces given, the coarsest grid is solved with these parts of the load first, to this residual.
@@ -20,6 +22,8 @@ const PART: f64 = 3e-2;
 /// What is counted, and who is told.
 pub struct Work<'a> {
     pub products: f64,
+    /// The residual that the grid next to the finest is solved to, at least.
+    pub coarse: f64,
     pub watch: &'a mut dyn FnMut(&Grid, f64) -> bool,
 }
 
@@ -50,7 +54,8 @@ pub fn solve(
                 }
             }
             let level = &mut levels[l];
-            let end = one(level, forces, forces.any(), (tolerance.max(COARSE), COARSE_LIMIT), part, work)?;
+            let coarse = if l == 1 { work.coarse } else { COARSE };
+            let end = one(level, forces, forces.any(), (tolerance.max(coarse), COARSE_LIMIT), part, work)?;
             if end == Outcome::Cancelled {
                 return Ok(end);
             }

@@ -49,6 +49,16 @@ impl Quadrant {
         &self.tangential
     }
 
+    /// Whether there is no Axy between the elements of a grid, displacements being taken at `by` from the centres.
+    pub fn is_uncoupled(&self, grid: &Grid, by: (f64, f64)) -> bool {
+        if self.tangential.is_own() {
+            return self.values.iter().all(|entry| entry[2] == 0.0);
+        }
+        // On a line Axy is 0, and that of steps along it.
+        let along_line = (grid.my == 1 && by.1 == 0.0) || (grid.mx == 1 && by.0 == 0.0);
+        along_line || self.tangential.compliance().poisson == 0.0
+    }
+
     /// The coefficients at a whole offset.
     #[inline]
     pub fn at(&self, x: i64, y: i64) -> Entry {

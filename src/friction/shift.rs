@@ -90,7 +90,9 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
     let rho = if slip > 0.0 { cap.min(problem.rms_bound() / slip) } else { cap };
     let mut steps = Steps { held_back: 0.9, energy: 0.0 };
     let (mut least, mut since, mut iterations) = (f64::INFINITY, 0, 0);
-    memory.debt.fill([0.0; 2]);
+    for field in [&mut memory.debt, &mut memory.direction, &mut memory.chord] {
+        field.fill([0.0; 2]);
+    }
     loop {
         let sight = memory.tangent.predict(problem, state, rho);
         if sight.residual < tolerance {
@@ -143,6 +145,7 @@ fn step(problem: &mut Problem, state: &mut State, memory: &mut Memory, steps: &m
 fn choose_direction(problem: &Problem, state: &State, memory: &mut Memory, steps: &Steps) {
     let Memory { tangent, direction, chord, product, debt, given, z, .. } = memory;
     let (threads, f) = (problem.threads(), steps.held_back);
+    let inverse = 1.0 / f;
     // z is 0 outside C.
     let along_last = |i: usize| [dot(z[i], plus(product[i], tangent.curvature[i], direction[i])), 0.0];
     let beta = match steps.energy > 0.0 {
@@ -154,14 +157,14 @@ fn choose_direction(problem: &Problem, state: &State, memory: &mut Memory, steps
         for k in 0..direction.len() {
             let i = start + k;
             if tangent.side[i] == Side::Outside {
-                (direction[k], chord[k], given[k]) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+                given[k] = [0.0; 2];
                 continue;
             }
             let q = state.q[i];
             let t = tangent.project(i, plus(z[i], beta, direction[k]));
             let moved = moved(tangent, problem.bound[i], i, q, t, f);
-            chord[k] = [(moved[0] - q[0]) / f, (moved[1] - q[1]) / f];
-            given[k] = plus(chord[k], 1.0 / f, debt[i]);
+            chord[k] = [inverse * (moved[0] - q[0]), inverse * (moved[1] - q[1])];
+            given[k] = plus(chord[k], inverse, debt[i]);
             direction[k] = t;
         }
         []

@@ -24,7 +24,7 @@ pub struct Solution {
 }
 
 /// What a solve found and what it cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// How well the conditions hold.
     pub certificate: Certificate,
@@ -37,10 +37,36 @@ pub struct Report {
     /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
     /// that are found count as given.
     pub sensitivities: Option<[[f64; 3]; 3]>,
+    /// mu N: the sum of the traction bounds, times the area of an element.
+    pub carried: f64,
+    /// Whether there were no tractions before.
+    pub from_rest: bool,
+    /// Force and creepages of the next coarser grid, in steady rolling from rest.
+    pub coarser: Option<(Vector, Vector)>,
+    /// Estimated errors of the force in each direction, or of the creepage where the force is prescribed; negative: not known.
+    pub error: Vector,
     /// Products of two components on all grids, in products on the finest.
     pub products: f64,
     /// Seconds, with the set-up of operators.
     pub seconds: f64,
+}
+
+impl Default for Report {
+    fn default() -> Report {
+        Report {
+            certificate: Certificate::default(),
+            force: [0.0; 2],
+            moment: 0.0,
+            creepage: [0.0; 2],
+            sensitivities: None,
+            carried: 0.0,
+            from_rest: false,
+            coarser: None,
+            error: [-1.0; 2],
+            products: 0.0,
+            seconds: 0.0,
+        }
+    }
 }
 
 /// The force of tractions, and their moment about `centre`, a place from the middle of the grid.

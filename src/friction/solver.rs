@@ -4,7 +4,7 @@ use super::certificate::Certificate;
 use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
-use super::nested::{self, Work};
+use super::nested::{self, Work, COARSE, COUNTS};
 use super::problem::{square, Problem, Scale};
 use super::sensitivity;
 use super::shift::Memory;
@@ -37,6 +37,8 @@ pub struct Request<'a> {
     pub sideways: Option<&'a [Vector]>,
     /// Whether this is the same step once more, with other pressures: it starts from the last result, and what was before stays.
     pub again: bool,
+    /// Whether errors are to be estimated.
+    pub estimates: bool,
 }
 
 /// Solves tangential problems on one grid and keeps what the next can use: operators of the box around C, and the tractions.
@@ -130,15 +132,18 @@ impl Solver {
         let window =
             Window::around(&self.grid, |i| pressure[i] > 0.0 || rolling.is_none() && before(kept, i) != [0.0; 2]);
         let mut end = Outcome::Converged;
-        let mut report = Report::default();
+        let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
             self.set_up(window, rolling)?;
             let had_slip = self.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
             let goal = (request.tolerance, request.limit);
-            let mut work = Work { products: 0.0, watch };
             let nested = from_rest && !request.again;
+            let compared = nested && request.estimates && rolling.is_some();
+            let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
             end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
             report.products = work.products;
+            report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
+            report.carried = self.levels[0].problem.bound.iter().sum::<f64>() * self.grid.element_area();
         }
         self.write(friction, pressure, window, &mut report);
         if friction.sensitivities {

@@ -89,13 +89,12 @@ pub fn even<T: Real>(
 ) -> Result<Option<Spectrum<T>>> {
     let (rows, columns) = (ColumnTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let (nb, half) = (px / 2 + 1, py / 2 + 1);
-    let mut scratch: Vec<(Vec<Complex<f64>>, Vec<Complex<f64>>)> = (0..threads.pieces())
-        .map(|_| {
-            let mut scratch = rows.scratch();
-            columns.fit(&mut scratch);
-            (vec![Complex::default(); px.max(py)], scratch)
-        })
-        .collect();
+    let piece = |_| {
+        let mut scratch = rows.scratch();
+        columns.fit(&mut scratch);
+        (vec![Complex::default(); px.max(py)], scratch)
+    };
+    let mut scratch: Vec<_> = (0..threads.pieces()).map(piece).collect();
     let mut in_x: Vec<Entry> = zeros(given.1 * nb, SPECTRUM)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {
         let row = &mut row[..px];

@@ -9,7 +9,7 @@
 //! States come from the natural map and not from |q| = g: that makes the iterations robust. On a circle of radius g the slope of the
 //! slip along the tangent is as if a layer of compliance D lay between the bodies.
 
-use super::certificate::{relative, rest, ON_THE_CIRCLE};
+use super::certificate::{relative, rest};
 use super::problem::{add, dot, plus, square, Problem, State};
 use super::vectors::{self, BLOCK};
 use super::Vector;
@@ -39,7 +39,7 @@ pub struct Tangent {
     pub normal: Vec<Vector>,
     /// D; 0 where nothing slips.
     pub curvature: Vec<f64>,
-    /// E of the preconditioner: 1 where nothing slips.
+    /// E of the preconditioner: 1 where C sticks.
     pub mixing: Vec<f64>,
     /// `P(-s)`.
     pub driving: Vec<Vector>,
@@ -72,7 +72,7 @@ impl Tangent {
 
     /// Predicts from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Sight {
-        let (u, a0) = (&state.u, problem.operators.self_influence);
+        let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
         let Tangent { side, normal, curvature, mixing, driving, .. } = self;
         let (sides, normals) = (side.chunks_mut(BLOCK), normal.chunks_mut(BLOCK));
         let (curvatures, mixings, drivings) =
@@ -84,24 +84,28 @@ impl Tangent {
                 for k in 0..side.len() {
                     let i = start + k;
                     let g = problem.bound[i];
-                    (curvature[k], mixing[k]) = (0.0, 1.0);
                     if !(g > 0.0) {
-                        (side[k], driving[k]) = (Side::Outside, [0.0; 2]);
+                        // Most have been there before.
+                        if side[k] != Side::Outside {
+                            (side[k], curvature[k], driving[k]) = (Side::Outside, 0.0, [0.0; 2]);
+                        }
                         continue;
                     }
                     let (q, s) = (state.q[i], problem.slip_at(i, u));
-                    let length = square(q).sqrt();
-                    squares += rest(s, q, length, length >= g * ON_THE_CIRCLE);
-                    excess += (length - g).max(0.0).powi(2);
+                    squares += rest(s, q, g);
+                    if square(q) > g * g {
+                        excess += (square(q).sqrt() - g).powi(2);
+                    }
                     rigid += square(add(problem.rigid[i], problem.offset));
                     displaced += square(u[i]);
                     let tau = plus(q, -rho, s);
-                    let reach = square(tau).sqrt();
                     (side[k], driving[k]) = (Side::Stick, [-s[0], -s[1]]);
-                    if reach > g {
-                        let n = [tau[0] / reach, tau[1] / reach];
+                    (curvature[k], mixing[k]) = (0.0, 1.0);
+                    if square(tau) > g * g {
+                        let reach = square(tau).sqrt();
+                        let n = tau.map(|tau| tau * (1.0 / reach));
                         slips += 1.0;
-                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, (reach / g - 1.0) / rho);
+                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, (reach / g - 1.0) * inverse_rho);
                         mixing[k] = 1.0 / (1.0 + MIXED * curvature[k] / a0);
                         driving[k] = plus([-s[0], -s[1]], dot(s, n), n);
                     }

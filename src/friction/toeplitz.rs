@@ -10,6 +10,9 @@
 //!
 //! Both components are one complex number, `qx + i qy`: one complex transform has the place of two real ones. A wave k is multiplied
 //! together with -k ([`spectrum`](super::spectrum) has the formulas), so a block of columns comes with its mirror image.
+//!
+//! Without Axy (a Poisson ratio of 0, a single row) a traction in one direction displaces in that direction only: then there is one real
+//! transform, half of the work, and the other component is exactly 0.
 
 use std::ops::Range;
 
@@ -21,7 +24,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 use crate::operator::columns::{for_each_mirrored_block, BLOCK};
-use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
+use crate::operator::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
 use crate::threads::Threads;
 
 /// Displacements at the centres.
@@ -32,30 +35,35 @@ const WORKSPACE: &str = "the workspace of tangential products";
 
 /// The operator of one grid.
 pub struct Toeplitz<T: Real> {
-    mx: usize,
-    my: usize,
+    pub(super) mx: usize,
+    pub(super) my: usize,
     rows: ColumnTransform<T>,
-    columns: ColumnTransform<T>,
-    spectrum: Spectrum<T>,
-    threads: Threads,
+    /// Of one component alone.
+    pub(super) real_rows: RowTransform<T>,
+    pub(super) columns: ColumnTransform<T>,
+    pub(super) spectrum: Spectrum<T>,
+    /// Whether there is no Axy.
+    is_uncoupled: bool,
+    pub(super) threads: Threads,
     /// Coefficients are kept in this unit, a power of two: single precision has a small range.
-    unit: f64,
+    pub(super) unit: f64,
 }
 
 /// Memory of products.
 #[derive(Default)]
 pub struct Workspace<T: Real> {
     /// `[my][px]`.
-    bins: Vec<Complex<T>>,
-    pieces: Vec<Piece<T>>,
+    pub(super) bins: Vec<Complex<T>>,
+    pub(super) pieces: Vec<Piece<T>>,
 }
 
 /// That of one piece of the work.
 #[derive(Default)]
-struct Piece<T: Real> {
-    columns: Vec<Complex<T>>,
+pub(super) struct Piece<T: Real> {
+    pub(super) row: Vec<T>,
+    pub(super) columns: Vec<Complex<T>>,
     mirrored: Vec<Complex<T>>,
-    scratch: Vec<Complex<T>>,
+    pub(super) scratch: Vec<Complex<T>>,
 }
 
 /// The power of two next to a value.
@@ -82,7 +90,7 @@ impl<T: Real> Toeplitz<T> {
     /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
     pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
         let quadrant = Quadrant::new(tangential, grid, by, threads)?;
-        Toeplitz::general(&quadrant, grid, |x, y| quadrant.displaced(x, y, by), threads)
+        Toeplitz::general((&quadrant, by), grid, |x, y| quadrant.displaced(x, y, by), threads)
     }
 
     /// Products with coefficients that were computed.
@@ -92,7 +100,7 @@ impl<T: Real> Toeplitz<T> {
         let unit = unit_of(quadrant.at(0, 0)[0]);
         let product = spectrum::even(period, (grid.mx, grid.my), fill, Kind::Direct, unit, threads)?;
         let spectrum = product.unwrap_or_else(|| unreachable!("only an inverse may not be"));
-        Ok(Toeplitz::with(grid, period, spectrum, unit, threads))
+        Ok(Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, HERE)), unit, threads))
     }
 
     /// See [`inverse`](Self::inverse).
@@ -108,7 +116,8 @@ impl<T: Real> Toeplitz<T> {
         };
         let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
         let inverse = spectrum::even(period, given, fill, Kind::Inverse, unit, threads)?;
-        Ok(inverse.map(|spectrum| Toeplitz::with(grid, period, spectrum, unit, threads)))
+        let uncoupled = quadrant.is_uncoupled(grid, HERE);
+        Ok(inverse.map(|spectrum| Toeplitz::with(grid, period, (spectrum, uncoupled), unit, threads)))
     }
 
     /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
@@ -117,12 +126,12 @@ impl<T: Real> Toeplitz<T> {
             let (here, there) = (quadrant.at(x, y), quadrant.displaced(x, y, by));
             [here[0] - there[0], here[1] - there[1], here[2] - there[2]]
         };
-        Toeplitz::general(quadrant, grid, fill, threads)
+        Toeplitz::general((quadrant, by), grid, fill, threads)
     }
 
     /// Of coefficients that are neither even nor odd: `fill(x, y)` gives that of an offset.
     fn general(
-        quadrant: &Quadrant,
+        (quadrant, by): (&Quadrant, (f64, f64)),
         grid: &Grid,
         fill: impl Fn(i64, i64) -> Entry + Sync + Send,
         threads: &Threads,
@@ -130,16 +139,24 @@ impl<T: Real> Toeplitz<T> {
         let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
         let unit = unit_of(quadrant.at(0, 0)[0]);
         let spectrum = spectrum::general(grid, period, fill, unit, threads)?;
-        Ok(Toeplitz::with(grid, period, spectrum, unit, threads))
+        Ok(Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, by)), unit, threads))
     }
 
-    fn with(grid: &Grid, (px, py): (usize, usize), spectrum: Spectrum<T>, unit: f64, threads: &Threads) -> Toeplitz<T> {
+    fn with(
+        grid: &Grid,
+        (px, py): (usize, usize),
+        (spectrum, is_uncoupled): (Spectrum<T>, bool),
+        unit: f64,
+        threads: &Threads,
+    ) -> Toeplitz<T> {
         Toeplitz {
             mx: grid.mx,
             my: grid.my,
             rows: ColumnTransform::new(px),
+            real_rows: RowTransform::new(px),
             columns: ColumnTransform::new(py),
             spectrum,
+            is_uncoupled,
             threads: threads.clone(),
             unit,
         }
@@ -157,7 +174,7 @@ impl<T: Real> Toeplitz<T> {
         };
         let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
         let periods = (self.rows.length(), self.columns.length());
-        Ok(Toeplitz::with(&grid, periods, spectrum, self.unit, &self.threads))
+        Ok(Toeplitz::with(&grid, periods, (spectrum, self.is_uncoupled), self.unit, &self.threads))
     }
 
     /// Memory for products by this operator.
@@ -165,9 +182,10 @@ impl<T: Real> Toeplitz<T> {
         let (px, py) = (self.rows.length(), self.columns.length());
         let piece = |_| {
             let mut scratch = self.rows.scratch();
+            self.real_rows.fit(&mut scratch);
             self.columns.fit(&mut scratch);
             let columns = vec![Complex::default(); BLOCK * py];
-            Piece { mirrored: columns.clone(), columns, scratch }
+            Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
         };
         Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.pieces()).map(piece).collect() })
     }
@@ -184,6 +202,12 @@ impl<T: Real> Toeplitz<T> {
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], workspace: &mut Workspace<T>) {
         let n = self.mx * self.my;
         assert!(q.len() == n && u.len() == n);
+        if self.is_uncoupled {
+            let is_zero = |component: usize| q.iter().all(|q| q[component] == 0.0);
+            if let Some(other) = [1, 0].into_iter().find(|&component| is_zero(component)) {
+                return self.apply_one(1 - other, q, unit, u, workspace);
+            }
+        }
         let (px, length) = (self.rows.length(), self.columns.length());
         let Workspace { bins, pieces } = workspace;
         let loaded = rows_with_traction(q, self.mx);
@@ -266,7 +290,7 @@ impl<T: Real> Toeplitz<T> {
 }
 
 /// The run of rows outside of which q is zero.
-fn rows_with_traction(q: &[Vector], mx: usize) -> Range<usize> {
+pub(super) fn rows_with_traction(q: &[Vector], mx: usize) -> Range<usize> {
     let loaded = |row: &[Vector]| row.iter().any(|q| *q != [0.0; 2]);
     let Some(first) = q.chunks_exact(mx).position(loaded) else { return 0..0 };
     let last = q.chunks_exact(mx).rposition(loaded).unwrap_or(first);

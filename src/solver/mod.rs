@@ -17,6 +17,7 @@ mod refinement;
 mod report;
 mod take_over;
 mod tangential;
+mod tangential_estimates;
 mod task;
 
 use std::sync::Arc;
@@ -349,6 +350,10 @@ impl Solver {
         let (rows, outline) = (&mut ledger.rows, &ledger.outline);
         (report.limit, report.halving) = estimates::estimate(rows, &self.problem, &self.state, outline, seconds);
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
+        let alike = self.friction.as_ref().is_some_and(|tangent| tangent.is_of_like_bodies());
+        if let (Some(friction), Some(found), true) = (&scene.friction, &mut report.friction, alike) {
+            found.error = tangential_estimates::estimate(&self.problem, &self.state, &ledger.outline, friction, found);
+        }
     }
 
     /// The result: pressures, displacements, contact area and approach.

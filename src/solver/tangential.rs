@@ -4,7 +4,9 @@ use super::{Measures, Options, Outcome, ProgressCallback};
 use crate::contact::State;
 use crate::effects::Previous;
 use crate::error::{invalid, Error, Result};
-use crate::friction::{Compliance, Coupling, Report, Request, Solution, Solver, Tangential, Vector};
+use crate::friction::{
+    Compliance, Coupling, CrossTables, Report, Request, Solution, Solver, Source, Tangential, Vector,
+};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::operator::Precision;
@@ -24,7 +26,7 @@ pub struct Tangent {
 
 /// What unlike bodies need beside: see [`Coupling`].
 struct Coupled {
-    unlike: f64,
+    source: Source,
     here: Coupling,
     /// Of rolling: at the places before the step, which are so many elements away.
     there: Option<((f64, f64), Coupling)>,
@@ -58,7 +60,11 @@ impl Tangent {
         };
         let compliance = tangential.compliance();
         let solver = Solver::new(scene.grid, tangential, options.precision != Precision::Double, threads);
-        let coupled = (compliance.unlike != 0.0).then(|| Coupled::new(&scene.grid, compliance.unlike, threads));
+        let source = match &own {
+            Some(own) => CrossTables::new(own)?.map(Source::Tables),
+            None => Some(compliance.unlike).filter(|unlike| *unlike != 0.0).map(Source::HalfSpace),
+        };
+        let coupled = source.map(|source| Coupled::new(&scene.grid, source, threads));
         Ok(Tangent { solver, coupled: coupled.transpose()? })
     }
 
@@ -69,7 +75,18 @@ impl Tangent {
 
     /// Whether it has the coefficients that a scene asks for.
     pub fn suits(&self, friction: &Friction<'_>) -> bool {
-        self.solver.tangential().are_of(friction.influence.as_ref())
+        let cross = self.coupled.as_ref().map(|coupled| &coupled.source);
+        let has_cross = match (cross, &friction.influence) {
+            (Some(Source::Tables(tables)), Some(influence)) => tables.are_of(influence),
+            (_, Some(influence)) => influence.cross.is_none(),
+            _ => true,
+        };
+        has_cross && self.solver.tangential().are_of(friction.influence.as_ref())
+    }
+
+    /// Whether tractions do not change the pressures.
+    pub fn is_of_like_bodies(&self) -> bool {
+        self.coupled.is_none()
     }
 
     /// There is no last result any more.
@@ -101,6 +118,7 @@ impl Tangent {
             limit: turn.options.max_cycles as u64,
             sideways: coupled.as_ref().map(|coupled| &coupled.sideways[..]),
             again,
+            estimates: turn.options.estimates,
         };
         solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
     }
@@ -205,11 +223,11 @@ pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
 }
 
 impl Coupled {
-    fn new(grid: &Grid, unlike: f64, threads: &Threads) -> Result<Coupled> {
+    fn new(grid: &Grid, source: Source, threads: &Threads) -> Result<Coupled> {
         let n = grid.len();
         Ok(Coupled {
-            unlike,
-            here: Coupling::new(grid, unlike, (0.0, 0.0), threads)?,
+            here: Coupling::new(grid, &source, (0.0, 0.0), threads)?,
+            source,
             there: None,
             sideways: zeros(n, FIELDS)?,
             along_normal: zeros(n, FIELDS)?,
@@ -235,7 +253,7 @@ impl Coupled {
         }
         let by = friction.elements_rolled(&scene.grid);
         if !self.there.as_ref().is_some_and(|(known, _)| *known == by) {
-            self.there = Some((by, Coupling::new(&scene.grid, self.unlike, by, threads)?));
+            self.there = Some((by, Coupling::new(&scene.grid, &self.source, by, threads)?));
         }
         if let Some((_, there)) = &mut self.there {
             there.add_sideways(before, -1.0, &mut self.sideways);

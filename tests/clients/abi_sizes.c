@@ -66,6 +66,7 @@ int main(void)
     OFFSET(contact_normal_friction, influence_scale);
     OFFSET(contact_normal_friction, sensitivities);
     OFFSET(contact_normal_friction, reserved);
+    OFFSET(contact_normal_friction, influence_cross);
     SIZE(contact_normal_scene);
     OFFSET(contact_normal_scene, struct_size);
     OFFSET(contact_normal_scene, mx);
@@ -190,6 +191,7 @@ int main(void)
     OFFSET(contact_normal_report, tangential_products);
     OFFSET(contact_normal_report, tangential_seconds);
     OFFSET(contact_normal_report, sensitivities);
+    OFFSET(contact_normal_report, error_tangential);
     SIZE(contact_normal_friction_results);
     OFFSET(contact_normal_friction_results, struct_size);
     OFFSET(contact_normal_friction_results, force);

@@ -132,6 +132,7 @@ fn the_effects() {
         "subsurface",
         "friction",
         "creep_forces",
+        "own_tables",
     ] {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
@@ -262,7 +263,7 @@ fn c_and_rust_agree_on_every_struct() {
         contact_normal_friction {
             struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
             rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip,
-            influence, influence_cx, influence_cy, influence_scale, sensitivities, reserved
+            influence, influence_cx, influence_cy, influence_scale, sensitivities, reserved, influence_cross
         }
         contact_normal_scene {
             struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus, poisson_ratio, load, reserved,
@@ -290,7 +291,7 @@ fn c_and_rust_agree_on_every_struct() {
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure, untrusted, limited_by,
             halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,
             tangential_residual, tangential_gap, stick_count, slip_count, tangential_products, tangential_seconds,
-            sensitivities
+            sensitivities, error_tangential
         }
         contact_normal_friction_results {
             struct_size, force, moment, creepage, residual, gap, products, stick_count, slip_count, status, traction, slip,

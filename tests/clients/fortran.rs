@@ -95,6 +95,7 @@ fn the_effects_print_what_is_expected() {
         "subsurface",
         "friction",
         "creep_forces",
+        "own_tables",
     ] {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
@@ -234,7 +235,7 @@ fn derived_types_are_laid_out_as_the_structs() {
         contact_normal_row_tables: struct_size, cx, rows, coefficients, scale;
         contact_normal_friction: struct_size, coefficient, coefficients, motion, continues, prescribed, creepage, spin, spin_centre, force,
             rolling_distance, rolling_direction, spin_offset, previous_traction, rigid_slip,
-            influence, influence_cx, influence_cy, influence_scale, sensitivities, reserved;
+            influence, influence_cx, influence_cy, influence_scale, sensitivities, reserved, influence_cross;
         contact_normal_scene: struct_size, mx, my, dx, dy, undeformed_distance, shear_modulus,
             poisson_ratio, load, reserved, approach, force, influence, layer, pressure_limit, period,
             patches, row_tables, coating, friction;
@@ -254,7 +255,7 @@ fn derived_types_are_laid_out_as_the_structs() {
             ledger_rows, ledger_capacity, ledger, corrected_area, error_corrected_area, error_pressure,
             untrusted, limited_by, halved_seconds, halved_error_force, edge_count, tolerance, tangential_force, tangential_moment, creepage,
             tangential_residual, tangential_gap, stick_count, slip_count, tangential_products, tangential_seconds,
-            sensitivities;
+            sensitivities, error_tangential;
         contact_normal_accuracy: struct_size, target, max_seconds, max_bytes, max_elements, surface,
             user, mx, my, dx, dy, reached, seconds, max_pressure_target, contact_area_target;
         contact_normal_price: target, error, tolerance, seconds, seconds_one_thread, bytes, mx, my, dx, dy,

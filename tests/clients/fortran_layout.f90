@@ -90,6 +90,7 @@ program fortran_layout
   call show("contact_normal_friction.influence_scale", c_loc(friction%influence_scale))
   call show("contact_normal_friction.sensitivities", c_loc(friction%sensitivities))
   call show("contact_normal_friction.reserved", c_loc(friction%reserved))
+  call show("contact_normal_friction.influence_cross", c_loc(friction%influence_cross))
 
   base = place(c_loc(scene))
   print '(a, i0)', "contact_normal_scene ", c_sizeof(scene)
@@ -226,6 +227,7 @@ program fortran_layout
   call show("contact_normal_report.tangential_products", c_loc(report%tangential_products))
   call show("contact_normal_report.tangential_seconds", c_loc(report%tangential_seconds))
   call show("contact_normal_report.sensitivities", c_loc(report%sensitivities))
+  call show("contact_normal_report.error_tangential", c_loc(report%error_tangential))
 
   base = place(c_loc(accuracy))
   print '(a, i0)', "contact_normal_accuracy ", c_sizeof(accuracy)

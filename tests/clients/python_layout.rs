@@ -67,7 +67,8 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         influence_cy,
         influence_scale,
         sensitivities,
-        reserved
+        reserved,
+        influence_cross
     );
     layout!(ours, "Coating", contact_normal_coating, struct_size, thickness, shear_modulus, poisson_ratio);
     layout!(ours, "RowTables", contact_normal_row_tables, struct_size, cx, rows, coefficients, scale);
@@ -196,7 +197,8 @@ fn ctypes_structs_have_the_layout_of_the_library() {
         slip_count,
         tangential_products,
         tangential_seconds,
-        sensitivities
+        sensitivities,
+        error_tangential
     );
     layout!(
         ours,

@@ -103,7 +103,15 @@ fn forces_that_friction_cannot_carry_are_refused() {
     };
     let solve = |friction: &Friction<'_>| {
         solver(&grid, 0.3).solve(
-            &Request { pressure: &g, friction, tolerance: 1e-6, limit: 1000, sideways: None, again: false },
+            &Request {
+                pressure: &g,
+                friction,
+                tolerance: 1e-6,
+                limit: 1000,
+                sideways: None,
+                again: false,
+                estimates: false,
+            },
             &mut |_, _| true,
         )
     };
@@ -143,8 +151,15 @@ fn a_callback_cancels_wherever_it_is_told() {
     let (grid, g) = disc(64, |_, _| true);
     let friction =
         Friction { prescribed: [Prescribed::Creepage(-0.3), Prescribed::Creepage(0.1)], ..Friction::new(1.0) };
-    let request =
-        Request { pressure: &g, friction: &friction, tolerance: 1e-6, limit: 1000, sideways: None, again: false };
+    let request = Request {
+        pressure: &g,
+        friction: &friction,
+        tolerance: 1e-6,
+        limit: 1000,
+        sideways: None,
+        again: false,
+        estimates: false,
+    };
     let mut total = 0;
     solver(&grid, 0.3)
         .solve(&request, &mut |_, _| {

@@ -5,6 +5,7 @@ mod cattaneo;
 mod coefficients;
 mod conditions;
 mod effects;
+mod estimates;
 mod linear_theory;
 mod onset_of_rolling;
 mod rolling;

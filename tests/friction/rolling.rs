@@ -78,6 +78,7 @@ fn previous_tractions_may_be_given_or_kept() {
         limit: 100,
         sideways: None,
         again: false,
+        estimates: false,
     };
     assert!(solver(&grid, 0.3).solve(&nothing, &mut |_, _| true).is_err());
 }

@@ -18,7 +18,8 @@ pub fn solver(grid: &Grid, nu: f64) -> Solver {
 
 /// Solves, and must converge.
 pub fn run(solver: &mut Solver, g: &[f64], friction: &Friction<'_>, tolerance: f64) -> (Report, Solution) {
-    let request = Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false };
+    let request =
+        Request { pressure: g, friction, tolerance, limit: 1000, sideways: None, again: false, estimates: false };
     let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
     assert_eq!(end, Outcome::Converged, "{friction:?} {report:?}");
     (report, solver.solution().unwrap().clone())

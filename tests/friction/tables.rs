@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use contact_normal::error::Error;
+use contact_normal::friction::cross::integrals;
 use contact_normal::friction::{Compliance, Solution, Tangential};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
@@ -23,7 +24,11 @@ fn ball(mx: usize, my: usize) -> (Grid, Vec<f64>) {
 
 /// Three tables, divided by `scale`, which is a power of two.
 fn tables(grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
-    let tangential = Tangential::new(grid.dx, grid.dy, Compliance::of(&STEEL));
+    tables_of(&STEEL, grid, scale)
+}
+
+fn tables_of(bodies: &Bodies, grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
+    let tangential = Tangential::new(grid.dx, grid.dy, Compliance::of(bodies));
     let (cx, cy) = (grid.mx + BEYOND, grid.my + BEYOND);
     let offset = |k: usize, c: usize| (k % (2 * c)) as f64 - c as f64;
     [0, 1, 2].map(|component| {
@@ -34,7 +39,7 @@ fn tables(grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
 
 fn influence<'a>(grid: &Grid, tables: &'a [Vec<f64>; 3], scale: f64) -> TangentialInfluence<'a> {
     let coefficients = [&tables[0][..], &tables[1][..], &tables[2][..]];
-    TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my + BEYOND, coefficients, scale }
+    TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my + BEYOND, coefficients, cross: None, scale }
 }
 
 fn pushed() -> Friction<'static> {
@@ -101,6 +106,47 @@ fn own_coefficients_of_both_problems_need_no_bodies() {
     for (a, b) in known.friction().unwrap().traction.iter().zip(&found.friction().unwrap().traction) {
         // Pressures of two kernels of the same coefficients, each to a residual of 1e-8.
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-5 * 0.3 * 900.0 / grid.element_area() / 100.0, "{a:?} {b:?}");
+    }
+}
+
+/// Steel on something soft.
+const UNLIKE: Bodies = Bodies { shear_modulus: [82000.0, 10000.0], poisson_ratio: [0.28, 0.2] };
+
+/// Axz and Ayz of the half-space.
+fn cross_tables(grid: &Grid) -> [Vec<f64>; 2] {
+    let unlike = Compliance::of(&UNLIKE).unlike;
+    let (cx, cy) = ((grid.mx + BEYOND) as i64, (grid.my + BEYOND) as i64);
+    [0, 1].map(|component| {
+        let offsets = (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx as f64, ky as f64)));
+        offsets.map(|(x, y)| -unlike / PI * integrals(x, y, grid.dx, grid.dy)[component]).collect()
+    })
+}
+
+#[test]
+fn tables_of_unlike_half_spaces_give_what_these_give() {
+    let (grid, h) = ball(20, 18);
+    let scene = Scene::new(grid, &h, UNLIKE, Load::Force(900.0));
+    let (tables, [xz, yz]) = (tables_of(&UNLIKE, &grid, 1.0), cross_tables(&grid));
+    let own = TangentialInfluence { cross: Some([&xz, &yz]), ..influence(&grid, &tables, 1.0) };
+    let known = solved(&scene, None, 1e-8);
+    let found = solved(&scene, Some(own), 1e-8);
+    for (known, found) in known.iter().zip(&found) {
+        // The same numbers in the same order.
+        assert_eq!(known.traction, found.traction);
+    }
+    // And without what couples them the tractions are others.
+    let like = solved(&Scene { bodies: STEEL, ..scene.clone() }, Some(influence(&grid, &tables, 1.0)), 1e-8);
+    assert_ne!(like[0].traction, found[0].traction);
+    let (mut even, good) = (xz.clone(), &yz);
+    let middle = (grid.my + BEYOND) * 2 * (grid.mx + BEYOND) + grid.mx + BEYOND;
+    even[middle + 3] = -even[middle + 3];
+    for (cross, words) in
+        [([&even[..], good], "(xz)"), ([&xz[..], &xz[..]], "(yz)"), ([&xz[..], &[]], "(yz) has 0 values")]
+    {
+        let own = TangentialInfluence { cross: Some(cross), ..own };
+        let friction = Some(Friction { influence: Some(own), ..pushed() });
+        let error = solve(&Scene { friction, ..scene.clone() }, &Options::default()).err().unwrap().to_string();
+        assert!(error.contains(words), "{error} ({words})");
     }
 }
 

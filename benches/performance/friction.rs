@@ -1,0 +1,50 @@
+//! A shift with friction: the tangential problem beside the normal one, and by two threads beside one.
+
+use contact_normal::scene::{Bodies, Friction, Prescribed, Scene};
+use contact_normal::solver::{solve, Options};
+
+use super::case::{ellipse, rough, Case};
+use super::measure::{cold, in_turns, median, shown};
+
+const MU: f64 = 0.3;
+const TOLERANCE: f64 = 1e-4;
+
+/// Whole cold calls, a shift to half of mu N: of `threads` threads and of one, in turns.
+pub fn shifts(threads: usize, sizes: &[usize]) {
+    println!(
+        "\n## A shift to half of mu N, tolerance {TOLERANCE:.0e}, whole cold calls, 1 and {threads} threads in turns"
+    );
+    println!(
+        "| problem | products | normal alone | with friction | {threads} threads | times faster: friction alone |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|");
+    for &m in sizes {
+        row(&ellipse(m), threads);
+        // Like bodies of the same E*: otherwise both problems are solved in turns.
+        row(&Case { bodies: Bodies::same(0.7, 0.3), ..rough(m) }, threads);
+    }
+}
+
+fn row(case: &Case, threads: usize) {
+    let plain = case.scene();
+    let options = |threads| Options { tolerance: TOLERANCE, threads, ..Options::default() };
+    let (_, _, normal) = solve(&plain, &options(1)).expect("a solution");
+    let force = 0.5 * MU * normal.measures.force;
+    let pushed = Friction { prescribed: [Prescribed::Force(force), Prescribed::Force(0.0)], ..Friction::new(MU) };
+    let with = |friction| Scene { friction: Some(friction), ..plain.clone() };
+    let (_, _, report) = solve(&with(pushed), &options(1)).expect("a solution");
+    let creepage = report.friction.expect("friction").creepage;
+    let shifted = with(Friction { prescribed: creepage.map(Prescribed::Creepage), ..Friction::new(MU) });
+    let products = solve(&shifted, &options(1)).expect("a solution").2.friction.expect("friction").products;
+    let call = |scene: &Scene<'_>, threads: usize| {
+        cold(scene, &options(threads));
+    };
+    let times =
+        in_turns(&mut [&mut || call(&plain, 1), &mut || call(&shifted, 1), &mut || call(&plain, threads), &mut || {
+            call(&shifted, threads)
+        }]);
+    let [alone, one, alone_by_more, more] = [0, 1, 2, 3].map(|k| median(&times[k]));
+    let ratio = (one - alone) / (more - alone_by_more);
+    let columns = [alone, one, more].map(shown).join(" | ");
+    println!("| {} | {products:.1} | {columns} | {ratio:.2} |", case.name);
+}

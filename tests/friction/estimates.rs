@@ -1,0 +1,114 @@
+//! The estimated errors of tangential forces beside the true ones, of Cattaneo's ball and of one that rolls.
+
+use contact_normal::friction::Report;
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
+use contact_normal::solver::{solve, Options, Outcome};
+
+const MU: f64 = 0.3;
+const RADIUS: f64 = 100.0;
+
+/// A ball with a contact radius of 1 on m x m elements, off the middle of an element, pressed down and moved; its mu N is returned, too.
+fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
+    let d = 2.37 / m as f64;
+    let grid = Grid::new(m, m, d, d).unwrap();
+    // In elements, somewhere between the centres.
+    let off = [0.31 * d * (((m * 7) % 5) as f64 - 2.0) / 2.0, 0.23 * d * (((m * 3) % 5) as f64 - 2.0) / 2.0];
+    let place = |i: usize, k: usize| (i as f64 - 0.5 * (m - 1) as f64) * d + off[k];
+    let h: Vec<f64> =
+        (0..m * m).map(|i| (place(i % m, 0).powi(2) + place(i / m, 1).powi(2)) / (2.0 * RADIUS)).collect();
+    let force = 4.0 / (3.0 * (1.0 - nu) * RADIUS);
+    let friction = friction(MU * force, off.map(|off| -off));
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(1.0, nu), Load::Force(force)) };
+    let options = Options { estimates: true, tolerance: 1e-7, ..Options::default() };
+    let (_, stop, report) = solve(&scene, &options).unwrap();
+    assert_eq!(stop, Outcome::Converged);
+    (report.friction.unwrap(), MU * force)
+}
+
+/// The median of estimated over true.
+fn median(mut ratios: Vec<f64>) -> f64 {
+    ratios.sort_by(f64::total_cmp);
+    ratios[ratios.len() / 2]
+}
+
+const SIZES: [usize; 8] = [16, 20, 24, 32, 40, 48, 64, 96];
+
+#[test]
+fn the_error_of_cattaneos_force_or_shift_is_covered() {
+    let mut ratios = Vec::new();
+    for m in SIZES {
+        for part in [0.1, 0.5, 0.9] {
+            // delta = (3 mu N/(8 a)) (2 - nu)/(2 G) 2 (1 - (1 - F/(mu N))^(2/3)), both bodies, nu = 0, G = 1, a = 1.
+            let shift = |carried: f64| 0.75 * carried * (1.0 - (1.0 - part as f64).powf(2.0 / 3.0));
+            let (found, carried) = moved(m, 0.0, |carried, _| Friction {
+                prescribed: [Prescribed::Creepage(-shift(carried)), Prescribed::Creepage(0.0)],
+                ..Friction::new(MU)
+            });
+            let error = (found.force[0] - part * carried).abs();
+            assert!(error <= found.error[0], "{m}, {part}: {error:e}, estimated {:e}", found.error[0]);
+            assert!(found.force[1].abs() <= found.error[1]);
+            ratios.push(found.error[0] / error);
+            let (found, carried) = moved(m, 0.0, |carried, _| Friction {
+                prescribed: [Prescribed::Force(part * carried), Prescribed::Force(0.0)],
+                ..Friction::new(MU)
+            });
+            let error = (found.creepage[0] + shift(carried)).abs();
+            assert!(error <= found.error[0], "{m}, {part}: {error:e} of the shift, estimated {:e}", found.error[0]);
+            ratios.push(found.error[0] / error);
+        }
+    }
+    let median = median(ratios);
+    println!("estimated over true, median: {median}");
+    assert!(median <= 10.0, "{median}");
+}
+
+#[test]
+fn the_error_of_a_rolling_balls_force_or_creepage_is_covered() {
+    let nu = 0.28;
+    let saturating = MU * 2.0 / ((1.0 - nu) * RADIUS);
+    let mut ratios = Vec::new();
+    for (part, spin) in [(0.15, 0.0), (0.6, 0.0), (1.2, 0.5)] {
+        let [xi, eta] = [-saturating * part, 0.3 * saturating * part];
+        let rolls = |m: usize, prescribed: [Prescribed; 2]| {
+            moved(m, nu, |_, centre| Friction {
+                motion: Motion::SteadyRolling,
+                prescribed,
+                spin: spin * saturating,
+                spin_centre: centre,
+                ..Friction::new(MU)
+            })
+        };
+        let by_creepages = [Prescribed::Creepage(xi), Prescribed::Creepage(eta)];
+        // Of first order: extrapolated from two grids, some hundredth of the errors looked at.
+        let [coarse, fine] = [128, 256].map(|m| rolls(m, by_creepages).0.force);
+        let exact = [0, 1].map(|k| 2.0 * fine[k] - coarse[k]);
+        // The estimate needs a coarser grid: 24 elements across the contact.
+        for m in [32, 40, 48, 64, 80] {
+            let (found, carried) = rolls(m, by_creepages);
+            for k in 0..2 {
+                let error = (found.force[k] - exact[k]).abs();
+                assert!(error <= found.error[k], "{m}, {part}: {error:e}, estimated {:e}", found.error[k]);
+                ratios.push(found.error[k] / error);
+            }
+            if spin == 0.0 && exact[0].hypot(exact[1]) < 0.9 * carried {
+                let (found, _) = rolls(m, exact.map(Prescribed::Force));
+                for (k, given) in [xi, eta].into_iter().enumerate() {
+                    let error = (found.creepage[k] - given).abs();
+                    assert!(error <= found.error[k], "{m}, {part}: {error:e}, estimated {:e}", found.error[k]);
+                    ratios.push(found.error[k] / error);
+                }
+            }
+        }
+    }
+    let median = median(ratios);
+    println!("estimated over true, median: {median}");
+    assert!(median <= 10.0, "{median}");
+}
+
+#[test]
+fn errors_of_steps_that_continue_are_not_known() {
+    let given = |motion| move |_: f64, _: [f64; 2]| Friction { motion, ..Friction::new(MU) };
+    let (found, _) = moved(24, 0.0, given(Motion::TransientRolling));
+    assert_eq!(found.error, [-1.0; 2]);
+}
