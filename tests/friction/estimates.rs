@@ -38,9 +38,9 @@ const SIZES: [usize; 8] = [16, 20, 24, 32, 40, 48, 64, 96];
 fn the_error_of_cattaneos_force_or_shift_is_covered() {
     let mut ratios = Vec::new();
     for m in SIZES {
-        for part in [0.1, 0.5, 0.9] {
+        for part in [0.1_f64, 0.5, 0.9] {
             // delta = (3 mu N/(8 a)) (2 - nu)/(2 G) 2 (1 - (1 - F/(mu N))^(2/3)), both bodies, nu = 0, G = 1, a = 1.
-            let shift = |carried: f64| 0.75 * carried * (1.0 - (1.0 - part as f64).powf(2.0 / 3.0));
+            let shift = |carried: f64| 0.75 * carried * (1.0 - (1.0 - part).powf(2.0 / 3.0));
             let (found, carried) = moved(m, 0.0, |carried, _| Friction {
                 prescribed: [Prescribed::Creepage(-shift(carried)), Prescribed::Creepage(0.0)],
                 ..Friction::new(MU)
@@ -86,8 +86,8 @@ fn the_error_of_a_rolling_balls_force_or_creepage_is_covered() {
         // The estimate needs a coarser grid: 24 elements across the contact.
         for m in [32, 40, 48, 64, 80] {
             let (found, carried) = rolls(m, by_creepages);
-            for k in 0..2 {
-                let error = (found.force[k] - exact[k]).abs();
+            for (k, exact) in exact.into_iter().enumerate() {
+                let error = (found.force[k] - exact).abs();
                 assert!(error <= found.error[k], "{m}, {part}: {error:e}, estimated {:e}", found.error[k]);
                 ratios.push(found.error[k] / error);
             }
