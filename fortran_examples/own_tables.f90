@@ -63,6 +63,7 @@ program own_tables
     print '(a, f7.4, a, i0, a, i0, a)', merge("own tables: Fx/(mu N)", "half-space: Fx/(mu N)", own == 1), &
       report%tangential_force(1)/(0.3_dp*report%force), ", ", report%stick_count, " elements stick, ", report%slip_count, " slip"
   end do
+  deallocate (h, qx, qy, tables, scene, friction)
 
 contains
 
