@@ -11,7 +11,7 @@
 //! projection between steps (Alart and Curnier 1991; Christensen 2002).
 
 use super::certificate::scale;
-use super::fgmres::{self, Bordered};
+use super::fgmres::{self, Bordered, Until};
 use super::forces::{sum_of_both, sum_of_bounds, Forces};
 use super::problem::{add, plus, square, Problem, State};
 use super::shift::Goal;
@@ -29,6 +29,12 @@ const ENOUGH: f64 = 0.5;
 /// It and rho are cut by this when steps bring nothing, down to the least.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
+/// Directions of a linear solve. Where steps bring nothing, as many as it has unknowns solve it whatever the preconditioner: so many
+/// elements of them together may be kept.
+const DIRECTIONS: usize = 40;
+const KEPT: usize = 1 << 21;
+/// Steps then go this part of their way, every other time: two sets of slipping elements may follow each other for ever.
+const PART: f64 = 0.5;
 /// Steps without the residual falling to this part of its least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
@@ -95,11 +101,26 @@ pub fn solve(
         }
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(ENOUGH));
-        step(problem, state, tangent, (forces, enough), fields)?;
+        let is_stuck = factor < 1.0;
+        let most =
+            if is_stuck { (KEPT / state.q.len()).min(2 * problem.count() + 2).max(DIRECTIONS) } else { DIRECTIONS };
+        let effort = Effort { inner: enough, most, length: if cuts % 2 == 1 { PART } else { 1.0 } };
+        step(problem, state, tangent, (forces, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
         }
     }
+}
+
+/// What a step does.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    /// The residual of the linear solve, relative.
+    inner: f64,
+    /// Its directions at most.
+    most: usize,
+    /// How much of the step is taken.
+    length: f64,
 }
 
 /// One step.
@@ -107,15 +128,20 @@ fn step(
     problem: &mut Problem,
     state: &mut State,
     tangent: &Tangent,
-    (forces, inner): (Forces, f64),
+    (forces, effort): (Forces, Effort),
     fields: &mut Fields,
 ) -> Result<()> {
     let (n, threads) = (state.q.len(), problem.threads().clone());
     let stiff = problem.rms_bound() * compliance(problem);
     let slips = scale(problem, state);
-    let saturating = if slips > 0.0 { slips } else { stiff };
     let border_weight = match forces.any() {
-        true => (saturating / sum_of_bounds(problem)).powi(2) * problem.count() as f64,
+        true => {
+            let bounds = sum_of_bounds(problem);
+            let part = square(forces.sum).sqrt() / bounds;
+            let slips = slips.max(part * stiff);
+            let slips = if slips > 0.0 { slips } else { stiff };
+            (slips / bounds).powi(2) * problem.count() as f64
+        }
         false => 0.0,
     };
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
@@ -145,17 +171,17 @@ fn step(
         border = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
     }
     let driving = vectors::dot(&threads, &tangent.driving, &tangent.driving);
-    let target = inner * driving.max(border_weight * square(border)).sqrt();
+    let target = effort.inner * driving.max(border_weight * square(border)).sqrt();
     let r = Bordered { field: r, border };
-    let found = fgmres::solve(&mut system, r, (target, border_weight), &threads, fields)?;
+    let found = fgmres::solve(&mut system, r, (Until { target, most: effort.most }, border_weight), &threads, fields)?;
     let mut gained = Bordered { field: gained, border: [0.0; 2] };
     found.add_to(&mut gained, &mut product, &threads, fields);
     system.give(fields);
-    vectors::add_all(&threads, &mut state.q, &[(1.0, &gained.field)]);
-    vectors::add_all(&threads, &mut state.u, &[(1.0, &product)]);
+    vectors::add_all(&threads, &mut state.q, &[(effort.length, &gained.field)]);
+    vectors::add_all(&threads, &mut state.u, &[(effort.length, &product)]);
     fields.give(gained.field);
     fields.give(product);
-    problem.offset = add(problem.offset, forces.only_given(gained.border));
+    problem.offset = plus(problem.offset, effort.length, forces.only_given(gained.border));
     state.is_exact = false;
     Ok(())
 }
