@@ -32,6 +32,7 @@ mod shift;
 mod solution;
 mod solver;
 mod spectrum;
+mod step;
 mod system;
 mod tables;
 mod tangent;
