@@ -27,8 +27,8 @@ const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.2;
 /// The last step need not be solved further than to this part of the tolerance, and what starts the next one does the rest, from
 /// residuals below that part of it.
-const ENOUGH: f64 = 1.25;
-const NEAR: f64 = 1.6;
+const ENOUGH: f64 = 0.9;
+const NEAR: f64 = 1.3;
 /// But always to this part.
 const LEAST_GAIN: f64 = 0.5;
 /// It and rho are cut by this when steps bring nothing, down to the least.
