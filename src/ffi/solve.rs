@@ -156,7 +156,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     if stop == Outcome::Stagnated {
         let (largest, round_off) = state.map_or((0.0, 0.0), round_off);
         // What the products and the distances lose together is some multiples of it.
-        if residual <= 100.0 * round_off {
+        if residual > report.tolerance && residual <= 100.0 * round_off {
             message += &format!(
                 ", about the round-off of distances of order {largest:.0e}: a larger tolerance, or distances measured from nearer"
             );

@@ -28,9 +28,6 @@ pub trait System {
     fn direction(&mut self, v: &Bordered, fields: &mut Fields) -> Result<(Direction, Bordered)>;
 }
 
-/// Directions at most.
-const MOST: usize = 40;
-
 /// What was found: `x = sum_j y_j z_j`.
 #[derive(Default)]
 pub struct Combination {
@@ -48,11 +45,20 @@ struct Triangle {
     rest: Vec<f64>,
 }
 
-/// Solves `H x = r` until the residual is at most `target`; `weight`: of borders in the inner product.
+/// Until when.
+#[derive(Clone, Copy, Debug)]
+pub struct Until {
+    /// The residual is at most this.
+    pub target: f64,
+    /// Or there are so many directions.
+    pub most: usize,
+}
+
+/// Solves `H x = r`; `weight`: of borders in the inner product.
 pub fn solve(
     system: &mut dyn System,
     mut r: Bordered,
-    (target, weight): (f64, f64),
+    (Until { target, most }, weight): (Until, f64),
     threads: &Threads,
     fields: &mut Fields,
 ) -> Result<Combination> {
@@ -67,7 +73,7 @@ pub fn solve(
     scale(threads, &mut r, 1.0 / norm);
     let mut basis = vec![r];
     let mut triangle = Triangle { rest: vec![norm], ..Triangle::default() };
-    while found.directions.len() < MOST && norm > target {
+    while found.directions.len() < most && norm > target {
         let (direction, mut w) = system.direction(&basis[basis.len() - 1], fields)?;
         let (column, left) = orthogonalise(threads, &mut w, &basis, weight);
         found.directions.push(direction);

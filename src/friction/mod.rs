@@ -35,6 +35,7 @@ mod shift;
 mod solution;
 mod solver;
 mod spectrum;
+mod step;
 mod system;
 mod tables;
 mod tangent;

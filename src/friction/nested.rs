@@ -4,7 +4,6 @@ use super::forces::Forces;
 use super::levels::{interpolate, restrict, Level};
 use super::newton;
 use super::shift::{self, Goal};
-use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Outcome;
@@ -15,9 +14,6 @@ pub const COARSE: f64 = 1e-3;
 pub const COUNTS: f64 = 1e-4;
 /// Iterations at most on each of them.
 const COARSE_LIMIT: u64 = 60;
-/// With forces given, the coarsest grid is solved with these parts of the load first, to this residual.
-const PARTS: [f64; 2] = [0.5, 0.8];
-const PART: f64 = 3e-2;
 
 /// What is counted, and who is told.
 pub struct Work<'a> {
@@ -47,13 +43,6 @@ pub fn solve(
             let part = level.problem.grid.len() as f64 / finest;
             let area = level.problem.grid.element_area() / finest_area;
             let forces = forces.times(1.0 / area);
-            if l + 1 == levels.len() && forces.any() {
-                let end = approach(&mut levels[l], forces, part, work)?;
-                if end == Outcome::Cancelled {
-                    return Ok(end);
-                }
-            }
-            let level = &mut levels[l];
             let coarse = if l == 1 { work.coarse } else { COARSE };
             let end = one(level, forces, forces.any(), (tolerance.max(coarse), COARSE_LIMIT), part, work)?;
             if end == Outcome::Cancelled {
@@ -67,24 +56,6 @@ pub fn solve(
     }
     let level = &mut levels[0];
     one(level, forces, forces.any() || mostly_slips, (tolerance, limit), 1.0, work)
-}
-
-/// Forces that are given are brought on in parts, on the coarsest grid.
-fn approach(level: &mut Level, forces: Forces, part: f64, work: &mut Work<'_>) -> Result<Outcome> {
-    let mut before = 1.0;
-    for load in PARTS.into_iter().chain([1.0]) {
-        let scale = |v: &mut Vector| *v = v.map(|v| v * (load / before));
-        level.problem.slip.iter_mut().for_each(scale);
-        level.problem.rigid.iter_mut().for_each(scale);
-        before = load;
-        if load < 1.0 {
-            let end = one(level, forces.times(load), true, (PART, COARSE_LIMIT), part, work)?;
-            if end == Outcome::Cancelled {
-                return Ok(end);
-            }
-        }
-    }
-    Ok(Outcome::Converged)
 }
 
 /// Solves one grid from what it holds: by gradients, and where they stall or forces are given by Newton's method.

@@ -8,7 +8,7 @@
 //!
 //! with B for A in steady rolling. Sums of dq and of its moments are the derivatives.
 
-use super::fgmres::{self, Bordered};
+use super::fgmres::{self, Bordered, Until};
 use super::forces::Forces;
 use super::problem::{Problem, State};
 use super::system::TangentSystem;
@@ -19,7 +19,9 @@ use crate::error::Result;
 
 /// The residual of the linear solves, relative.
 const TOLERANCE: f64 = 1e-5;
-/// Restarts at most: each takes the directions of one call.
+/// Directions of one call.
+const DIRECTIONS: usize = 40;
+/// Restarts at most.
 const MOST_CALLS: usize = 10;
 
 /// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.
@@ -40,6 +42,7 @@ pub fn solve(
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
     let first = vectors::dot(&threads, &r, &r).sqrt();
+    let until = Until { target: TOLERANCE * first, most: DIRECTIONS };
     let mut x = Bordered { field: fields.take(n)?, border: [0.0; 2] };
     x.field.fill([0.0; 2]);
     let mut product = fields.take(n)?;
@@ -54,7 +57,7 @@ pub fn solve(
         let mut given = fields.take(n)?;
         given.copy_from_slice(&r);
         let given = Bordered { field: given, border: [0.0; 2] };
-        let found = fgmres::solve(&mut system, given, (TOLERANCE * first, 0.0), &threads, fields)?;
+        let found = fgmres::solve(&mut system, given, (until, 0.0), &threads, fields)?;
         found.add_to(&mut gained, &mut product, &threads, fields);
         vectors::add_all(&threads, &mut x.field, &[(1.0, &gained.field)]);
         system.subtract(&gained, &product, &mut r);

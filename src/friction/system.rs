@@ -21,7 +21,7 @@ const SINGULAR: f64 = 1e-8;
 /// The system, at the state that the tangent predicts.
 pub struct TangentSystem<'a> {
     pub problem: &'a mut Problem,
-    tangent: &'a Tangent,
+    pub tangent: &'a Tangent,
     forces: Forces,
     /// Y, and the inverse of S.
     border: [Vec<Vector>; 2],
@@ -78,13 +78,23 @@ impl<'a> TangentSystem<'a> {
             return Ok(Bordered { field: z, border: [0.0; 2] });
         }
         let sum = sum_of(self.problem, &z);
-        let rest = self.forces.only_given([sum[0] - r.border[0], sum[1] - r.border[1]]);
+        let border = self.creepages([sum[0] - r.border[0], sum[1] - r.border[1]]);
+        self.balance(border, &mut z);
+        Ok(Bordered { field: z, border })
+    }
+
+    /// dc, for what sums have too much.
+    pub fn creepages(&self, too_much: Vector) -> Vector {
+        let rest = self.forces.only_given(too_much);
         let [upper, lower] = self.inverse;
-        let c = [upper[0] * rest[0] + upper[1] * rest[1], lower[0] * rest[0] + lower[1] * rest[1]];
+        [upper[0] * rest[0] + upper[1] * rest[1], lower[0] * rest[0] + lower[1] * rest[1]]
+    }
+
+    /// `z -= Y dc`.
+    pub fn balance(&self, creepages: Vector, z: &mut [Vector]) {
         let terms: Vec<(f64, &[Vector])> =
-            c.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
-        vectors::add_all(self.problem.threads(), &mut z, &terms);
-        Ok(Bordered { field: z, border: c })
+            creepages.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
+        vectors::add_all(self.problem.threads(), z, &terms);
     }
 
     /// `H` of a vector, whose field was multiplied by A.

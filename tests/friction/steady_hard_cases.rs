@@ -1,5 +1,7 @@
 //! Steady rolling where it is hard: extreme creepages and forces, gaps, one row, many patches; cancelled anywhere.
 
+use std::f64::consts::PI;
+
 use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
@@ -113,6 +115,45 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
             let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
             assert!(solution.traction.iter().all(|q| *q == [0.0; 2]) && report.creepage == [0.0; 2], "{name}");
         }
+    }
+}
+
+/// The slip that the creepage suggests is smaller by many orders than that of the force.
+#[test]
+fn a_force_beside_a_creepage_of_another_order_is_met() {
+    let (grid, g) = disc(12, |_, _| true);
+    let carried = g.iter().sum::<f64>() * grid.element_area();
+    for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+        for creepage in [1e-6, 1e-11, 1e-20] {
+            for part in [2e-3, 0.5, 0.9] {
+                let prescribed = [Prescribed::Creepage(-creepage), Prescribed::Force(part * carried)];
+                let friction = Friction { motion, prescribed, ..Friction::new(1.0) };
+                let (report, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
+                let left = residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; grid.len()], (&report, &solution));
+                assert!(left <= 1.001e-6, "{motion:?}, {creepage}, {part}: {left}");
+                assert!((report.force[1] - part * carried).abs() <= 1e-6 * carried, "{motion:?}, {creepage}, {part}");
+            }
+        }
+    }
+}
+
+/// Elements four times as long as wide, and a step of a quarter of one: the preconditioner is far from the operator, which is hardly
+/// positive definite at the first Poisson ratio and not at the second.
+#[test]
+fn short_steps_on_long_elements_are_solved() {
+    for (nu, creepage) in [(0.2, [3e-2, -2e-2]), (0.3, [3e-2, -2e-2]), (0.2, [0.2, 0.1])] {
+        let grid = Grid::new(13, 10, 3.0 / 13.0, 1.0).unwrap();
+        let g: Vec<f64> = (0..grid.len())
+            .map(|i| {
+                let (x, y) = ((i % 13) as f64 / 6.5 - 12.0 / 13.0, (i / 13) as f64 / 5.0 - 0.9);
+                (1.1 - x * x - y * y).max(0.0).sqrt()
+            })
+            .collect();
+        let (rolling_distance, rolling_direction) = (0.25, PI / 2.0);
+        let friction = Friction { rolling_distance, rolling_direction, ..rolling(creepage, 0.0) };
+        let found = run(&mut solver(&grid, nu), &g, &friction, 1e-6);
+        let left = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
+        assert!(left <= 1.001e-6, "{nu} {creepage:?}: {left}");
     }
 }
 

@@ -1,0 +1,155 @@
+//! One step of Newton's method (see [`newton`](super::newton)).
+//!
+//! It starts with the way to the circles and a part of what the preconditioner says, so that forces that are given are met:
+//!
+//! ```text
+//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/2/(1 + D/(10 a0)),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
+//! ```
+//!
+//! Where the curvature D dominates M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
+
+use super::certificate::scale;
+use super::fgmres::{self, Bordered, Until};
+use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
+use super::problem::{add, plus, square, Problem, State};
+use super::system::TangentSystem;
+use super::tangent::{Side, Tangent};
+use super::vectors::{self, Fields};
+use super::Vector;
+use crate::error::Result;
+
+/// theta where nothing slips, and how fast it comes to 1 with D.
+const LEAST_THETA: f64 = 0.5;
+const TURNED: f64 = 0.1;
+
+/// What a step does.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// The residual of the linear solve, relative.
+    pub inner: f64,
+    /// Its directions at most.
+    pub most: usize,
+    /// How much of the step is taken.
+    pub length: f64,
+}
+
+/// What a step starts with.
+struct Start {
+    /// `x0 + z1`.
+    gained: Vec<Vector>,
+    /// z1.
+    along: Vec<Vector>,
+    /// dc.
+    by: Vector,
+}
+
+/// What tractions on all of C displace by, and in steady rolling in a step, where near and far tractions cancel, those on one element.
+pub fn compliance(problem: &Problem) -> f64 {
+    let own = problem.operators.self_influence;
+    match problem.operators.rolling {
+        Some(_) => own,
+        None => own * (problem.count().max(1) as f64).sqrt(),
+    }
+}
+
+impl Start {
+    fn new(system: &mut TangentSystem<'_>, state: &State, forces: Forces, fields: &mut Fields) -> Result<Start> {
+        let (n, threads, tangent) = (state.q.len(), system.problem.threads().clone(), system.tangent);
+        let mut along = fields.take(n)?;
+        system.precondition_field(&tangent.driving, &mut along);
+        let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
+        vectors::map(&threads, &mut along, |i, z| {
+            let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + TURNED * tangent.curvature[i] / a0);
+            z.map(|z| theta * z)
+        });
+        let mut gained = fields.take(n)?;
+        vectors::fill(&threads, &mut gained, |i| {
+            if tangent.side[i] != Side::Slip {
+                return along[i];
+            }
+            let (g, normal, q) = (bound[i], tangent.normal[i], state.q[i]);
+            add([g * normal[0] - q[0], g * normal[1] - q[1]], along[i])
+        });
+        let mut by = [0.0; 2];
+        if forces.any() {
+            let sum = sum_of_both(system.problem, &state.q, &gained);
+            let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
+            by = system.creepages(missing.map(|value| -value));
+            system.balance(by, &mut along);
+            system.balance(by, &mut gained);
+        }
+        Ok(Start { gained, along, by })
+    }
+}
+
+/// Only what a step starts with, feasible to the last bit, and a fresh product of it.
+pub fn polish(
+    problem: &mut Problem,
+    state: &mut State,
+    tangent: &Tangent,
+    forces: Forces,
+    fields: &mut Fields,
+) -> Result<()> {
+    let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
+    let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
+    system.give(fields);
+    vectors::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
+    problem.offset = add(problem.offset, by);
+    [gained, along].into_iter().for_each(|field| fields.give(field));
+    problem.refresh(state);
+    Ok(())
+}
+
+/// The square of what forces weigh beside the field of slips: as much as the slip that goes with them.
+fn border_weight(problem: &Problem, state: &State, forces: Forces) -> f64 {
+    if !forces.any() {
+        return 0.0;
+    }
+    let (bounds, stiff) = (sum_of_bounds(problem), problem.rms_bound() * compliance(problem));
+    let slips = scale(problem, state).max(square(forces.sum).sqrt() / bounds * stiff);
+    let slips = if slips > 0.0 { slips } else { stiff };
+    (slips / bounds).powi(2) * problem.count() as f64
+}
+
+/// One step.
+pub fn step(
+    problem: &mut Problem,
+    state: &mut State,
+    tangent: &Tangent,
+    (forces, effort): (Forces, Effort),
+    fields: &mut Fields,
+) -> Result<()> {
+    let (n, threads) = (state.q.len(), problem.threads().clone());
+    let weight = border_weight(problem, state, forces);
+    let sum = sum_of(problem, &state.q);
+    let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
+    let driving = vectors::dot(&threads, &tangent.driving, &tangent.driving);
+    let target = effort.inner * driving.max(weight * square(missing)).sqrt();
+    let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
+    let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
+    let mut product = fields.take(n)?;
+    system.multiply(&gained, &mut product);
+    let mut r = fields.take(n)?;
+    vectors::fill(&threads, &mut r, |i| {
+        let left = plus(tangent.driving[i], -1.0, tangent.project_inside(i, add(product[i], by)));
+        plus(left, -tangent.curvature[i], along[i])
+    });
+    fields.give(along);
+    let mut border = [0.0; 2];
+    if forces.any() {
+        let sum = sum_of_both(system.problem, &state.q, &gained);
+        border = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
+    }
+    let (r, until) = (Bordered { field: r, border }, Until { target, most: effort.most });
+    let found = fgmres::solve(&mut system, r, (until, weight), &threads, fields)?;
+    let mut gained = Bordered { field: gained, border: by };
+    found.add_to(&mut gained, &mut product, &threads, fields);
+    system.give(fields);
+    vectors::add_all(&threads, &mut state.q, &[(effort.length, &gained.field)]);
+    vectors::add_all(&threads, &mut state.u, &[(effort.length, &product)]);
+    fields.give(gained.field);
+    fields.give(product);
+    problem.offset = plus(problem.offset, effort.length, forces.only_given(gained.border));
+    state.is_exact = false;
+    Ok(())
+}
