@@ -312,7 +312,7 @@ fn any_enters<S: AdmissibleSet>(set: S, h: &[f64], u: &[f64], contact: &[bool], 
     let (blocks_h, blocks_u, blocks_c) = (h.chunks_exact(BLOCK), u.chunks_exact(BLOCK), contact.chunks_exact(BLOCK));
     let mut any = exactly(blocks_h.remainder(), blocks_u.remainder(), blocks_c.remainder());
     for ((h, u), contact) in blocks_h.zip(blocks_u).zip(blocks_c) {
-        if contact.iter().fold(true, |all, inside| all & inside) {
+        if *contact == [true; BLOCK] {
             continue;
         }
         let signs = h.iter().zip(u).fold(0, |signs, (h, u)| signs | (h - approach + u).to_bits());
