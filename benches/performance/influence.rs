@@ -1,8 +1,9 @@
 //! What another table of coefficients costs on a handle (CONTACT's step): the call itself, and with what the next solve computes of it.
 
-use contact_normal::influence::Table;
-use contact_normal::scene::Scene;
-use contact_normal::solver::{Options, Outcome, Solver};
+use contact_normal::grid::Grid;
+use contact_normal::influence::{RowTables, Table};
+use contact_normal::scene::{Bodies, Load, Scene};
+use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
 
 use crate::case::{ellipse, Case};
 use crate::measure::{in_turns, median, shown, Product};
@@ -59,4 +60,44 @@ fn row(case: &Case, name: &str, skew: f64) {
         (both - alone) / product,
         if both - alone <= AT_MOST * product { "met" } else { "MISSED" }
     );
+}
+
+/// Columns and rows of the groove, and what a call may take.
+const COLUMNS: usize = 60;
+const ROWS: usize = 100;
+const GROOVE: f64 = 5e-3;
+
+/// A call with a table for each loaded row, from the solution: the tables are copied, checked and transformed.
+pub fn row_tables() {
+    let grid = Grid::new(COLUMNS, ROWS, 0.2, 0.1).expect("a grid");
+    let half_space =
+        Scene::new(grid, &[], Bodies::same(82000.0, 0.28), Load::Approach(0.0)).coefficients().expect("them");
+    let (rows, columns) = (ROWS as i64, COLUMNS as i64);
+    let pairs = (0..rows).flat_map(|jy| (0..rows).map(move |iy| (jy, iy)));
+    let offsets = pairs.flat_map(|(jy, iy)| (-columns..columns).map(move |kx| (jy, iy, kx)));
+    // The body is a little more compliant to one side.
+    let values: Vec<f64> = offsets
+        .map(|(jy, iy, kx)| (1.0 + 1e-3 * (jy + iy) as f64 / rows as f64) * half_space.at(kx, iy - jy))
+        .collect();
+    let centre = |i: usize, m: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
+    let place = |i: usize| (centre(i % COLUMNS, COLUMNS, grid.dx), centre(i / COLUMNS, ROWS, grid.dy));
+    let h: Vec<f64> = (0..grid.len()).map(place).map(|(x, y)| 0.003 * x * x + 0.004 * y * y).collect();
+    let mut scene = Scene::new(grid, &h, Bodies::same(82000.0, 0.28), Load::Approach(0.02));
+    let new = || Some(RowTables::new(COLUMNS, ROWS, &values, &grid).expect("tables"));
+    scene.row_tables = new();
+    let options = Options { threads: 1, ..Options::default() };
+    let mut first = Solver::new(&scene, &options).expect("a solver");
+    assert_eq!(first.solve(&scene, &options, None, None).expect("a solution").0, Outcome::Converged);
+    let guess = Guess { pressure: &first.state().p, contact: &first.state().contact };
+    let given = Options { initial_guess: InitialGuess::Given, ..options };
+    let times = in_turns(&mut [&mut || {
+        scene.row_tables = new();
+        let mut solver = Solver::new(&scene, &given).expect("a solver");
+        let (stop, _) = solver.solve(&scene, &given, Some(guess), None).expect("a solution");
+        assert_eq!(stop, Outcome::Converged);
+    }]);
+    let call = median(&times[0]);
+    let mark = if call <= GROOVE { "met" } else { "MISSED" };
+    println!("\n### A call with tables of {ROWS} rows, {COLUMNS} columns, from the solution\n");
+    println!("{}, at most {}: {mark}.", shown(call), shown(GROOVE));
 }

@@ -80,6 +80,7 @@ fn main() {
     measure::by_processor(processor);
     if wanted("influence") {
         influence::another_table(sizes);
+        influence::row_tables();
     }
     if wanted("force") {
         targets::force_against_approach(1);

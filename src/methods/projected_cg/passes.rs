@@ -274,11 +274,7 @@ impl<T: Real> Iteration<T> {
             if factor != 1.0 {
                 u.iter_mut().for_each(|u| *u *= factor);
             }
-            // Most rows have no element that enters, and this the compiler can vectorise.
-            let mut any = false;
-            for ((h, u), inside) in h[row.clone()].iter().zip(&*u).zip(&contact[row.clone()]) {
-                any |= set.enters(false, h - approach + *u) & !inside;
-            }
+            let mut any = any_enters(set, &h[row.clone()], u, &contact[row.clone()], approach);
             if limited {
                 for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
                     any |= set.enters(true, h - approach + *u) & at_limit;
@@ -304,6 +300,25 @@ impl<T: Real> Iteration<T> {
         }
         entered
     }
+}
+
+/// Whether an element enters. Of most blocks none does, because all are in contact or none penetrates: both the compiler can vectorise.
+fn any_enters<S: AdmissibleSet>(set: S, h: &[f64], u: &[f64], contact: &[bool], approach: f64) -> bool {
+    const BLOCK: usize = 8;
+    let exactly = |h: &[f64], u: &[f64], contact: &[bool]| {
+        let elements = h.iter().zip(u).zip(contact);
+        elements.fold(false, |any, ((h, u), inside)| any | (set.enters(false, h - approach + u) & !inside))
+    };
+    let (blocks_h, blocks_u, blocks_c) = (h.chunks_exact(BLOCK), u.chunks_exact(BLOCK), contact.chunks_exact(BLOCK));
+    let mut any = exactly(blocks_h.remainder(), blocks_u.remainder(), blocks_c.remainder());
+    for ((h, u), contact) in blocks_h.zip(blocks_u).zip(blocks_c) {
+        if *contact == [true; BLOCK] {
+            continue;
+        }
+        let signs = h.iter().zip(u).fold(0, |signs, (h, u)| signs | (h - approach + u).to_bits());
+        any |= signs >> 63 == 1 && exactly(h, u, contact);
+    }
+    any
 }
 
 /// Element i leaves C for a bound; `rises`: its pressure does. Returns what it gains.
