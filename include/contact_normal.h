@@ -1604,8 +1604,8 @@ void contact_normal_friction_results_init(struct contact_normal_friction_results
  unlike bodies the tractions do not change the pressures.
 
  As many entries are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in a row
- are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results have the same bits for any
- number of threads.
+ are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results have
+ the same bits for any number of threads.
 
  An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
  status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
@@ -1720,9 +1720,9 @@ void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *ou
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
  tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
  this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
- `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
- (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
- left alone. Since 0.2.
+ `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED.
+ Of the options (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written,
+ others are left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,

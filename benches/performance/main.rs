@@ -3,7 +3,8 @@
 //! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
 //!
 //! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
-//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet. Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods friction.
+//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet.
+//! Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods friction.
 
 mod case;
 mod dense;

@@ -95,6 +95,7 @@ impl AdmissibleSet for PressureLimit<'_> {
         PressureLimit::PerElement(limits)
     }
 
+    #[inline]
     fn limit(&self, i: usize) -> f64 {
         self.at(i)
     }

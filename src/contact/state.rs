@@ -48,7 +48,8 @@ pub struct State {
 }
 
 impl State {
-    /// Of the undeformed distance h; pressures and displacements are not known yet. `estimate` is the approach to start from when the force is prescribed.
+    /// Of the undeformed distance h; pressures and displacements are not known yet. `estimate` is the approach to start from when the force
+    /// is prescribed.
     pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
         let n = grid.len();
         let approach = match load {

@@ -25,6 +25,7 @@ pub enum PressureLimit<'a> {
 
 impl PressureLimit<'_> {
     /// Of element i.
+    #[inline]
     pub fn at(&self, i: usize) -> f64 {
         match self {
             PressureLimit::Uniform(limit) => *limit,

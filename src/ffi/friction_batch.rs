@@ -65,8 +65,8 @@ pub unsafe extern "C" fn contact_normal_friction_results_init(results: *mut cont
 /// unlike bodies the tractions do not change the pressures.
 ///
 /// As many entries are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in a row
-/// are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results have the same bits for any
-/// number of threads.
+/// are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results have
+/// the same bits for any number of threads.
 ///
 /// An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
 /// status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused

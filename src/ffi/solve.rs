@@ -40,7 +40,8 @@ pub(super) struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays must live as long as the result is used.
+    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
+    /// must live as long as the result is used.
     pub unsafe fn read<'a>(
         scene: *const contact_normal_scene,
         options: *const contact_normal_options,

@@ -22,9 +22,9 @@ use crate::threads::Threads;
 /// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
 /// tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
 /// this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
-/// `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options
-/// (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are
-/// left alone. Since 0.2.
+/// `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED.
+/// Of the options (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written,
+/// others are left alone. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(
     scene: *const contact_normal_scene,

@@ -209,7 +209,8 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     means
 }
 
-/// The sum of 1/rho over the images of one line but the near ones, `along` its period of the given length and `across` it; the mean along it of the whole sum is `2/L log(W/across)`.
+/// The sum of 1/rho over the images of one line but the near ones, `along` its period of the given length and `across` it; the mean along
+/// it of the whole sum is `2/L log(W/across)`.
 ///
 /// ```text
 /// sum over n of 1/rho_n - [n != 0]/|n L|    has the mean 2/L (log(2 L/across) - gamma)

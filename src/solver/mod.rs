@@ -12,6 +12,7 @@ mod friction_batch;
 mod iterate;
 mod methods;
 mod nested;
+mod normal;
 mod options;
 mod refinement;
 mod report;
@@ -19,6 +20,7 @@ mod take_over;
 mod tangential;
 mod tangential_estimates;
 mod task;
+mod turns;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -36,22 +38,18 @@ pub use refinement::{
 pub use report::{Halving, Limit, Report};
 pub use tangential::solve_tangential;
 
-use crate::contact::{self, AdmissibleSet, Fixed, Freshness, NonNegative, State, Survey};
+use crate::contact::{self, Freshness, State};
 use crate::effects::{self, Effect, Named};
 use crate::error::{invalid, Result};
 use crate::friction;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
-use crate::memory::{blank, reserve, zeros};
+use crate::memory::blank;
 use crate::progress::Monitor;
-use crate::scene::{Load, PressureLimit, Scene};
+use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 use methods::Methods;
-use tangential::{Tangent, Turn};
-use task::Task;
-
-/// Turns of the normal and the tangential problem of unlike bodies at most: each brings them together by 4 to 30 times.
-const MOST_TURNS: u32 = 50;
+use tangential::Tangent;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -183,159 +181,6 @@ impl Solver {
         Ok((stop, report))
     }
 
-    /// With limits, of which a copy is made: a callback may write into the caller's.
-    fn run_limited(
-        &mut self,
-        scene: &Scene<'_>,
-        limit: PressureLimit<'_>,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
-        let n = self.state.p.len();
-        if self.state.at_limit.is_empty() {
-            self.state.at_limit = zeros(n, "elements at their limit")?;
-        }
-        let mut limits = std::mem::take(&mut self.limits);
-        let set = match limit {
-            PressureLimit::Uniform(_) => limit,
-            PressureLimit::PerElement(given) => {
-                limits.clear();
-                reserve(&mut limits, n, "pressure limits")?;
-                limits.extend_from_slice(given);
-                PressureLimit::PerElement(&limits)
-            }
-        };
-        let mut outcome = self.run(scene, set, options, guess, monitor);
-        // An element that e hardly holds at its limit is there by the rounding of an equal pressure.
-        let on_the_way = self.state.reached_limit && {
-            let scale = Survey::of(&self.state).scale;
-            let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
-            !(0..n).any(|i| self.state.at_limit[i] && held(i))
-        };
-        let converged = matches!(outcome, Ok((Outcome::Converged, _)));
-        if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
-            // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
-            monitor.ledger.rows.clear();
-            monitor.enter_grid();
-            outcome = self.run(scene, NonNegative, options, guess, monitor);
-            if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
-                monitor.ledger.rows.clear();
-                monitor.enter_grid();
-                outcome = self.run(scene, set, options, guess, monitor);
-            }
-        }
-        self.limits = limits;
-        outcome
-    }
-
-    /// Solves on an admissible set. Returns the tolerance that was aimed at, too.
-    fn run<S: AdmissibleSet>(
-        &mut self,
-        scene: &Scene<'_>,
-        set: S,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
-        let Solver { problem, state, methods, set_up, has_result, .. } = self;
-        let multigrid = set_up.without_multigrid.is_none();
-        let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
-        // What was solved before is gone from here on, unless this solve comes to an end.
-        let solved = std::mem::replace(has_result, false);
-        if options.initial_guess != InitialGuess::Previous || !solved {
-            methods.projected_cg.forget_windows();
-        }
-        if !solved {
-            methods.projected_cg.forget_solutions();
-        }
-        let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
-        let mut task = Task { problem, state, set, goal: options.goal(), monitor };
-        let stop = if take_over::is_without_contact(task.state, S::FIXED) {
-            Outcome::Converged
-        } else {
-            methods.solve(&mut task, from, stages, options.error_ratio)?
-        };
-        let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
-        *has_result = true;
-        task.monitor.close_grid(task.state);
-        Ok((stop, task.goal.tolerance))
-    }
-
-    /// The normal problem, on the set of pressures that the scene allows.
-    fn solve_normal(
-        &mut self,
-        scene: &Scene<'_>,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
-        match scene.pressure_limit {
-            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, monitor),
-            None => self.run(scene, NonNegative, options, guess, monitor),
-            Some(limit) => self.run_limited(scene, limit, options, guess, monitor),
-        }
-    }
-
-    /// The tangential problem, if the scene has friction. Of unlike bodies normal and tangential problem are solved in turns until the
-    /// tractions do not change the normal one any more (Panagiotopoulos 1975).
-    fn solve_friction(
-        &mut self,
-        scene: &Scene<'_>,
-        options: &Options,
-        stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, Option<friction::Report>)> {
-        let mut kept = self.friction.take();
-        let Some(friction) = scene.friction.as_ref() else {
-            if let Some(before) = &mut kept {
-                before.forget();
-            }
-            self.friction = kept;
-            return Ok((stop, None));
-        };
-        let threads = self.problem.threads.clone();
-        let mut tangent = match kept {
-            Some(kept) if kept.suits(friction) => kept,
-            _ => Box::new(Tangent::new(scene, options, &threads)?),
-        };
-        let turn = Turn { scene, friction, options, threads: &threads };
-        let outcome = self.take_turns(&mut tangent, &turn, stop, monitor);
-        if outcome.is_ok() {
-            tangent.keep_pressures(&self.state.p);
-        }
-        self.friction = Some(tangent);
-        outcome.map(|(stop, found)| (stop, Some(found)))
-    }
-
-    fn take_turns(
-        &mut self,
-        tangent: &mut Tangent,
-        turn: &Turn<'_>,
-        mut stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, friction::Report)> {
-        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, false, monitor)?;
-        let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
-        for _ in 0..MOST_TURNS {
-            let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
-                return Ok((worse(stop, tangential_stop), found));
-            };
-            if change <= turn.options.tolerance || worse(stop, tangential_stop) != Outcome::Converged {
-                return Ok((worse(stop, tangential_stop), found));
-            }
-            monitor.ledger.rows.pop();
-            monitor.enter_grid();
-            let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
-            (stop, _) = self.solve_normal(&scene, &options, None, monitor)?;
-            let (products, seconds) = (found.products, found.seconds);
-            (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, true, monitor)?;
-            (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
-        }
-        log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");
-        Ok((worse(Outcome::Stagnated, tangential_stop), found))
-    }
-
     /// Tractions, slip and stick area of the last result; none if its scene had no friction.
     pub fn friction(&self) -> Option<&friction::Solution> {
         self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
@@ -409,14 +254,5 @@ impl Solver {
         let limits = self.limits.len() * size_of::<f64>();
         let friction = self.friction.as_ref().map_or(0, |friction| friction.bytes());
         self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction
-    }
-}
-
-/// What is to be said of two solves.
-fn worse(one: Outcome, other: Outcome) -> Outcome {
-    if one == Outcome::Converged {
-        other
-    } else {
-        one
     }
 }

@@ -10,8 +10,8 @@ use crate::threads::Threads;
 /// centre at `((ix + 1/2) dx, (iy + 1/2) dy)`; z is the depth. `out` has one tensor per point.
 ///
 /// # Errors
-/// `Unsupported`: a period; `InvalidArgument`: a negative depth, or a point on the edge of an element at the surface, where stresses jump or are infinite;
-/// otherwise as [`subsurface_stress`](super::subsurface_stress).
+/// `Unsupported`: a period; `InvalidArgument`: a negative depth, or a point on the edge of an element at the surface, where stresses jump
+/// or are infinite; otherwise as [`subsurface_stress`](super::subsurface_stress).
 pub fn stress_at_points(
     body: &Body,
     loads: &Loads<'_>,

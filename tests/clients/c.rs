@@ -5,7 +5,9 @@ use std::mem::{offset_of, size_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::support::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed};
+use crate::support::{
+    assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed, EXAMPLES_OF_EFFECTS,
+};
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
@@ -122,18 +124,7 @@ fn time_steps() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects() {
-    for name in [
-        "layer",
-        "pressure_limit",
-        "period",
-        "patches",
-        "row_tables",
-        "coating",
-        "subsurface",
-        "friction",
-        "creep_forces",
-        "own_tables",
-    ] {
+    for name in EXAMPLES_OF_EFFECTS {
         let folder = scratch(&format!("c_{name}"));
         let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
         let printed = run_linked(&program, &[], &folder);

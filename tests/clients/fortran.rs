@@ -4,7 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::support::{assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch};
+use crate::support::{
+    assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, EXAMPLES_OF_EFFECTS,
+};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
 
@@ -85,18 +87,7 @@ fn wheel_rail_prints_what_is_expected() {
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
-    for name in [
-        "layer",
-        "pressure_limit",
-        "period",
-        "patches",
-        "row_tables",
-        "coating",
-        "subsurface",
-        "friction",
-        "creep_forces",
-        "own_tables",
-    ] {
+    for name in EXAMPLES_OF_EFFECTS {
         let folder = scratch(&format!("fortran_{name}"));
         let program = compile(&format!("fortran_examples/{name}.f90"), &["-O2"], &folder);
         let expected =

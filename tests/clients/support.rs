@@ -10,6 +10,20 @@ use contact_normal::influence::Coefficients;
 use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
+/// The examples of effects, the same in C and Fortran; each prints what its file `.expected` holds.
+pub const EXAMPLES_OF_EFFECTS: [&str; 10] = [
+    "layer",
+    "pressure_limit",
+    "period",
+    "patches",
+    "row_tables",
+    "coating",
+    "subsurface",
+    "friction",
+    "creep_forces",
+    "own_tables",
+];
+
 /// The project's root.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

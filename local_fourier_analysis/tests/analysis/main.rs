@@ -165,8 +165,8 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
 
 /// Gauss-Seidel's sums along a row are cut off where the contact area ends, in the mean a quarter of a row away, and never
 /// farther than a row: so the factors lie between those for a quarter of the elements across and for all of them. 2%: of the
-/// shortest waves the area holds those up to pi (1 - 1/n), which changes what is even about pi by about (pi/n)^2/2. Red-black order leaves 1 - const/A of the longest wave, which on a square may be 1.25 of what the
-/// analysis has (see the test of Jacobi).
+/// shortest waves the area holds those up to pi (1 - 1/n), which changes what is even about pi by about (pi/n)^2/2. Red-black order leaves
+/// 1 - const/A of the longest wave, which on a square may be 1.25 of what the analysis has (see the test of Jacobi).
 #[test]
 fn cycles_converge_by_the_factors_of_the_analysis() {
     let grid = Grid::new(32, 32, 1.0, 1.0).unwrap();

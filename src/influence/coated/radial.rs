@@ -10,7 +10,8 @@
 //! `(9 + sqrt 80)^-14 = 3e-18`, of a function that is `w^-5/2` near 0; which quarter is in the bits of w, and M is an integral of it,
 //! `rho drho = dw/2`. Below rho = 2 they are those of F_1, beyond of F_B0.
 //!
-//! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with L the distance of the nearest pole of B, 1/s say, the Taylor coefficients of B serve:
+//! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with L the distance of the nearest pole of B, 1/s say, the Taylor
+//! coefficients of B serve:
 //!
 //! ```text
 //! F_B0 = -B2/rho^3 + 9 B4/rho^5 - 225 B6/rho^7 + 11025 B8/rho^9 - 893025 B10/rho^11

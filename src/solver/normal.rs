@@ -1,0 +1,107 @@
+//! The normal problem of a scene, on the set of pressures that it allows.
+
+use super::methods;
+use super::take_over;
+use super::task::Task;
+use super::{Guess, InitialGuess, Options, Solver};
+use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
+use crate::error::Result;
+use crate::memory::{reserve, zeros};
+use crate::progress::{Monitor, Outcome};
+use crate::scene::{PressureLimit, Scene};
+
+impl Solver {
+    /// The normal problem, on the set of pressures that the scene allows.
+    pub(super) fn solve_normal(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, f64)> {
+        match scene.pressure_limit {
+            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, monitor),
+            None => self.run(scene, NonNegative, options, guess, monitor),
+            Some(limit) => self.run_limited(scene, limit, options, guess, monitor),
+        }
+    }
+
+    /// With limits, of which a copy is made: a callback may write into the caller's.
+    fn run_limited(
+        &mut self,
+        scene: &Scene<'_>,
+        limit: PressureLimit<'_>,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, f64)> {
+        let n = self.state.p.len();
+        if self.state.at_limit.is_empty() {
+            self.state.at_limit = zeros(n, "elements at their limit")?;
+        }
+        let mut limits = std::mem::take(&mut self.limits);
+        let set = match limit {
+            PressureLimit::Uniform(_) => limit,
+            PressureLimit::PerElement(given) => {
+                limits.clear();
+                reserve(&mut limits, n, "pressure limits")?;
+                limits.extend_from_slice(given);
+                PressureLimit::PerElement(&limits)
+            }
+        };
+        let mut outcome = self.run(scene, set, options, guess, monitor);
+        // An element that e hardly holds at its limit is there by the rounding of an equal pressure.
+        let on_the_way = self.state.reached_limit && {
+            let scale = Survey::of(&self.state).scale;
+            let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
+            !(0..n).any(|i| self.state.at_limit[i] && held(i))
+        };
+        let converged = matches!(outcome, Ok((Outcome::Converged, _)));
+        if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
+            // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
+            monitor.ledger.rows.clear();
+            monitor.enter_grid();
+            outcome = self.run(scene, NonNegative, options, guess, monitor);
+            if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
+                monitor.ledger.rows.clear();
+                monitor.enter_grid();
+                outcome = self.run(scene, set, options, guess, monitor);
+            }
+        }
+        self.limits = limits;
+        outcome
+    }
+
+    /// Solves on an admissible set. Returns the tolerance that was aimed at, too.
+    fn run<S: AdmissibleSet>(
+        &mut self,
+        scene: &Scene<'_>,
+        set: S,
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, f64)> {
+        let Solver { problem, state, methods, set_up, has_result, .. } = self;
+        let multigrid = set_up.without_multigrid.is_none();
+        let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
+        // What was solved before is gone from here on, unless this solve comes to an end.
+        let solved = std::mem::replace(has_result, false);
+        if options.initial_guess != InitialGuess::Previous || !solved {
+            methods.projected_cg.forget_windows();
+        }
+        if !solved {
+            methods.projected_cg.forget_solutions();
+        }
+        let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
+        let mut task = Task { problem, state, set, goal: options.goal(), monitor };
+        let stop = if take_over::is_without_contact(task.state, S::FIXED) {
+            Outcome::Converged
+        } else {
+            methods.solve(&mut task, from, stages, options.error_ratio)?
+        };
+        let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
+        *has_result = true;
+        task.monitor.close_grid(task.state);
+        Ok((stop, task.goal.tolerance))
+    }
+}
