@@ -24,16 +24,15 @@ const DIRECTIONS: usize = 40;
 /// Restarts at most.
 const MOST_CALLS: usize = 10;
 
-/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.
-pub fn solve(
-    problem: &mut Problem,
-    state: &State,
-    (tangent, fields): (&mut Tangent, &mut Fields),
-    dw: &mut [Vector],
-) -> Result<()> {
+/// Which elements slip in the final state, for [`solve`].
+pub fn predict(problem: &Problem, state: &State, tangent: &mut Tangent) {
     let slip = problem.rms_slip();
     let rho = if slip > 0.0 { problem.rms_bound() / slip } else { 1.0 / problem.operators.self_influence };
     tangent.predict(problem, state, rho.min(1.0 / problem.operators.self_influence));
+}
+
+/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.
+pub fn solve(problem: &mut Problem, tangent: &Tangent, fields: &mut Fields, dw: &mut [Vector]) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
     let mut system = TangentSystem::new(problem, tangent, Forces::NONE, fields)?;
     // Unit tractions: the system is linear, and single precision has a small range.

@@ -256,13 +256,14 @@ impl Solver {
         let (Some(window), Some(Level { problem, state, memory })) = (window, self.levels.first_mut()) else {
             return Ok(derivatives);
         };
+        sensitivity::predict(problem, state, &mut memory.tangent);
         for by in 0..3 {
             let mut change = memory.fields.take(state.q.len())?;
             for (k, i) in window.elements(&self.grid) {
                 change[k] = friction.rigid_slip_by(&self.grid, i, by);
             }
             let Memory { tangent, fields, .. } = memory;
-            sensitivity::solve(problem, state, (tangent, fields), &mut change)?;
+            sensitivity::solve(problem, tangent, fields, &mut change)?;
             let changes = window.elements(&self.grid).map(|(k, i)| (i, change[k]));
             let (force, moment) = resultant(&self.grid, friction.spin_centre, changes);
             for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
