@@ -139,6 +139,11 @@ fn the_friction_example_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_rolling_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("rolling");
+}
+
+#[test]
 fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_wheel_rail");
     let example = root().join("python_examples/wheel_rail.py");
