@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-import sys
 from collections.abc import Callable
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._bar import Bar
 from ._constants import LOG_INFO
 from ._library import check, library
 from ._structs import LogCallback, ProgressCallback, SurfaceCallback
@@ -49,8 +48,8 @@ class Watched:
 
     def __init__(self, progress: Callable[[Progress], Any] | bool | None, options: Any, elements: int | None) -> None:
         self._error: BaseException | None = None
-        self._bar = Bar(elements, options.tolerance) if progress is True else None
-        self._told = self._bar.draw if self._bar else progress
+        self._bar = Bar() if progress is True else None
+        self._told = _residual_drawn(self._bar, elements, options.tolerance) if self._bar else progress
         if self._told:
             self._callback = ProgressCallback(self._call)
             options.progress = self._callback
@@ -71,51 +70,24 @@ class Watched:
             raise self._error
 
 
-class Bar:
-    """Draws how far the residual has come on its way to the tolerance: with tqdm if that is installed, else on stderr by itself.
+def _residual_drawn(bar: Bar, elements: int | None, tolerance: float) -> Callable[[Progress], None]:
+    """A callback that draws how far the residual has come on its way to the tolerance, ten times a second at most.
 
-    NORM starts its inner solve anew when the contact area changes: its residual, and so its bar, goes back then.
-
-    Parameters
-    ----------
-    elements : int or None
-        Elements of the finest grid: coarser ones do not fill the bar. None: that grid is not known beforehand.
-    tolerance : float
-        Where the bar is full.
+    Cycles on coarser grids than the finest, which has so many elements (None: not known beforehand), do not fill the bar. NORM starts its
+    inner solve anew when the contact area changes: its residual, and so its bar, goes back then.
     """
+    part, due = 0.0, 0.0
 
-    WIDTH = 30
-
-    def __init__(self, elements: int | None, tolerance: float, file: TextIO | None = None) -> None:
-        self._elements, self._tolerance, self._file, self._part = elements, tolerance, file or sys.stderr, 0.0
-        self._next = 0.0
-        try:
-            self._tqdm: Any = importlib.import_module("tqdm").tqdm(total=100, unit="%", file=self._file, bar_format="{l_bar}{bar}| {elapsed}{postfix}")
-        except ImportError:
-            self._tqdm = None
-
-    def draw(self, told: Progress) -> None:
-        """Draws the state after a cycle, ten times a second at most."""
-        if told.seconds < self._next:
+    def draw(told: Progress) -> None:
+        nonlocal part, due
+        if told.seconds < due:
             return
-        self._next = told.seconds + 0.1
-        if 0 < told.residual < 1 and self._elements in (None, told.mx * told.my) and 0 < self._tolerance < 1:
-            self._part = min(1.0, math.log(told.residual) / math.log(self._tolerance))
-        text = f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}"
-        if self._tqdm is not None:
-            self._tqdm.n = round(100 * self._part)
-            self._tqdm.set_postfix_str(text)
-        else:
-            filled = round(self.WIDTH * self._part)
-            self._file.write(f"\r[{'#' * filled}{'.' * (self.WIDTH - filled)}] {told.seconds:.1f} s, {text}   ")
-            self._file.flush()
+        due = told.seconds + 0.1
+        if 0 < told.residual < 1 and elements in (None, told.mx * told.my) and 0 < tolerance < 1:
+            part = min(1.0, math.log(told.residual) / math.log(tolerance))
+        bar.draw(part, f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}")
 
-    def close(self) -> None:
-        """Leaves the bar as it is and goes to the next line."""
-        if self._tqdm is not None:
-            self._tqdm.close()
-        else:
-            self._file.write("\n")
+    return draw
 
 
 class Surface:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import concurrent.futures
-import importlib
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _creep_force_store as store
 from ._arguments import integer
+from ._bar import Bar
 from ._creep_force_plane import AXES, Plan, plane, prepared
 from ._creep_forces import CreepForceTable
 
@@ -143,15 +142,17 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
     done = journal.done() if journal else {}
     missing = [index for index in range(plan.planes) if index not in done]
     each = len(plan.eta) * len(plan.xi)
-    bar = Bar(each * plan.planes) if progress is True else None
-    told = bar.draw if bar else progress
+    bar = Bar() if progress is True else None
     try:
         for index, arrays in _computed(plan, missing, workers, client):
             if journal:
                 journal.write(index, arrays)
             done[index] = arrays
-            if told:
-                told(each * len(done), each * plan.planes)
+            entries, total = each * len(done), each * plan.planes
+            if bar:
+                bar.draw(entries / total, f"{entries} of {total} entries")
+            elif progress:
+                progress(entries, total)
     finally:
         if bar:
             bar.close()
@@ -208,40 +209,3 @@ def _are_alike(grid: Mapping[str, Any]) -> bool:
     """Whether the bodies are: pressures then displace nothing sideways."""
     shear, poisson = (np.broadcast_to(np.asarray(grid[name], dtype=float), (2,)) for name in ("shear_modulus", "poisson_ratio"))
     return bool((1.0 - 2.0 * poisson[0]) / shear[0] == (1.0 - 2.0 * poisson[1]) / shear[1])
-
-
-class Bar:
-    """Draws how many entries of a table are done: with tqdm if that is installed, else on stderr by itself.
-
-    Parameters
-    ----------
-    total : int
-        Entries of the table.
-    """
-
-    WIDTH = 30
-
-    def __init__(self, total: int, file: TextIO | None = None) -> None:
-        self._file, self._began, self._before = file or sys.stderr, time.monotonic(), 0
-        try:
-            self._tqdm: Any = importlib.import_module("tqdm").tqdm(total=total, unit="entries", unit_scale=True, file=self._file)
-        except ImportError:
-            self._tqdm = None
-
-    def draw(self, done: int, total: int) -> None:
-        """Draws the state."""
-        if self._tqdm is not None:
-            self._tqdm.update(done - self._before)
-            self._before = done
-            return
-        filled = self.WIDTH * done // max(total, 1)
-        seconds = time.monotonic() - self._began
-        self._file.write(f"\r[{'#' * filled}{'.' * (self.WIDTH - filled)}] {done} of {total} entries, {seconds:.0f} s   ")
-        self._file.flush()
-
-    def close(self) -> None:
-        """Leaves the bar as it is and goes to the next line."""
-        if self._tqdm is not None:
-            self._tqdm.close()
-        else:
-            self._file.write("\n")

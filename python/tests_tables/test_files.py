@@ -1,7 +1,9 @@
 """Tables of creep forces in files and on a cluster: what is killed goes on from what was written. Needs xarray, netCDF4, distributed, tqdm."""
 
+import contextlib
 import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +15,7 @@ from unittest import mock
 import numpy as np
 
 import contact_normal as cn
-from contact_normal._creep_force_table import Bar
+from contact_normal._bar import Bar
 
 AXES = {"xi": [0.0, 0.1, 0.3], "eta": [-0.2, 0.0], "phi": [0.0, 0.1, 0.2, 0.4], "axis_ratio": [0.5, 1.0], "elements": 13}
 PLANES = 8
@@ -97,16 +99,16 @@ class Files(unittest.TestCase):
 
     def test_the_bar(self):
         told = io.StringIO()
-        bar = Bar(12, told)
-        bar.draw(6, 12)
+        bar = Bar(told)
+        bar.draw(0.5, "6 of 12 entries")
         bar.close()
-        self.assertIn("6", told.getvalue())
-        with mock.patch.dict(sys.modules, {"tqdm": None}):
-            plain = io.StringIO()
-            bar = Bar(12, plain)
-            bar.draw(6, 12)
-            bar.close()
-        self.assertIn("6 of 12 entries", plain.getvalue())
+        self.assertRegex(told.getvalue(), " 50%.*6 of 12 entries")
+        with mock.patch.dict(sys.modules, {"tqdm": None}), contextlib.redirect_stderr(io.StringIO()) as plain:
+            cn.creep_force_table(progress=True, **AXES)
+        drawn = re.findall(r"\r\[(#*)(\.*)\] [0-9.]+ s, (\d+) of (\d+) entries", plain.getvalue())
+        total = 6 * PLANES
+        wanted = [(round(30 * done / total), 30 - round(30 * done / total), done, total) for done in range(6, total + 1, 6)]
+        self.assertEqual([(len(full), len(empty), int(done), int(of)) for full, empty, done, of in drawn], wanted)
 
 
 class Cluster(unittest.TestCase):
