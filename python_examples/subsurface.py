@@ -27,11 +27,11 @@ def wheel_on_rail(path):
     return cn.solve(h, dx, dy, force=force, shear_modulus=modulus, poisson_ratio=ratio, friction=rolling)
 
 
-def finer(result, coarse, traction):
+def finer(result, coarse):
     """The largest von Mises stress between the depths: once more with depths up to the neighbours of the one that has it."""
     k, depths = int(coarse.largest_von_mises["depth"]), coarse.depths
     between = np.linspace(depths[max(k - 1, 0)], depths[min(k + 1, len(depths) - 1)], 21)
-    return result.subsurface(between, traction=traction).largest_von_mises
+    return result.subsurface(between).largest_von_mises
 
 
 def say(name, stress, unit):
@@ -49,13 +49,12 @@ def main(case, folder=None):
     sliding = rolled.subsurface(depths, traction=(0.25 * rolled.pressure, 0 * rolled.pressure))
     say("sliding ball", sliding, p0)
     wheel = wheel_on_rail(case)
-    # The tractions that were found act on body 1, the wheel; those on the rail are their opposites.
     p0, (fx, fy) = wheel.report["max_pressure"], wheel.report["tangential_force"]
     print(f"wheel on rail: p0 = {p0:.0f} N/mm2, tangential force ({fx / 1000:.1f}, {fy / 1000:.1f}) kN, "
           f"{(wheel.adhesion == 1).sum() / wheel.contact.sum():.0%} of the contact area sticks")
-    below = wheel.subsurface(np.linspace(0.0, 8.0, 41), traction=wheel.traction)
+    below = wheel.subsurface(np.linspace(0.0, 8.0, 41))  # of body 1, the wheel, with the tractions that were found
     say("wheel on rail", below, p0)
-    at = finer(wheel, below, wheel.traction)
+    at = finer(wheel, below)
     print(f"wheel on rail: largest von Mises between these depths {at['value'] / p0:.4f} p0 at z = {at['z']:.2f} mm")
     if folder:
         import matplotlib

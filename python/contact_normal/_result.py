@@ -164,7 +164,7 @@ class Result:
         depths : array_like, (n,)
             Depths into the body, in any order.
         traction : (array_like (my, mx), array_like (my, mx)), optional
-            Tractions that act on this body, in x and in y.
+            Tractions that act on this body, in x and in y; by default those that `friction` found, if any.
         body : {1, 2}
             Which one: its Poisson ratio matters.
         principal : bool
@@ -188,6 +188,9 @@ class Result:
         """
         from ._stress import subsurface
 
+        if traction is None and self.traction.any():
+            sign = 1.0 if body == 1 else -1.0
+            traction = (sign * self.traction[0], sign * self.traction[1])
         return subsurface(self._scene, self.pressure, depths, traction, body, principal, threads)
 
 

@@ -41,6 +41,13 @@ class Subsurface(unittest.TestCase):
             with self.assertRaisesRegex((ValueError, cn.ContactNormalError), words):
                 result.subsurface(**{"depths": [0.0], **bad})
 
+    def test_tractions_of_friction(self):
+        result = cn.solve(H, D, D, force=1000.0, **STEEL, friction={"coefficient": 0.3, "force": (250.0, None)})
+        for body, sign in ((1, 1.0), (2, -1.0)):
+            stress = result.subsurface([0.0], body=body)
+            # sxz = -qx at the surface, to round-off of the sum over the elements.
+            np.testing.assert_allclose(stress.xz[0], -sign * result.traction[0], atol=1e-12 * result.traction.max())
+
     def test_pictures(self):
         import matplotlib
 
