@@ -85,6 +85,7 @@ def friction_batch(
     approach: float | None = None,
     force: float | None = None,
     pressure: npt.ArrayLike | None = None,
+    influence: Any = None,
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
     fields: bool = False,
@@ -94,8 +95,8 @@ def friction_batch(
     """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
 
     The normal problem is solved once, or not at all if there are pressures. As many entries are solved at a time as `threads` says;
-    neighbours in the list should be neighbours in the motion, for an entry
-    that differs little from the one before starts from its tractions.
+    neighbours in the list should be neighbours in the motion, for an entry that differs little from the one before starts from its
+    tractions.
 
     Parameters
     ----------
@@ -115,8 +116,8 @@ def friction_batch(
         Whether tractions and slip are wanted, too.
     progress : callable, optional
         Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels.
-    shear_modulus, poisson_ratio, layer, pressure_limit, **given
-        As for `solve`.
+    shear_modulus, poisson_ratio, influence, layer, pressure_limit, **given
+        As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
     -------
@@ -135,7 +136,7 @@ def friction_batch(
     if pressures is not None and approach is None and force is None:
         approach = 0.0  # not used
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio,
-                  {"layer": layer, "pressure_limit": pressure_limit, "friction": friction})
+                  {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction})
     if pressures is not None:
         pressures = doubles("pressure", pressures, scene.shape)
     table = doubles("entries", entries, dimensions="(n, 3)")

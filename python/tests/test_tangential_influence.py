@@ -34,6 +34,18 @@ class TangentialInfluence(unittest.TestCase):
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
             self.assertGreater(np.count_nonzero(found.adhesion == 1), 0)
 
+    def test_a_batch_takes_tables_for_both_problems(self):
+        # nu = 0: the normal displacements by a pressure are those in x by a traction in x (Kalker 1990, appendix B).
+        both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
+        entries = [(-0.004, 0.001, 0.0), (0.002, 0.0, 0.001)]
+        known = cn.friction_batch(H, D, D, entries, force=0.05, friction={"coefficient": 0.3}, **BODIES)
+        # Bodies that are not read: 1/G is in the tables.
+        found = cn.friction_batch(H, D, D, entries, force=0.05, influence=both, shear_modulus=7.0, poisson_ratio=0.2,
+                                  friction={"coefficient": 0.3, "influence": (both, both, np.zeros_like(both))})
+        np.testing.assert_array_equal(found.status, cn.OK)
+        # What residuals of 1e-6 leave of the forces.
+        np.testing.assert_allclose(found.force, known.force, atol=1e-5 * np.abs(known.force).max())
+
     def test_tables_of_the_wrong_shape_are_refused(self):
         table = np.ones((2 * M, 2 * M))
         for influence, words in (((table, table), "2 entries"), ((table, table, table[1:]), "shapes")):
