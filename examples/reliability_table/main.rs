@@ -1,10 +1,11 @@
-//! The table of docs/reliability.md: every hard case by every method, the residual reached and the products spent.
+//! The tables of docs/reliability.md: every hard case by every method, the residual reached and the products spent; and those of friction.
 //!
-//! `cargo run --release --locked --example reliability_table`
+//! `cargo run --release --locked --example reliability_table`; the second table alone: `... -- friction`
 
 #[allow(dead_code)] // the tests' cases, of which this takes a part
 #[path = "../../tests/problems/families/mod.rs"]
 mod families;
+mod friction;
 
 use contact_normal::error::Error;
 use contact_normal::scene::Load;
@@ -20,6 +21,14 @@ const METHODS: [(&str, Method); 4] = [
 ];
 
 fn main() {
+    if std::env::args().nth(1).as_deref() != Some("friction") {
+        print_normal();
+        println!();
+    }
+    friction::print();
+}
+
+fn print_normal() {
     let names: Vec<&str> = METHODS.iter().map(|(name, _)| *name).collect();
     println!("| case | grid | load | {} |", names.join(" | "));
     println!("|---|---|---|{}", "---|".repeat(names.len()));
