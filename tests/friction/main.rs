@@ -6,6 +6,7 @@ mod coefficients;
 mod conditions;
 mod effects;
 mod estimates;
+#[allow(dead_code)] // what docs/reliability.md prints
 mod hard;
 mod linear_theory;
 mod onset_of_rolling;
