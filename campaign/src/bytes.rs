@@ -6,17 +6,19 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
+use crate::bytes_friction::Sliding;
 use crate::call::{effect_structs, initialised, EffectStructs, Outputs};
 use crate::case::{Case, How};
 use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::friction_case::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::rules::is_true;
 
 /// Arrays have room for so many elements.
-const ROOM: usize = 256;
+pub const ROOM: usize = 256;
 /// What outputs hold before a call.
-const SENTINEL: f64 = -12345.678;
-const SENTINEL_CONTACT: i32 = -77;
+pub const SENTINEL: f64 = -12345.678;
+pub const SENTINEL_CONTACT: i32 = -77;
 
 /// Bytes, read one value after the other; zeros when there are no more.
 pub struct Bytes<'a> {
@@ -24,18 +26,18 @@ pub struct Bytes<'a> {
 }
 
 impl Bytes<'_> {
-    fn byte(&mut self) -> u8 {
+    pub fn byte(&mut self) -> u8 {
         let Some((first, rest)) = self.data.split_first() else { return 0 };
         self.data = rest;
         *first
     }
 
-    fn word(&mut self) -> u64 {
+    pub fn word(&mut self) -> u64 {
         (0..8).fold(0, |word, _| word << 8 | u64::from(self.byte()))
     }
 
     /// A usual number, or any bits at all.
-    fn number(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         match self.byte() {
             0 => f64::from_bits(self.word()),
             1 => [0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, f64::MIN_POSITIVE, 5e-324]
@@ -46,7 +48,7 @@ impl Bytes<'_> {
     }
 
     /// `usual`, or a number.
-    fn sometimes(&mut self, usual: f64) -> f64 {
+    pub fn sometimes(&mut self, usual: f64) -> f64 {
         if self.byte() % 16 == 1 {
             self.number()
         } else {
@@ -55,7 +57,7 @@ impl Bytes<'_> {
     }
 
     /// Mostly below `limit`; now and then any integer at all.
-    fn integer(&mut self, limit: u8) -> i32 {
+    pub fn integer(&mut self, limit: u8) -> i32 {
         match self.byte() {
             255 => self.word() as i32,
             byte => i32::from(byte % limit),
@@ -71,6 +73,17 @@ impl Bytes<'_> {
     }
 }
 
+/// What the bytes become beside a scene and options.
+#[derive(Clone, Copy, PartialEq)]
+enum Target {
+    /// Effects that the bytes name, friction among them.
+    Scene,
+    /// A table of coefficients, too.
+    Table,
+    /// Friction, whatever the bytes.
+    Friction,
+}
+
 /// Everything that a call reads or writes.
 struct Call {
     h: Vec<f64>,
@@ -84,13 +97,14 @@ struct Call {
     effects: Effects,
     structs: Box<EffectStructs>,
     distance: Vec<f64>,
+    sliding: Option<Box<Sliding>>,
     options: contact_normal_options,
     fields: contact_normal_fields,
     report: contact_normal_report,
 }
 
 impl Call {
-    fn new(bytes: &mut Bytes<'_>, with_table: bool) -> Box<Call> {
+    fn new(bytes: &mut Bytes<'_>, target: Target) -> Box<Call> {
         let mut call = Box::new(Call {
             h: Vec::new(),
             table: Vec::new(),
@@ -102,6 +116,7 @@ impl Call {
             effects: Effects::default(),
             structs: effect_structs(&Effects::default()),
             distance: vec![SENTINEL; ROOM],
+            sliding: None,
             options: initialised(contact_normal_options_init),
             fields: initialised(contact_normal_fields_init),
             report: initialised(contact_normal_report_init),
@@ -126,7 +141,7 @@ impl Call {
         call.fields.contact = call.contact.as_mut_ptr();
         call.fields.displacement = call.displacement.as_mut_ptr();
         call.fields.deformed_distance = call.distance.as_mut_ptr();
-        if with_table {
+        if target == Target::Table {
             call.set_table(bytes);
         }
         for size in [&mut call.scene.struct_size, &mut call.options.struct_size, &mut call.fields.struct_size] {
@@ -136,6 +151,13 @@ impl Call {
             }
         }
         call.set_effects(bytes);
+        // After the effects, for the same reason.
+        if target == Target::Friction || bytes.byte() % 2 == 1 {
+            let mut sliding = Box::new(Sliding::new(bytes, n, &mut call.scene));
+            sliding.point_from(&mut call.fields);
+            call.scene.friction = &raw const sliding.input;
+            call.sliding = Some(sliding);
+        }
         call
     }
 
@@ -246,7 +268,8 @@ impl Call {
     fn outputs(&self) -> Vec<u64> {
         let numbers = self.pressure.iter().chain(&self.displacement).chain(&self.distance).map(|value| value.to_bits());
         let report = [self.report.force.to_bits(), self.report.cycles as u64];
-        numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).collect()
+        let sliding = self.sliding.iter().flat_map(|sliding| sliding.outputs());
+        numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).chain(sliding).collect()
     }
 
     /// What holds after a call.
@@ -261,8 +284,23 @@ impl Call {
         }
         let n = (self.scene.mx * self.scene.my) as usize;
         assert!(self.pressure[n..].iter().all(|&p| p.to_bits() == SENTINEL.to_bits()), "written beyond the grid");
-        let failures = is_true(&self.case(fixed), &self.found(status));
-        assert!(failures.is_empty(), "status {status}: {failures:?}");
+        let (case, found) = (self.case(fixed), self.found(status));
+        let Some(sliding) = &self.sliding else {
+            let failures = is_true(&case, &found);
+            assert!(failures.is_empty(), "status {status}: {failures:?}");
+            return;
+        };
+        let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
+        let place = Place { grid, shear_modulus, poisson_ratio, surface: "bytes", h, load };
+        // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
+        if place.is_alike() {
+            let failures = is_true(&case, &found);
+            assert!(failures.is_empty(), "friction, status {status}: {failures:?}");
+        }
+        let How { tolerance, precision, threads, max_cycles, .. } = case.how;
+        let stop = Stop { tolerance, precision, threads, max_cycles, cancel_at: None };
+        let failures = sliding.failures(place, stop, (status, &found.p, &found.u, found.report));
+        assert!(failures.is_empty(), "friction, status {status}: {failures:?}");
     }
 
     /// The scene that was accepted.
@@ -315,22 +353,27 @@ impl Call {
     }
 }
 
-/// A scene and options from bytes, through the plain call and through a handle.
-pub fn scene_and_options(data: &[u8]) {
-    solve(data, false);
+/// A scene and options from bytes, through the plain call and through a handle. Returns the statuses, here as below.
+pub fn scene_and_options(data: &[u8]) -> Vec<i32> {
+    solve(data, Target::Scene)
 }
 
 /// The same with a table of coefficients.
-pub fn tables(data: &[u8]) {
-    solve(data, true);
+pub fn tables(data: &[u8]) -> Vec<i32> {
+    solve(data, Target::Table)
 }
 
-fn solve(data: &[u8], with_table: bool) {
+/// The same with friction.
+pub fn friction(data: &[u8]) -> Vec<i32> {
+    solve(data, Target::Friction)
+}
+
+fn solve(data: &[u8], target: Target) -> Vec<i32> {
     let mut bytes = Bytes { data };
     let through_handle = bytes.byte() % 2 == 1;
-    let mut call = Call::new(&mut bytes, with_table);
+    let mut call = Call::new(&mut bytes, target);
     if !call.may_be_tried() {
-        return;
+        return Vec::new();
     }
     let call = &mut *call;
     let before = call.outputs();
@@ -340,9 +383,9 @@ fn solve(data: &[u8], with_table: bool) {
             let fixed = call.contact.clone();
             let status = contact_normal_solve(&call.scene, &call.options, &mut call.fields, &mut call.report);
             call.check(status, &before, &fixed);
-            return;
+            return vec![status];
         }
-        let mut handle = null_mut();
+        let (mut handle, mut statuses) = (null_mut(), Vec::new());
         let status = contact_normal_solver_new(&call.scene, &call.options, &mut handle);
         if status == CONTACT_NORMAL_OK {
             for _ in 0..2 {
@@ -350,11 +393,14 @@ fn solve(data: &[u8], with_table: bool) {
                 let (options, fields) = (&call.options, &mut call.fields);
                 let status = contact_normal_solver_solve(handle, &call.scene, options, fields, &mut call.report);
                 call.check(status, &before, &fixed);
+                statuses.push(status);
             }
         } else {
             call.check(status, &before, &[]);
             assert!(handle.is_null());
+            statuses.push(status);
         }
         contact_normal_solver_free(handle);
+        statuses
     }
 }

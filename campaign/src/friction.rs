@@ -187,7 +187,7 @@ impl Broken<'_> {
 
 /// One answer. `before`: the tractions before the step.
 fn check_answer(case: &Case, found: &Found, before: &[Vector], broken: &mut Broken<'_>) {
-    let (status, slide) = (found.status, &case.slide);
+    let status = found.status;
     if status < 0 {
         broken.unless(!found.written, "friction refused leaves outputs alone", || format!("status {status}"));
         broken.unless(!found.message.is_empty(), "friction refused says why", || format!("status {status}"));
@@ -195,12 +195,21 @@ fn check_answer(case: &Case, found: &Found, before: &[Vector], broken: &mut Brok
         broken.unless(reason, "friction is refused for a reason", || format!("status {status}, {}", found.message));
         return;
     }
+    if check_bounds(case, found, broken) > 0.0 && case.place.is_alike() {
+        check_conditions(case, found, before, broken);
+    }
+}
+
+/// Numbers, tractions within their bounds, stick and slip, and the forces; returns mu N.
+fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
+    let (status, slide) = (found.status, &case.slide);
     let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
     broken.unless(numbers.copied().all(f64::is_finite), "friction returns numbers", || format!("status {status}"));
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);
     for i in 0..found.q.len() {
-        let (q, bound) = (found.q[i], slide.mu[i] * found.p[i]);
+        // Within an area that is fixed some elements may pull.
+        let (q, bound) = (found.q[i], slide.mu[i] * found.p[i].max(0.0));
         // mu p of 0 and of numbers below the smallest have tractions of 0.
         broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
             format!("element {i}: {q:?}, bound {bound:e}, status {status}")
@@ -230,9 +239,7 @@ fn check_answer(case: &Case, found: &Found, before: &[Vector], broken: &mut Brok
             });
         }
     }
-    if case.place.is_alike() && carried > 0.0 {
-        check_conditions(case, found, before, broken);
-    }
+    carried
 }
 
 fn check_conditions(case: &Case, found: &Found, before: &[Vector], broken: &mut Broken<'_>) {
@@ -256,6 +263,25 @@ fn check_conditions(case: &Case, found: &Found, before: &[Vector], broken: &mut 
             format!("status {status}, {left:e} left of {scale:e}, rounding {rounding:e}: {}", found.message)
         });
     }
+}
+
+/// What does not hold of an answer with status >= 0. `certified`: the coefficients and the slip are those that this module knows.
+pub fn answer(case: &Case, found: &Found, certified: bool) -> Vec<Failure> {
+    let mut broken = Broken { case, failures: Vec::new() };
+    let carried = check_bounds(case, found, &mut broken);
+    if certified && case.place.is_alike() && carried > 0.0 {
+        check_conditions(case, found, &case.slide.before(), &mut broken);
+    }
+    broken.failures
+}
+
+/// Own tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.
+pub fn tables(place: &Place) -> Vec<Vec<f64>> {
+    let Grid { mx, my, .. } = place.grid;
+    let wider = Grid { mx: mx + 1, my: my + 1, ..place.grid };
+    let operator = Operator::new(&Place::new(wider, place.shear_modulus, place.poisson_ratio), [0.0; 2]);
+    let offsets = || (0..2 * my).flat_map(|y| (0..2 * mx).map(move |x| y * (2 * mx + 1) + x));
+    (0..3).map(|k| offsets().map(|at| operator.table[at][k]).collect()).collect()
 }
 
 /// A random case: the statuses of its calls, and what was not kept.

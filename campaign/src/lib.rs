@@ -1,7 +1,7 @@
 //! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
 //!
 //! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
-//! `rules` has the promises, `bytes` turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and
+//! `rules` has the promises, `bytes` (with `bytes_friction`) turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and
 //! what failed. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`,
 //! `friction`. Nothing of
 //! the library is used but the C ABI's functions: a change of its core does not touch this.
@@ -10,6 +10,7 @@ pub mod account;
 pub mod accuracy;
 pub mod batch;
 pub mod bytes;
+pub mod bytes_friction;
 pub mod call;
 pub mod case;
 pub mod coating;

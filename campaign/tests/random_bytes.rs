@@ -4,15 +4,20 @@
 use campaign::bytes;
 use campaign::random::Random;
 
-/// Runs a target on so many strings of bytes.
-fn run(runs: u64, target: fn(&[u8])) {
+type Target = fn(&[u8]) -> Vec<i32>;
+
+/// Runs a target on so many strings of bytes; returns how many calls ended with an answer, by status from 0.
+fn run(runs: u64, target: Target) -> [u64; 4] {
+    let mut answers = [0; 4];
     let mut random = Random::new(1);
     for number in 0..runs {
         let length = random.integer(0, 2999);
         let bytes: Vec<u8> = (0..length).map(|_| random.integer(0, 255) as u8).collect();
         let outcome = std::panic::catch_unwind(|| target(&bytes));
-        assert!(outcome.is_ok(), "bytes number {number}");
+        let statuses = outcome.unwrap_or_else(|_| panic!("bytes number {number}"));
+        statuses.iter().filter(|&&status| status >= 0).for_each(|&status| answers[status as usize] += 1);
     }
+    answers
 }
 
 #[test]
@@ -26,14 +31,23 @@ fn tables_of_coefficients() {
 }
 
 #[test]
+fn frictions() {
+    let answers = run(6000, bytes::friction);
+    // Of what random bytes say most is refused; the rest has to be enough to tell.
+    assert!(answers[0] >= 300, "{answers:?}");
+}
+
+#[test]
 fn the_corpus_of_the_fuzz_targets() {
     let mut found = 0;
-    for (folder, target) in [("scene", bytes::scene_and_options as fn(&[u8])), ("table", bytes::tables as fn(&[u8]))] {
+    let targets =
+        [("scene", bytes::scene_and_options as Target), ("table", bytes::tables), ("friction", bytes::friction)];
+    for (folder, target) in targets {
         let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus").join(folder);
         for file in std::fs::read_dir(corpus).expect("the corpus") {
             target(&std::fs::read(file.expect("a file").path()).expect("bytes"));
             found += 1;
         }
     }
-    assert!(found > 20, "{found} files");
+    assert!(found > 40, "{found} files");
 }

@@ -1,0 +1,199 @@
+//! Friction from random bytes: every motion, forces, own tables, tractions before, like and unlike bodies; and what holds of an answer.
+
+use std::ptr::null;
+
+use contact_normal::ffi::*;
+
+use crate::bytes::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
+use crate::call::initialised;
+use crate::friction::{answer, tables};
+use crate::friction_call::Found;
+use crate::friction_case::{Case, Place, Slide, Stop};
+use crate::grid::Grid;
+
+/// A pair of arrays, in x and in y.
+type Pair = [Vec<f64>; 2];
+
+/// Everything that a call with friction reads or writes beside the normal problem's.
+pub struct Sliding {
+    mu: Vec<f64>,
+    previous: Option<Pair>,
+    rigid: Option<Pair>,
+    /// xx, yy, xy, xz, yz.
+    tables: Vec<Vec<f64>>,
+    /// Whether the oracle's coefficients and slip are those of the call.
+    certified: bool,
+    pub input: contact_normal_friction,
+    traction: Pair,
+    slip: Pair,
+    adhesion: Vec<i32>,
+}
+
+/// Numbers for a grid of n elements, of which some are any.
+fn numbers(bytes: &mut Bytes<'_>, n: usize, size: f64) -> Vec<f64> {
+    let usual = |bytes: &mut Bytes<'_>| size * (f64::from(bytes.byte()) / 128.0 - 1.0);
+    let mut values: Vec<f64> = (0..ROOM).map(|i| if i < n { usual(bytes) } else { 0.0 }).collect();
+    for _ in 0..(bytes.byte() % 16).saturating_sub(12) {
+        values[bytes.word() as usize % ROOM] = bytes.number();
+    }
+    values
+}
+
+fn pair(bytes: &mut Bytes<'_>, n: usize, named: bool) -> Option<Pair> {
+    named.then(|| {
+        let size = [0.01, 1.0, 1e6, 1e-9][usize::from(bytes.byte() % 4)];
+        [numbers(bytes, n, size), numbers(bytes, n, size)]
+    })
+}
+
+impl Sliding {
+    /// Friction of the scene's grid of n elements; `scene` gets bodies that are alike, mostly.
+    pub fn new(bytes: &mut Bytes<'_>, n: usize, scene: &mut contact_normal_scene) -> Sliding {
+        if bytes.byte() % 4 != 0 {
+            scene.shear_modulus[1] = scene.shear_modulus[0];
+            scene.poisson_ratio[1] = scene.poisson_ratio[0];
+        }
+        let named = bytes.byte();
+        let mut sliding = Sliding {
+            mu: if named & 1 != 0 { numbers(bytes, n, 0.5).into_iter().map(f64::abs).collect() } else { Vec::new() },
+            previous: pair(bytes, n, named & 6 == 2),
+            rigid: pair(bytes, n, named & 24 == 8),
+            tables: Vec::new(),
+            certified: true,
+            input: initialised(contact_normal_friction_init),
+            traction: [0, 1].map(|_| vec![SENTINEL; ROOM]),
+            slip: [0, 1].map(|_| vec![SENTINEL; ROOM]),
+            adhesion: vec![SENTINEL_CONTACT; ROOM],
+        };
+        sliding.set_motion(bytes);
+        if named & 96 == 32 && n > 0 {
+            sliding.set_tables(bytes, scene);
+        }
+        let pointers = |pair: &Option<Pair>| pair.as_ref().map_or([null(); 2], |[x, y]| [x.as_ptr(), y.as_ptr()]);
+        let input = &mut sliding.input;
+        if named & 1 != 0 {
+            input.coefficients = sliding.mu.as_ptr();
+        }
+        (input.previous_traction, input.rigid_slip) = (pointers(&sliding.previous), pointers(&sliding.rigid));
+        if bytes.byte() == 99 {
+            // One array of two.
+            input.previous_traction[1] = null();
+        }
+        if bytes.byte() == 99 {
+            input.struct_size = input.struct_size.min(bytes.word() as i64);
+            sliding.certified = false;
+        }
+        sliding
+    }
+
+    fn set_motion(&mut self, bytes: &mut Bytes<'_>) {
+        let input = &mut self.input;
+        input.coefficient = bytes.sometimes(0.3);
+        input.motion = bytes.integer(3);
+        input.prescribed = [0, 1].map(|_| i32::from(bytes.byte() % 4 == 0));
+        let signed = |bytes: &mut Bytes<'_>| match bytes.byte() % 8 {
+            0 => bytes.number(),
+            1 => 0.0,
+            _ => f64::from(bytes.byte() as i8) / 256.0,
+        };
+        input.creepage = [0, 1].map(|_| signed(bytes));
+        input.force = [0, 1].map(|_| signed(bytes));
+        input.spin = signed(bytes);
+        input.spin_centre = [0, 1].map(|_| bytes.sometimes(0.0));
+        input.rolling_distance = bytes.sometimes(0.0);
+        let quarters = f64::from(bytes.byte() % 4);
+        input.rolling_direction = bytes.sometimes(quarters * std::f64::consts::FRAC_PI_2);
+        input.spin_offset = bytes.sometimes(input.spin_offset);
+        input.continues = i32::from(bytes.byte() % 8 == 0);
+        input.sensitivities = i32::from(bytes.byte() % 8 == 0);
+        input.reserved = i32::from(bytes.byte() == 99);
+        // The oracle's slip is that of the default offset; the tractions that a handle holds are not kept here.
+        let default: contact_normal_friction = initialised(contact_normal_friction_init);
+        self.certified = input.spin_offset.to_bits() == default.spin_offset.to_bits() && input.continues == 0;
+    }
+
+    /// The tables of the half-space, of which some entries become any number.
+    fn set_tables(&mut self, bytes: &mut Bytes<'_>, scene: &contact_normal_scene) {
+        let (cx, cy) = (scene.mx + 1 + bytes.integer(2).clamp(0, 2), scene.my + 1);
+        let grid = Grid { mx: cx as usize, my: cy as usize, dx: scene.dx, dy: scene.dy };
+        self.tables = tables(&Place::new(grid, scene.shear_modulus, scene.poisson_ratio));
+        for _ in 0..(bytes.byte() % 16).saturating_sub(12) {
+            let (table, at) = (usize::from(bytes.byte()) % self.tables.len(), bytes.word() as usize);
+            let length = self.tables[table].len();
+            self.tables[table][at % length] = bytes.number();
+            self.certified = false;
+        }
+        let input = &mut self.input;
+        (input.influence_cx, input.influence_cy) = (cx, cy);
+        input.influence = [0, 1, 2].map(|k| self.tables[k].as_ptr());
+        input.influence_scale = bytes.sometimes(1.0);
+        self.certified &= input.influence_scale.to_bits() == 1.0f64.to_bits();
+        if bytes.byte() % 8 == 0 {
+            // Of unlike bodies: here of no coupling.
+            self.tables.extend([vec![0.0; self.tables[0].len()], vec![0.0; self.tables[0].len()]]);
+            input.influence_cross = [3, 4].map(|k: usize| self.tables[k].as_ptr());
+        }
+    }
+
+    /// The arrays that are to be written.
+    pub fn point_from(&mut self, fields: &mut contact_normal_fields) {
+        fields.traction = [0, 1].map(|k: usize| self.traction[k].as_mut_ptr());
+        fields.slip = [0, 1].map(|k: usize| self.slip[k].as_mut_ptr());
+        fields.adhesion = self.adhesion.as_mut_ptr();
+    }
+
+    /// What a call may write, as bits.
+    pub fn outputs(&self) -> impl Iterator<Item = u64> + '_ {
+        let numbers = self.traction.iter().chain(&self.slip).flatten().map(|value| value.to_bits());
+        numbers.chain(self.adhesion.iter().map(|&a| a as u64))
+    }
+
+    /// What does not hold of an answer: place, pressures and displacements are those of the call.
+    pub fn failures(
+        &self,
+        place: Place,
+        stop: Stop,
+        found: (i32, &[f64], &[f64], contact_normal_report),
+    ) -> Vec<String> {
+        let (n, input) = (place.grid.len(), &self.input);
+        let (status, p, u, report) = found;
+        let beyond = self.outputs_beyond(n);
+        let has_force = |k: usize| input.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
+        let slide = Slide {
+            mu: if self.mu.is_empty() { vec![input.coefficient; n] } else { self.mu[..n].to_vec() },
+            uniform: self.mu.is_empty(),
+            motion: input.motion,
+            prescribed: input.prescribed,
+            amount: [0, 1].map(|k| if has_force(k) { input.force[k] } else { input.creepage[k] }),
+            spin: input.spin,
+            spin_centre: input.spin_centre,
+            distance: input.rolling_distance,
+            direction: input.rolling_direction,
+            previous: self.previous.as_ref().map(|pair| [0, 1].map(|k: usize| pair[k][..n].to_vec())),
+            rigid: self.rigid.as_ref().map(|pair| [0, 1].map(|k: usize| pair[k][..n].to_vec())),
+        };
+        let vectors = |pair: &Pair| (0..n).map(|i| [pair[0][i], pair[1][i]]).collect::<Vec<_>>();
+        let found = Found {
+            status,
+            message: String::new(),
+            p: p.to_vec(),
+            u: u.to_vec(),
+            q: vectors(&self.traction),
+            slip: vectors(&self.slip),
+            adhesion: self.adhesion[..n].to_vec(),
+            report,
+            written: true,
+        };
+        let case = Case { place, slide, stop, carried: 0.0 };
+        let failures = answer(&case, &found, self.certified);
+        let mut texts: Vec<String> = failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
+        texts.extend(beyond.then(|| "friction writes beyond the grid".to_string()));
+        texts
+    }
+
+    fn outputs_beyond(&self, n: usize) -> bool {
+        let beyond =
+            self.traction.iter().chain(&self.slip).any(|a| a[n..].iter().any(|v| v.to_bits() != SENTINEL.to_bits()));
+        beyond || self.adhesion[n..].iter().any(|&a| a != SENTINEL_CONTACT)
+    }
+}
