@@ -32,6 +32,9 @@ impl Coefficient<'_> {
 /// Steps of steady rolling, in elements.
 const STEPS: std::ops::RangeInclusive<f64> = 0.1..=1e6;
 
+/// Slips and tractions are smaller: their squares are numbers.
+const LARGEST: f64 = 1e140;
+
 /// Of angles and lengths.
 const ROUND_OFF: f64 = 1e-14;
 
@@ -303,6 +306,28 @@ impl Friction<'_> {
         influence.check(mx, my)
     }
 
+    /// Refuses lengths, slips and tractions whose squares leave the range of double precision.
+    fn check_range(&self, grid: &Grid) -> Result<()> {
+        let rule = "friction needs numbers below 1e140: choose other units";
+        let small = |name: &str, value: f64| require(value.abs() < LARGEST, name, value, rule);
+        // Slips by creepages and spin are largest in a corner.
+        let corners = [0, grid.mx - 1, grid.len() - grid.mx, grid.len() - 1];
+        for slip in corners.iter().flat_map(|&i| Friction { rigid_slip: None, ..*self }.rigid_slip_at(grid, i)) {
+            small("the rigid slip by friction->creepage and spin", slip)?;
+        }
+        for own in self.rigid_slip.iter().flatten() {
+            check_values("friction->rigid_slip", own, grid, small)?;
+        }
+        match (self.previous, self.motion) {
+            // There they are only where the iteration starts.
+            (_, Motion::SteadyRolling) => Ok(()),
+            (Previous::Given(before), _) => {
+                before.iter().try_for_each(|q| check_values("friction->previous_traction", q, grid, small))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses numbers that are none.
     fn check_numbers(&self) -> Result<()> {
         let finite = |name: &str, value: f64| require(value.is_finite(), name, value, "it must be finite");
@@ -339,6 +364,7 @@ impl Effect for Friction<'_> {
         self.check_numbers()?;
         let coefficient = |name: &str, mu: f64| match mu {
             mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
+            mu if mu >= LARGEST => invalid(format!("{name} is {mu}; it must be below {LARGEST:e}")),
             mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
             _ => Ok(()),
         };
@@ -359,6 +385,7 @@ impl Effect for Friction<'_> {
             check_values("friction->rigid_slip[0]", x, grid, finite)?;
             check_values("friction->rigid_slip[1]", y, grid, finite)?;
         }
+        self.check_range(grid)?;
         self.check_influence(grid)
     }
 

@@ -23,6 +23,9 @@ const FIELDS: &str = "tangential fields";
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
 
+/// Rigid slips and what tractions displace may be so far apart.
+const LARGEST_RATIO: f64 = 1e60;
+
 /// What is asked of a solve.
 pub struct Request<'a> {
     /// The pressures of the normal problem, `[my][mx]`.
@@ -136,6 +139,7 @@ impl Solver {
         if let Some(window) = window {
             self.set_up(window, rolling)?;
             let had_slip = self.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
+            self.check_range()?;
             let goal = (request.tolerance, request.limit);
             let nested = from_rest && !request.again;
             let compared = nested && request.estimates && rolling.is_some();
@@ -153,6 +157,19 @@ impl Solver {
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
+    }
+
+    /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
+    fn check_range(&self) -> Result<()> {
+        let problem = &self.levels[0].problem;
+        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
+        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && displaced / slip < LARGEST_RATIO) {
+            let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
+            return invalid(format!(
+                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e60 apart; {rule}"
+            ));
+        }
+        Ok(())
     }
 
     /// The forces that are given; refuses those that are more than friction carries.

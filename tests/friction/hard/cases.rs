@@ -222,6 +222,8 @@ fn refused() -> Vec<Case> {
         Case { rigid_slip: pair(n, nan), ..Case::refused("a rigid slip of NaN", FINITE) },
         Case { prescribed: creepages(nan, 0.0), ..Case::refused("a creepage of NaN", FINITE) },
         Case { spin: nan, ..Case::refused("a spin of NaN", FINITE) },
+        Case { prescribed: creepages(1e200, 0.0), ..Case::refused("a creepage of 1e200", ARGUMENT) },
+        Case { rigid_slip: pair(n, 1e200), ..Case::refused("a rigid slip of 1e200", ARGUMENT) },
         Case { prescribed: forces(nan, 0.0), ..Case::refused("a force of NaN", FINITE) },
         Case {
             load: Load::Force(10.0),
