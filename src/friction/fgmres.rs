@@ -54,6 +54,9 @@ pub struct Until {
     pub most: usize,
 }
 
+/// Of the first residual: below that is the round-off of products, and directions of it are none.
+const ROUND_OFF: f64 = 1e-10;
+
 /// Solves `H x = r`; `weight`: of borders in the inner product.
 pub fn solve(
     system: &mut dyn System,
@@ -64,7 +67,7 @@ pub fn solve(
 ) -> Result<Combination> {
     let square = |v: &Bordered| vectors::dot(threads, &v.field, &v.field) + weight * dot(v.border, v.border);
     let first = square(&r).sqrt();
-    let mut norm = first;
+    let (mut norm, target) = (first, target.max(ROUND_OFF * first));
     let mut found = Combination { left: 1.0, ..Combination::default() };
     if !(norm > target) {
         fields.give(r.field);

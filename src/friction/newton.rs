@@ -68,7 +68,12 @@ pub fn solve(
         let rho = factor * if slip > 0.0 { cap.min(problem.rms_bound() / slip) } else { cap };
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
-        let worst = sight.residual.max(sight.excess).max(missing);
+        let worst = largest([sight.residual, sight.excess, missing]);
+        if !worst.is_finite() {
+            problem.offset = [0.0; 2];
+            state.unload();
+            return Ok(Outcome::Stagnated);
+        }
         if worst < tolerance && (state.is_exact || !certified) {
             return Ok(Outcome::Converged);
         }
@@ -89,7 +94,7 @@ pub fn solve(
         if since > PATIENCE {
             (factor, inner, since, cuts) = (factor * CUT, f64::max(inner * CUT, LEAST_INNER), 0, cuts + 1);
         }
-        if cuts > MOST_CUTS || !worst.is_finite() {
+        if cuts > MOST_CUTS {
             return Ok(Outcome::Stagnated);
         }
         if iterations >= limit {
@@ -106,6 +111,11 @@ pub fn solve(
             return Ok(Outcome::Cancelled);
         }
     }
+}
+
+/// The largest of these, which are not negative; NaN if there is one.
+fn largest(values: [f64; 3]) -> f64 {
+    values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
 /// Whether the certificate is to be tried.

@@ -158,6 +158,22 @@ fn short_steps_on_long_elements_are_solved() {
 }
 
 #[test]
+fn one_element_rolls_in_any_direction_with_any_creepage() {
+    // Where it slips the step has one unknown, and the first direction solves it to round-off: the next ones are none.
+    let grid = Grid::new(1, 1, 7e-4, 7e-4).unwrap();
+    for (nu, g) in [(0.0, 3.1e-6), (0.1, 3.1e-6), (0.28, 3e-4), (0.47, 3.1e-6)] {
+        for k in 0..200 {
+            let angle = 0.5 * PI * f64::from(k % 4);
+            let (xi, eta) = (2e-5 * (0.7 * f64::from(k)).cos(), 2e-5 * (0.7 * f64::from(k)).sin());
+            let step = Friction { rolling_direction: angle, ..rolling([xi, eta], 1e-3) };
+            let (report, found) = run(&mut solver(&grid, nu), &[g], &step, 1e-6);
+            let left = residual((&grid, nu), &[g], &step, &[], (&report, &found));
+            assert!(left <= 1.001e-6, "{nu} {k}: {left} {:?}", found.traction);
+        }
+    }
+}
+
+#[test]
 fn any_start_leads_to_the_same_solution() {
     let (grid, g) = disc(24, |_, _| true);
     let friction = rolling([-0.4, 0.1], 0.3);
