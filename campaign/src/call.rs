@@ -8,7 +8,7 @@ use contact_normal::ffi::*;
 
 use crate::case::{Case, How};
 use crate::effects::{Effects, OwnCoefficients, Values};
-use crate::grid::Load;
+use crate::grid::{Grid, Load};
 
 /// What outputs hold before a call.
 pub const SENTINEL: f64 = -12345.678;
@@ -111,20 +111,24 @@ impl EffectStructs {
     }
 }
 
+/// Bodies of these shear moduli and Poisson ratios, and what presses them together; no effect.
+pub fn bare_scene(grid: &Grid, h: &[f64], (moduli, ratios): ([f64; 2], [f64; 2]), load: Load) -> contact_normal_scene {
+    let mut scene = initialised(contact_normal_scene_init);
+    (scene.mx, scene.my) = (grid.mx as i32, grid.my as i32);
+    (scene.dx, scene.dy) = (grid.dx, grid.dy);
+    scene.undeformed_distance = h.as_ptr();
+    (scene.shear_modulus, scene.poisson_ratio) = (moduli, ratios);
+    match load {
+        Load::Approach(approach) => (scene.load, scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, approach),
+        Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
+    }
+    scene
+}
+
 impl Scene {
     fn of(case: &Case) -> Scene {
         let structs = effect_structs(&case.effects);
-        let mut scene = initialised(contact_normal_scene_init);
-        (scene.mx, scene.my) = (case.grid.mx as i32, case.grid.my as i32);
-        (scene.dx, scene.dy) = (case.grid.dx, case.grid.dy);
-        scene.undeformed_distance = case.h.as_ptr();
-        (scene.shear_modulus, scene.poisson_ratio) = (case.shear_modulus, case.poisson_ratio);
-        match case.load {
-            Load::Approach(approach) => {
-                (scene.load, scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, approach);
-            }
-            Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
-        }
+        let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), case.load);
         structs.point_from(&mut scene, &case.effects);
         Scene { scene, _effects: structs }
     }

@@ -4,9 +4,8 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::call::{cancel, initialised, last_error, Canceller, SENTINEL};
+use crate::call::{bare_scene, cancel, initialised, last_error, Canceller, SENTINEL};
 use crate::friction_case::{Case, Place, Slide, Stop};
-use crate::grid::Load;
 
 /// What a call returned.
 pub struct Found {
@@ -33,16 +32,7 @@ impl Found {
 }
 
 fn scene(place: &Place) -> contact_normal_scene {
-    let mut scene = initialised(contact_normal_scene_init);
-    (scene.mx, scene.my) = (place.grid.mx as i32, place.grid.my as i32);
-    (scene.dx, scene.dy) = (place.grid.dx, place.grid.dy);
-    scene.undeformed_distance = place.h.as_ptr();
-    (scene.shear_modulus, scene.poisson_ratio) = (place.shear_modulus, place.poisson_ratio);
-    match place.load {
-        Load::Approach(approach) => (scene.load, scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, approach),
-        Load::Force(force) => (scene.load, scene.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, force),
-    }
-    scene
+    bare_scene(&place.grid, &place.h, (place.shear_modulus, place.poisson_ratio), place.load)
 }
 
 /// `continues`: from what the handle holds.

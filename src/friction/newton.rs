@@ -102,9 +102,7 @@ pub fn solve(
         }
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
-        let is_stuck = factor < 1.0;
-        let most =
-            if is_stuck { (KEPT / state.q.len()).min(2 * problem.count() + 2).max(DIRECTIONS) } else { DIRECTIONS };
+        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS };
         let effort = Effort { inner: enough, most, length: if cuts % 2 == 1 { PART } else { 1.0 } };
         step(problem, state, tangent, (forces, effort), fields)?;
         if !watch(worst) {
@@ -116,6 +114,11 @@ pub fn solve(
 /// The largest of these, which are not negative; NaN if there is one.
 fn largest(values: [f64; 3]) -> f64 {
     values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
+}
+
+/// As many as there are unknowns, if so many can be kept.
+fn all_directions(problem: &Problem) -> usize {
+    (KEPT / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
 }
 
 /// Whether the certificate is to be tried.

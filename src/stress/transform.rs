@@ -95,26 +95,18 @@ impl Transforms {
         let width = nb.next_multiple_of(2);
         let my = table.len() / mx;
         let Memory { in_x, row, columns, scratch } = memory;
-        let sign = |odd: bool| if odd { -1.0 } else { 1.0 };
         for (two, in_x) in table.chunks(2 * mx).zip(in_x.chunks_mut(2 * width)) {
             let (one, other) = two.split_at(mx);
             row[gap(mx, px)].fill(Complex::default());
             for (kx, re) in one.iter().enumerate() {
                 let value = Complex::new(*re, other.get(kx).copied().unwrap_or(0.0));
-                row[kx] = value;
-                if kx > 0 {
-                    row[px - kx] = sign(odd_x) * value;
-                }
+                put(row, kx, value, odd_x);
             }
-            // Half a period away an odd kernel is its own opposite.
-            if odd_x && 2 * (mx - 1) == px {
-                row[mx - 1] = Complex::default();
-            }
+            close(row, mx, odd_x);
             self.rows.forward(row, scratch);
-            // Spectra of even rows are real, those of odd ones imaginary.
             let (first, second) = in_x.split_at_mut(width);
             for (bin, value) in row[..nb].iter().enumerate() {
-                let (a, b) = if odd_x { (value.im, -value.re) } else { (value.re, value.im) };
+                let (a, b) = both(*value, odd_x);
                 first[bin] = a;
                 if let Some(second) = second.get_mut(bin) {
                     *second = b;
@@ -128,23 +120,16 @@ impl Transforms {
             for (ky, in_x) in in_x.chunks_exact(width).take(my).enumerate() {
                 for (column, two) in columns.chunks_exact_mut(py).zip(in_x[first..].chunks_exact(2)) {
                     let value = Complex::new(two[0], two[1]);
-                    column[ky] = value;
-                    if ky > 0 {
-                        column[py - ky] = sign(odd_y) * value;
-                    }
+                    put(column, ky, value, odd_y);
                 }
             }
-            for column in columns.chunks_exact_mut(py) {
-                if odd_y && 2 * (my - 1) == py {
-                    column[my - 1] = Complex::default();
-                }
-            }
+            columns.chunks_exact_mut(py).for_each(|column| close(column, my, odd_y));
             self.columns.forward(columns, scratch);
             let spectra = spectrum[first * half..].chunks_mut(2 * half);
             for (column, two) in columns.chunks_exact(py).zip(spectra) {
                 let (one, other) = two.split_at_mut(half);
                 for (k, value) in column[..half].iter().enumerate() {
-                    let (a, b) = if odd_y { (value.im, -value.re) } else { (value.re, value.im) };
+                    let (a, b) = both(*value, odd_y);
                     one[k] = a;
                     if let Some(other) = other.get_mut(k) {
                         *other = b;
@@ -188,6 +173,31 @@ impl Transforms {
             one.iter_mut().zip(&*row).for_each(|(out, value)| *out = factor * value.re);
             other.iter_mut().zip(&*row).for_each(|(out, value)| *out = factor * value.im);
         }
+    }
+}
+
+/// Puts a value at an offset and at its mirror image.
+fn put(values: &mut [Complex<f64>], k: usize, value: Complex<f64>, odd: bool) {
+    values[k] = value;
+    if k > 0 {
+        let period = values.len();
+        values[period - k] = if odd { -1.0 } else { 1.0 } * value;
+    }
+}
+
+/// The last of so many values: half a period away what is odd is its own opposite.
+fn close(values: &mut [Complex<f64>], given: usize, odd: bool) {
+    if odd && 2 * (given - 1) == values.len() {
+        values[given - 1] = Complex::default();
+    }
+}
+
+/// The spectra of two rows that were transformed as one: of even rows they are real, of odd ones imaginary.
+fn both(value: Complex<f64>, odd: bool) -> (f64, f64) {
+    if odd {
+        (value.im, -value.re)
+    } else {
+        (value.re, value.im)
     }
 }
 
