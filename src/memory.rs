@@ -5,6 +5,9 @@
 //! a whole call. So the arrays of a solver that is gone serve the next one, of up to [`MOST_KEPT`] bytes in the process; what is more than
 //! that goes back to the system, the longest kept first. [`release`] gives all of it back. Any thread may keep and take. A process
 //! forked while another thread did keeps nothing of its own: nobody waits for the lock.
+//!
+//! *At rest.* The arrays of one solve are not all needed at the same time. A large one that nobody needs for a while [rests](rest): its
+//! room stays reserved, so that it [wakes](wake) without an error, and the system has its pages.
 
 use std::any::Any;
 use std::collections::VecDeque;
@@ -17,6 +20,11 @@ use crate::error::{Error, Result};
 const MOST_KEPT: usize = 192 << 20;
 /// Smaller blocks the allocator keeps by itself.
 const LEAST_KEPT: usize = 1 << 13;
+/// Who asks for more at once has no use for what is kept.
+const TOO_LARGE_TO_KEEP: usize = MOST_KEPT / 2;
+/// Arrays of so many bytes rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
+/// product.
+const RESTS: usize = 1 << 26;
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {
@@ -79,6 +87,9 @@ pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: 
 
 /// The same from the system.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
+    if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {
+        release();
+    }
     v.try_reserve_exact(n - v.len()).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
     ask_for_huge_pages(v.as_mut_ptr().cast(), v.capacity() * size_of::<A>());
     Ok(())
@@ -97,6 +108,52 @@ fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
     shelf.bytes -= kept.bytes;
     drop(shelf);
     kept.values.downcast().ok().map(|values| *values)
+}
+
+/// Whether an array of n values rests.
+pub(crate) fn rests<A>(n: usize) -> bool {
+    n.saturating_mul(size_of::<A>()) >= least_resting()
+}
+
+#[cfg(not(test))]
+fn least_resting() -> usize {
+    RESTS
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Tests of small grids let smaller arrays rest.
+    pub(crate) static LEAST_RESTING: std::cell::Cell<usize> = const { std::cell::Cell::new(RESTS) };
+}
+
+#[cfg(test)]
+fn least_resting() -> usize {
+    LEAST_RESTING.get()
+}
+
+/// Room for n values that wake when they are first needed.
+pub(crate) fn resting<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
+    let mut v = Vec::new();
+    if rests::<A>(n) {
+        reserve(&mut v, n, what)?;
+    } else {
+        unwritten(&mut v, n, mark, what)?;
+    }
+    Ok(v)
+}
+
+/// An array that is not needed for a while: a large one is empty then.
+pub(crate) fn rest<A>(values: &mut Vec<A>) {
+    if rests::<A>(values.capacity()) {
+        values.clear();
+        give_pages_back(values);
+    }
+}
+
+/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
+pub(crate) fn wake<A: Copy>(values: &mut Vec<A>, n: usize, mark: A) {
+    debug_assert!(n <= values.capacity(), "room for {n} values");
+    values.resize(n, mark);
 }
 
 /// Keeps the memory of arrays that nobody needs any more: they are empty then.
@@ -147,6 +204,25 @@ fn ask_for_huge_pages(block: *mut libc::c_void, bytes: usize) {
 
 #[cfg(not(target_os = "linux"))]
 fn ask_for_huge_pages(_: *mut libc::c_void, _: usize) {}
+
+/// Gives the pages within the room of an empty array back; they are entered again when they are touched.
+#[cfg(target_os = "linux")]
+#[allow(unsafe_code)]
+fn give_pages_back<A>(values: &mut Vec<A>) {
+    assert!(values.is_empty());
+    let (room, bytes) = (values.as_mut_ptr(), values.capacity() * size_of::<A>());
+    // SAFETY: it reads a constant of the system.
+    let Ok(page) = usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }) else { return };
+    let before = (room as usize).next_multiple_of(page) - room as usize;
+    let whole = bytes.saturating_sub(before) / page * page;
+    if whole > 0 {
+        // SAFETY: whole pages of the array's own room, which is borrowed mutably and holds no values.
+        unsafe { libc::madvise(room.wrapping_byte_add(before).cast(), whole, libc::MADV_DONTNEED) };
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn give_pages_back<A>(_: &mut Vec<A>) {}
 
 /// Values that are computed, of any type: their memory is not kept.
 pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {

@@ -2,7 +2,7 @@
 //!
 //! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
 //!
-//! `cargo bench -- --large`: with 4096 x 4096 elements (3 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
+//! `cargo bench -- --large`: with 4096 x 4096 elements (2 GB), memory with 8192 x 8192 (5 GB); `-- --huge`: and 16384 x 16384 (20 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
 //! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet.
 //! Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods friction.
 
@@ -15,6 +15,10 @@ mod measure;
 mod methods;
 mod targets;
 mod versus;
+
+/// Bytes per element: 4.5 GB of 8192 x 8192 elements, 20 GB of 16384 x 16384.
+const LARGEST_ELLIPSE: f64 = 4.5e9 / (8192.0 * 8192.0);
+const LARGEST_ROUGH: f64 = 20e9 / (16384.0 * 16384.0);
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -39,12 +43,14 @@ fn main() {
             _ => {}
         }
     }
-    let (mut quick, mut large, mut processor, mut threads, mut tables) = (false, false, false, 2, Vec::new());
+    let (mut quick, mut large, mut huge, mut processor, mut threads) = (false, false, false, false, 2);
+    let mut tables = Vec::new();
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--quick" => quick = true,
             "--large" => large = true,
+            "--huge" => huge = true,
             "--processor" => processor = true,
             "--threads" => threads = rest.next().and_then(|n| n.parse().ok()).expect("--threads N"),
             table => tables.push(table),
@@ -97,7 +103,13 @@ fn main() {
         targets::norm_against_auto(1);
     }
     if wanted("memory") {
-        targets::memory(if large { &[1024, 4096] } else { &[1024] });
+        targets::memory(&[("ellipse", 1024, 120.0), ("rough", 1024, 120.0)]);
+        if large {
+            targets::memory(&[("ellipse", 4096, 75.0), ("rough", 4096, 75.0), ("ellipse", 8192, LARGEST_ELLIPSE)]);
+        }
+        if huge {
+            targets::memory(&[("rough", 16384, LARGEST_ROUGH)]);
+        }
     }
     measure::by_processor(false);
     if wanted("batch") && threads > 1 {

@@ -259,21 +259,23 @@ pub fn norm_against_auto(threads: usize) {
 /// The argument that makes a process do nothing but [`solve_once`].
 pub const SOLVE_ONCE: &str = "--solve-once";
 
-/// Peak memory of cold solves, each in a process of its own.
-pub fn memory(sizes: &[usize]) {
-    println!("\n### Peak memory of one cold solve, bytes per element\n");
-    println!("| case | before the call (h, the program) | peak | at most | |");
-    println!("|---|---|---|---|---|");
-    for &m in sizes {
-        for name in ["ellipse", "rough"] {
-            let program = std::env::current_exe().expect("this program's path");
-            let out = Command::new(program).args([SOLVE_ONCE, name, &m.to_string()]).output().expect("a process");
-            assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-            let text = String::from_utf8_lossy(&out.stdout);
-            let bytes: Vec<f64> = text.split_whitespace().map(|x| x.parse().expect("a number")).collect();
-            let [before, peak] = [bytes[0], bytes[1]].map(|bytes| bytes / (m * m) as f64);
-            println!("| {name} {m} | {before:.0} | {peak:.0} | 120 | {} |", mark(peak, 120.0));
-        }
+/// Peak memory of cold solves with two threads, each in a process of its own: a case, its size, and the bytes per element that it may take.
+pub fn memory(cases: &[(&str, usize, f64)]) {
+    println!("\n### Peak memory of one cold solve with two threads, bytes per element\n");
+    println!("| case | before the call (h, the program) | peak | in all | call | at most | |");
+    println!("|---|---|---|---|---|---|---|");
+    for (name, m, at_most) in cases {
+        let program = std::env::current_exe().expect("this program's path");
+        let out = Command::new(program).args([SOLVE_ONCE, name, &m.to_string()]).output().expect("a process");
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        let text = String::from_utf8_lossy(&out.stdout);
+        let numbers: Vec<f64> = text.split_whitespace().map(|x| x.parse().expect("a number")).collect();
+        let [before, peak] = [numbers[0], numbers[1]].map(|bytes| bytes / (m * m) as f64);
+        let (all, call) = (numbers[1] / 1e9, shown(numbers[2]));
+        println!(
+            "| {name} {m} | {before:.0} | {peak:.1} | {all:.2} GB | {call} | {at_most:.1} | {} |",
+            mark(peak, *at_most)
+        );
     }
 }
 
@@ -300,15 +302,17 @@ pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
     }
 }
 
-/// One cold solve; prints the bytes held before it and the most that were held.
+/// One cold solve; prints the bytes held before it, the most that were held, and its seconds.
 pub fn solve_once(name: &str, m: usize) {
     let case = by_name(name, m);
     // What making the surface took must not count.
     std::fs::write("/proc/self/clear_refs", "5").expect("the peak can be reset (Linux)");
     let before = status_of_memory("VmRSS:");
-    let (stop, _) = cold(&case.scene(), &options(1));
-    assert_eq!(stop, Outcome::Converged);
-    println!("{before} {}", status_of_memory("VmHWM:"));
+    let took = seconds(|| {
+        let (stop, _) = cold(&case.scene(), &options(2));
+        assert_eq!(stop, Outcome::Converged);
+    });
+    println!("{before} {} {took}", status_of_memory("VmHWM:"));
 }
 
 /// Bytes, from what Linux tells of this process.

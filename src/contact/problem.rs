@@ -110,6 +110,7 @@ impl Problem {
     /// `u = A p`.
     pub fn displace(&mut self, p: &[f64], u: &mut [f64]) {
         self.operator.apply(p, u, &mut self.workspace);
+        self.workspace.rest();
         self.products += 1;
     }
 

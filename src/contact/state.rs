@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{blank, keep, reserve, zeros};
+use crate::memory::{blank, keep, reserve, rest, zeros};
 use crate::scene::Load;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
@@ -71,9 +71,14 @@ impl State {
         })
     }
 
+    /// h, p and u are not needed for a while.
+    pub fn rest(&mut self) {
+        [&mut self.h, &mut self.p, &mut self.u].into_iter().for_each(rest);
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.p.len() * (3 * size_of::<f64>() + size_of::<bool>())
+        self.p.capacity() * (3 * size_of::<f64>() + size_of::<bool>())
     }
 
     /// Whether an element is at its limit.

@@ -10,10 +10,12 @@ pub mod fft;
 mod operator;
 mod row_tables;
 mod rows;
+mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};
 pub use convolution::SetUp;
-pub use operator::{Operator, Workspace};
+pub use operator::Operator;
+pub use workspace::Workspace;
 
 /// Arithmetic of the inner work; results are always computed in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,79 +7,37 @@
 //! The product is fused and pruned: transforms in x of those rows only that hold pressures ([`Rows`]); in y a [`Convolution`], or where
 //! A is Toeplitz in x only a product by matrices ([`PerRow`]); transforms back in x, to which a diagonal is added.
 
-use std::mem::take;
+use std::iter::once;
 use std::ops::Range;
 
-use super::columns::BLOCK;
 use super::convolution::{Convolution, Even, SetUp};
 use super::fft::{good_length, Complex, Real, RowTransform};
 use super::row_tables::PerRow;
-use super::rows::{Piece, Product, Rows};
+use super::rows::{Product, Rows};
+use super::workspace::Workspace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Patches};
-use crate::memory::{blank, computed, keep, reserve, zeros};
+use crate::memory::{computed, reserve, wake};
 use crate::threads::Threads;
 
 /// What memory is for.
 const DIAGONAL: &str = "the operator's diagonal";
-const WORKSPACE: &str = "the product's workspace";
 
 /// The y direction.
-enum Columns<T: Real> {
+pub(super) enum Columns<T: Real> {
     Convolution(Convolution<T>),
     PerRow(PerRow<T>),
 }
 
 /// The operator of one grid.
 pub struct Operator<T: Real> {
-    rows: Rows<T>,
-    columns: Columns<T>,
+    pub(super) rows: Rows<T>,
+    pub(super) columns: Columns<T>,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
-    coupling: Option<Patches>,
-}
-
-/// Memory that a product needs, so that it allocates nothing.
-pub struct Workspace<T: Real> {
-    product: Product<T>,
-    /// With patches: p scaled for one of them, and its product.
-    masked: [Vec<T>; 2],
-    /// And p, where u takes its place.
-    given: Vec<T>,
-}
-
-impl<T: Real> Workspace<T> {
-    /// Makes room for products by another operator too. A smaller grid may need more of something: its transforms may be
-    /// of another kind.
-    pub fn cover(&mut self, mut other: Workspace<T>) {
-        fn longer<A>(mine: &mut Vec<A>, other: Vec<A>) {
-            if other.len() > mine.len() {
-                *mine = other;
-            }
-        }
-        longer(&mut self.product.bins, take(&mut other.product.bins));
-        for (mine, other) in self.product.pieces.iter_mut().zip(take(&mut other.product.pieces)) {
-            longer(&mut mine.row, other.row);
-            longer(&mut mine.columns, other.columns);
-            longer(&mut mine.scratch, other.scratch);
-        }
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.product.bins[..]) + 3 * size_of_val(&self.given[..])
-    }
-}
-
-impl<T: Real> Drop for Workspace<T> {
-    fn drop(&mut self) {
-        keep([&mut self.product.bins]);
-        self.product.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns]));
-        let [scaled, product] = &mut self.masked;
-        keep([scaled, product, &mut self.given]);
-    }
+    pub(super) coupling: Option<Patches>,
 }
 
 /// The periods of a product.
@@ -214,28 +172,7 @@ impl<T: Real> Operator<T> {
 
     /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
-        let transform = &self.rows.transform;
-        let nan = Complex::new(T::nan(), T::nan());
-        let (length, sums) = match &self.columns {
-            Columns::Convolution(convolution) => (convolution.columns.length(), 0),
-            Columns::PerRow(_) => (self.rows.my, 2 * self.rows.my),
-        };
-        let piece = |_| {
-            let mut scratch = transform.scratch();
-            if let Columns::Convolution(convolution) = &self.columns {
-                convolution.columns.fit(&mut scratch);
-            }
-            let columns = blank(BLOCK * length, nan, WORKSPACE)?;
-            Ok(Piece { row: zeros(transform.length().max(sums), WORKSPACE)?, columns, scratch })
-        };
-        let masked = self.coupling.as_ref().map_or(0, |_| self.rows.mx * self.rows.my);
-        let memory = |n| zeros(n, WORKSPACE);
-        let bins = blank(self.rows.my * transform.bins(), nan, WORKSPACE)?;
-        Ok(Workspace {
-            product: Product { bins, pieces: (0..self.rows.threads.pieces()).map(piece).collect::<Result<_>>()? },
-            masked: [memory(masked)?, memory(masked)?],
-            given: memory(masked)?,
-        })
+        Workspace::new(once(self))
     }
 
     /// Bytes held by the operator.
@@ -266,7 +203,7 @@ impl<T: Real> Operator<T> {
             given.copy_from_slice(p);
             return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
         }
-        let loaded = self.rows.forward(p, product);
+        let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
             return self.rows.back(p, product, |_, u, row| u.copy_from_slice(row));
@@ -279,7 +216,7 @@ impl<T: Real> Operator<T> {
     }
 
     fn without_coupling(&self, p: &[T], u: &mut [T], product: &mut Product<T>) {
-        let loaded = self.rows.forward(p, product);
+        let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
             return self.rows.back(u, product, |_, u, row| u.copy_from_slice(row));
@@ -290,6 +227,13 @@ impl<T: Real> Operator<T> {
                 *u = *value + *d * *p;
             }
         });
+    }
+
+    /// Transforms the rows that hold pressures; returns which.
+    fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
+        let n = product.bins.len().max(self.bins());
+        wake(&mut product.bins, n, Complex::new(T::nan(), T::nan()));
+        self.rows.forward(p, product)
     }
 
     fn convolve(&self, loaded: Range<usize>, product: &mut Product<T>) {

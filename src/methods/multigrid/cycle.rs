@@ -60,10 +60,7 @@ impl Multigrid {
     /// Sets up cycles of one shape on the grid of `problem`.
     pub fn new(problem: &Problem, shape: CycleShape) -> Result<Multigrid> {
         let levels = levels(problem, shape.smoother, shape.coarsest)?;
-        let mut workspace = levels[0].operator.workspace()?;
-        for level in &levels[1..] {
-            workspace.cover(level.operator.workspace()?);
-        }
+        let workspace = Workspace::new(levels.iter().map(|level| &*level.operator))?;
         Ok(Multigrid { levels, shape, coarsest: Coarsest::new(), workspace })
     }
 

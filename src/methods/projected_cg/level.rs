@@ -2,110 +2,18 @@
 
 use std::sync::Arc;
 
+use super::inner::Inner;
 use super::scaling::Scaling;
-use super::{Cycle, End, Iteration, Window};
+use super::{End, Window};
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::blank;
-use crate::operator::fft::Real;
+use crate::memory::{blank, rest, wake};
 use crate::operator::Precision;
 use crate::operator::{reserve, Operator};
 use crate::progress::{Goal, Monitor};
 use crate::threads::Threads;
-
-/// The iteration in the precision asked for.
-enum Inner {
-    Single(Iteration<f32>),
-    Double(Iteration<f64>),
-}
-
-impl Inner {
-    /// On `grid`, of which `operator` is the one in double precision if that is known. Coefficients are taken times `factor`.
-    fn new(
-        influence: &Coefficients,
-        grid: &Grid,
-        operator: Option<&Operator<f64>>,
-        factor: f64,
-        precision: Precision,
-        threads: &Threads,
-    ) -> Result<Inner> {
-        fn iteration<T: Real>(
-            influence: &Coefficients,
-            grid: &Grid,
-            operator: Option<&Operator<f64>>,
-            factor: f64,
-            threads: &Threads,
-        ) -> Result<Iteration<T>> {
-            let operator = match operator {
-                Some(operator) => operator.in_precision(factor)?,
-                None => Operator::scaled(influence, factor, grid, threads)?,
-            };
-            Iteration::new(operator, influence, factor, grid, threads)
-        }
-        let threads = &threads.suited_to(grid.len());
-        Ok(match precision {
-            Precision::Double => Inner::Double(iteration(influence, grid, operator, factor, threads)?),
-            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, factor, threads)?),
-        })
-    }
-
-    /// See [`Iteration::renew`].
-    fn renew(
-        &mut self,
-        influence: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        operator: Option<&Operator<f64>>,
-    ) -> Result<()> {
-        match self {
-            Inner::Single(iteration) => iteration.renew(influence, factor, grid, operator),
-            Inner::Double(iteration) => iteration.renew(influence, factor, grid, operator),
-        }
-    }
-
-    fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
-        match self {
-            Inner::Single(iteration) => iteration.correct(state, set),
-            Inner::Double(iteration) => iteration.correct(state, set),
-        }
-    }
-
-    fn displace(&mut self, state: &mut State) {
-        match self {
-            Inner::Single(iteration) => iteration.displace(state),
-            Inner::Double(iteration) => iteration.displace(state),
-        }
-    }
-
-    fn run<S: AdmissibleSet>(
-        &mut self,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        after_cycle: impl FnMut(&Cycle) -> bool,
-    ) -> End {
-        match self {
-            Inner::Single(iteration) => iteration.run(state, set, goal, after_cycle),
-            Inner::Double(iteration) => iteration.run(state, set, goal, after_cycle),
-        }
-    }
-
-    fn reserve_for_limits(&mut self) -> Result<()> {
-        match self {
-            Inner::Single(iteration) => iteration.reserve_for_limits(),
-            Inner::Double(iteration) => iteration.reserve_for_limits(),
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        match self {
-            Inner::Single(iteration) => iteration.bytes(),
-            Inner::Double(iteration) => iteration.bytes(),
-        }
-    }
-}
 
 /// The iteration on a window.
 struct Windowed {
@@ -238,6 +146,7 @@ impl Level {
         let threads = &self.threads.clone();
         let Windowed { window, inner, units, part, .. } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
+        inner.wake(grid.len());
         if S::LIMITED {
             reserve(&mut limits, grid.len(), "limits of the pressures")?;
             limits.clear();
@@ -248,6 +157,7 @@ impl Level {
         }
         let Some(part) = part else {
             let result = work(inner, &grid, units, state, S::within(&limits));
+            inner.rest();
             self.limits = limits;
             return Ok(result);
         };
@@ -259,20 +169,31 @@ impl Level {
         } else {
             part.at_limit.clear();
         }
-        window.extract(&state.grid, &state.h, &mut part.h, threads);
-        window.extract(&state.grid, &state.p, &mut part.p, threads);
         window.extract(&state.grid, &state.contact, &mut part.contact, threads);
-        if displacement != Freshness::Stale {
-            window.extract(&state.grid, &state.u, &mut part.u, threads);
+        // One after the other: what has been extracted rests.
+        let extract = |from: &mut Vec<f64>, to: &mut Vec<f64>| {
+            wake(to, grid.len(), f64::NAN);
+            window.extract(&state.grid, from, to, threads);
+        };
+        extract(&mut state.h, &mut part.h);
+        extract(&mut state.p, &mut part.p);
+        rest(&mut state.p);
+        if displacement == Freshness::Stale {
+            wake(&mut part.u, grid.len(), f64::NAN);
+        } else {
+            extract(&mut state.u, &mut part.u);
         }
+        rest(&mut state.u);
         (part.load, part.approach) = (state.load, state.approach);
         if *units != Scaling::SAME {
             units.convert(part);
         }
         let result = work(inner, &grid, units, part, S::within(&limits));
+        inner.rest();
         if *units != Scaling::SAME {
             units.convert_back(part);
         }
+        [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, state.grid.len(), f64::NAN));
         window.insert(&state.grid, &part.p, &mut state.p, 0.0, threads);
         window.insert(&state.grid, &part.contact, &mut state.contact, false, threads);
         if S::LIMITED {
@@ -282,6 +203,12 @@ impl Level {
         state.approach = part.approach;
         self.limits = limits;
         Ok(result)
+    }
+
+    /// The window's part of the state is not needed for a while.
+    pub fn rest(&mut self) {
+        let part = self.windowed.as_mut().and_then(|windowed| windowed.part.as_mut());
+        part.into_iter().for_each(State::rest);
     }
 
     /// The u of the last iteration, for what follows on other grids; infinite outside the window.
@@ -306,7 +233,12 @@ impl Level {
         let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None
         } else {
-            Some(|| State::new(grid, blank(grid.len(), f64::NAN, "undeformed distances")?, state.load, state.approach))
+            Some(|| {
+                let h = blank(grid.len(), f64::NAN, "undeformed distances")?;
+                let mut part = State::new(grid, h, state.load, state.approach)?;
+                part.rest();
+                Ok(part)
+            })
         };
         // The operator of a window depends on its size only.
         let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;

@@ -2,6 +2,7 @@
 //! iteration over the grids.
 
 mod coarse_grids;
+mod inner;
 mod iteration;
 mod level;
 mod limits;

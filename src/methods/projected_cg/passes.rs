@@ -88,7 +88,7 @@ impl<T: Real> Iteration<T> {
     pub(super) fn precondition(&mut self, state: &State) {
         if let Some(m) = &mut self.preconditioner {
             let by_force = matches!(state.load, Load::Force(_));
-            m.apply(&mut self.z, by_force.then_some(&state.contact[..]));
+            m.apply(&mut self.z, by_force.then_some(&state.contact[..]), &mut self.workspace);
         }
     }
 

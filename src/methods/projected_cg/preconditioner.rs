@@ -21,10 +21,9 @@ struct Part<T: Real> {
     weights: Vec<T>,
 }
 
-/// M, and the memory that it needs.
+/// M, and the memory that a mix needs.
 pub struct Preconditioner<T: Real> {
     parts: Vec<Part<T>>,
-    workspace: Workspace<T>,
     /// Of a mix: r, a term of the sum, and M 1.
     right: Vec<T>,
     term: Vec<T>,
@@ -49,22 +48,21 @@ impl<T: Real> Preconditioner<T> {
         }
         let mixed = if parts[0].weights.is_empty() { 0 } else { grid.len() };
         let memory = || zeros(mixed, "the preconditioner");
-        Ok(Some(Preconditioner {
-            workspace: parts[0].inverse.workspace()?,
-            right: memory()?,
-            term: memory()?,
-            unit: memory()?,
-            parts,
-        }))
+        Ok(Some(Preconditioner { right: memory()?, term: memory()?, unit: memory()?, parts }))
+    }
+
+    /// An operator, the workspace of which products by M need.
+    pub fn inverse(&self) -> &Operator<T> {
+        &self.parts[0].inverse
     }
 
     /// z = M z. With a prescribed force `carried_by` is the contact area: a mix is no multiple of 1 on a uniform residual, so that
     /// the approach, that is the residual's constant, is chosen such that z has mean zero: `z = M z - (1, M z)/(1, M 1) M 1`.
-    pub fn apply(&mut self, z: &mut [T], carried_by: Option<&[bool]>) {
+    pub fn apply(&mut self, z: &mut [T], carried_by: Option<&[bool]>, workspace: &mut Workspace<T>) {
         if self.right.is_empty() {
-            return self.parts[0].inverse.apply_in_place(z, &mut self.workspace);
+            return self.parts[0].inverse.apply_in_place(z, workspace);
         }
-        let Preconditioner { parts, workspace, right, term, unit } = self;
+        let Preconditioner { parts, right, term, unit } = self;
         mix(parts, z, workspace, [right, term]);
         let Some(contact) = carried_by else { return };
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });
@@ -79,7 +77,7 @@ impl<T: Real> Preconditioner<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let parts: usize = self.parts.iter().map(|part| part.inverse.bytes() + size_of_val(&part.weights[..])).sum();
-        parts + self.workspace.bytes() + 3 * size_of_val(&self.right[..])
+        parts + 3 * size_of_val(&self.right[..])
     }
 }
 

@@ -10,7 +10,7 @@ use super::predictor::Predictor;
 use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
-use crate::memory::reserve;
+use crate::memory::{release, reserve, rests};
 use crate::methods::{Change, Habits, Step};
 use crate::operator::Precision;
 use crate::progress::{Goal, Monitor};
@@ -94,9 +94,15 @@ impl ProjectedCg {
         let coarse = coarse_grids(&mut self.coarse, problem, self.precision)?;
         state.u_is = coarse.start(state, set, problem.self_influence(), goal, monitor)?;
         let single = self.precision != Precision::Double;
-        let noisy = || single && coarse.noise(&problem.grid, problem.self_influence()) > NOISE * goal.tolerance;
-        if state.u_is == Freshness::Near && !monitor.is_cancelled() && noisy() {
+        let near = state.u_is == Freshness::Near && !monitor.is_cancelled();
+        let noisy = near && single && coarse.noise(&problem.grid, problem.self_influence()) > NOISE * goal.tolerance;
+        if rests::<f64>(state.p.len()) {
+            self.coarse = None;
+            release();
+        }
+        if noisy {
             self.finest.correct(state, set)?;
+            self.finest.rest();
             problem.refresh(state, set);
             monitor.count_products(problem.take_products(), problem.work);
         }
@@ -172,6 +178,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let end = self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
+        self.finest.rest();
         state.u_is = Freshness::Stale;
         let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;
         if gives_up || goal.by_update() {

@@ -1,14 +1,16 @@
 //! What the iteration on one grid holds.
 
+use std::iter::once;
+
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
 use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::keep;
+use crate::memory::{keep, rest, wake};
 use crate::operator::fft::Real;
-use crate::operator::{reserve, zeros, Operator, SetUp, Workspace};
+use crate::operator::{reserve, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
@@ -65,11 +67,14 @@ impl<T: Real> Iteration<T> {
         let preconditioner = preconditioner(influence, factor, grid, threads)?;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
-        let directions = || zeros(n, "search directions");
+        let directions = || {
+            let mut direction = Vec::new();
+            reserve(&mut direction, n, "search directions").map(|()| direction)
+        };
         let mut debts = Vec::new();
         reserve(&mut debts, n, "truncated elements")?;
         Ok(Iteration {
-            workspace: operator.workspace()?,
+            workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
             t: directions()?,
@@ -92,24 +97,41 @@ impl<T: Real> Iteration<T> {
         grid: &Grid,
         whole: Option<&Operator<f64>>,
     ) -> Result<()> {
-        let periods = self.operator.periods();
+        let before = self.periods();
         match whole {
             Some(whole) => self.operator = whole.in_precision(factor)?,
             None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
         }
-        if self.operator.periods() != periods {
-            self.workspace = self.operator.workspace()?;
-        }
         // What the one before held serves the next.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
+        if self.periods() != before {
+            self.workspace = workspace(&self.operator, &self.preconditioner)?;
+        }
         Ok(())
+    }
+
+    /// Of the operator, and of the preconditioner if there is one.
+    fn periods(&self) -> [Option<(usize, usize)>; 2] {
+        let inverse = self.preconditioner.as_ref().map(|m| m.inverse().periods());
+        [Some(self.operator.periods()), inverse]
+    }
+
+    /// It is not needed for a while.
+    pub fn rest(&mut self) {
+        self.workspace.rest();
+        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
+    }
+
+    /// Before it is used, at first or again, on a grid of n elements.
+    pub fn wake(&mut self, n: usize) {
+        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.len() * 3 * size_of::<T>()
+        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.capacity() * 3 * size_of::<T>()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -122,6 +144,11 @@ impl<T: Real> Iteration<T> {
             *u = q.to_double();
         }
     }
+}
+
+/// Memory for products by either.
+fn workspace<T: Real>(operator: &Operator<T>, preconditioner: &Option<Preconditioner<T>>) -> Result<Workspace<T>> {
+    Workspace::new(once(operator).chain(preconditioner.as_ref().map(Preconditioner::inverse)))
 }
 
 fn preconditioner<T: Real>(
