@@ -4,6 +4,7 @@
 mod limited_memory;
 
 use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use contact_normal::ffi::*;
 
@@ -25,6 +26,12 @@ fn scene(m: usize, h: &mut Vec<f64>) -> contact_normal_scene {
     (scene.shear_modulus, scene.poisson_ratio) = ([1.0, f64::INFINITY], [0.3, 0.3]);
     (scene.approach, scene.undeformed_distance) = (0.15, h.as_ptr());
     scene
+}
+
+/// What is kept is kept for the process: one test at a time counts it.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 const METHODS: [i32; 5] = [
@@ -52,6 +59,7 @@ fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, al
 
 #[test]
 fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
+    let _alone = alone();
     // An array of one byte an element is large then, and no array of a row or a transform is.
     let m = 520;
     let mut h = Vec::new();
@@ -112,6 +120,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
 
 #[test]
 fn an_absurd_size_is_out_of_memory() {
+    let _alone = alone();
     // 3.2 GB of zeros that no page stands behind: the operator would be larger still.
     let m = 20_000;
     let bytes = m * m * size_of::<f64>();
@@ -134,6 +143,7 @@ fn an_absurd_size_is_out_of_memory() {
 
 #[test]
 fn ten_thousand_handles_leave_nothing_behind() {
+    let _alone = alone();
     let mut h = Vec::new();
     let scene = scene(9, &mut h);
     let mut p = vec![0.0; 81];
