@@ -78,7 +78,7 @@ impl State {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.p.capacity() * (3 * size_of::<f64>() + size_of::<bool>())
+        self.contact.len() * (3 * size_of::<f64>() + size_of::<bool>())
     }
 
     /// Whether an element is at its limit.

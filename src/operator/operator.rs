@@ -175,6 +175,11 @@ impl<T: Real> Operator<T> {
         Workspace::new(once(self))
     }
 
+    /// Elements of the grid.
+    pub fn elements(&self) -> usize {
+        self.rows.mx * self.rows.my
+    }
+
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
         let columns = match &self.columns {
@@ -198,7 +203,7 @@ impl<T: Real> Operator<T> {
     /// `p = A p`.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         assert!(p.len() == self.rows.mx * self.rows.my);
-        let Workspace { product, masked, given } = workspace;
+        let Workspace { product, masked, given, .. } = workspace;
         if let Some(coupling) = &self.coupling {
             given.copy_from_slice(p);
             return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));

@@ -13,6 +13,8 @@ const WORKSPACE: &str = "the product's workspace";
 /// Memory that a product needs, so that it allocates nothing.
 pub struct Workspace<T: Real> {
     pub(super) product: Product<T>,
+    /// Those that a product needs, at rest or not.
+    bins: usize,
     /// With patches: p scaled for one of them, and its product.
     pub(super) masked: [Vec<T>; 2],
     /// And p, where u takes its place.
@@ -34,9 +36,11 @@ impl<T: Real> Workspace<T> {
             Ok(Piece { row: zeros(row, WORKSPACE)?, columns: blank(columns, nan, WORKSPACE)?, scratch })
         };
         let memory = |n| zeros(n, WORKSPACE);
+        let bins = most(Operator::bins);
         Ok(Workspace {
+            bins,
             product: Product {
-                bins: resting(most(Operator::bins), nan, WORKSPACE)?,
+                bins: resting(bins, nan, WORKSPACE)?,
                 pieces: (0..most(Operator::pieces)).map(piece).collect::<Result<_>>()?,
             },
             masked: [memory(masked)?, memory(masked)?],
@@ -51,7 +55,7 @@ impl<T: Real> Workspace<T> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.product.bins.capacity() * size_of::<Complex<T>>() + 3 * size_of_val(&self.given[..])
+        self.bins * size_of::<Complex<T>>() + 3 * size_of_val(&self.given[..])
     }
 }
 

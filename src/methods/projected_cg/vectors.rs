@@ -131,7 +131,8 @@ impl<T: Real> Iteration<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + self.t.capacity() * 3 * size_of::<T>()
+        let directions = 3 * self.operator.elements() * size_of::<T>();
+        self.operator.bytes() + preconditioner + self.workspace.bytes() + directions
     }
 
     /// `u = A p` in the iteration's precision.
