@@ -20,8 +20,7 @@
 use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step};
-use crate::progress::{Goal, Monitor};
+use crate::methods::{Change, Habits, Step, Task};
 use crate::scene::Load;
 
 /// The method, and its memory, kept from one solve to the next. A must be symmetric.
@@ -67,14 +66,9 @@ impl<S: AdmissibleSet> Step<S> for Descent {
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        _: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
+        let Task { problem, state, monitor, .. } = task;
+        let set = task.set;
         if !std::mem::replace(&mut self.began, true) {
             take_over(problem, state, set);
             self.weigh(problem);

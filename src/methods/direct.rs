@@ -14,13 +14,12 @@ use faer::linalg::cholesky::llt::{factor, solve};
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par};
 
-use crate::contact::{AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::methods::{Change, Habits, Step};
+use crate::methods::{Change, Habits, Step, Task};
 use crate::operator::zeros;
-use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 
 /// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
@@ -132,19 +131,9 @@ impl<S: AdmissibleSet> Step<S> for Direct {
         Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
     }
 
-    fn begin(&mut self, _: &State) -> Result<()> {
-        Ok(())
-    }
-
     /// p on C, those that leave it being found on the way.
-    fn step(
-        &mut self,
-        _: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
+        let Task { state, set, goal, monitor, .. } = task;
         let gives_up = Change { gives_up: true, ..Change::default() };
         loop {
             self.elements.clear();

@@ -5,10 +5,12 @@ pub mod direct;
 pub mod multigrid;
 pub mod norm;
 pub mod projected_cg;
+mod task;
 
-use crate::contact::{AdmissibleSet, Problem, State};
+pub use task::Task;
+
+use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
-use crate::progress::{Goal, Monitor};
 
 /// Where a solve starts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,17 +29,12 @@ pub trait Step<S: AdmissibleSet> {
     fn name(&self) -> &'static str;
 
     /// Gets ready for `state`: memory, and what was learnt from the solve before is forgotten.
-    fn begin(&mut self, state: &State) -> Result<()>;
+    fn begin(&mut self, _state: &State) -> Result<()> {
+        Ok(())
+    }
 
     /// Changes p; `state.u_is` says what u is worth afterwards.
-    fn step(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change>;
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change>;
 
     /// When it is given up, and when elements that change sides keep an answer from being one.
     fn habits(&self) -> Habits;

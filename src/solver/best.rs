@@ -1,8 +1,8 @@
 //! The best iterate of a solve: what is returned when no method reaches the goal.
 
-use super::task::Task;
 use crate::contact::{truncate, AdmissibleSet, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
+use crate::methods::Task;
 use crate::scene::Load;
 
 /// The iterate of the least violation so far.

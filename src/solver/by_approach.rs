@@ -14,14 +14,13 @@
 
 use super::best::Best;
 use super::iterate::iterate;
-use super::task::Task;
-use crate::contact::{lowest, AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{lowest, AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::descent::Descent;
 use crate::methods::projected_cg::ProjectedCg;
-use crate::methods::{Change, Habits, Step};
-use crate::progress::{Criterion, Goal, Monitor, Outcome};
+use crate::methods::{Change, Habits, Step, Task};
+use crate::progress::{Criterion, Goal, Outcome};
 use crate::scene::Load;
 
 /// Each solve by approach reaches this part of the tolerance: both ends together must pass the certificate.
@@ -153,23 +152,18 @@ impl<S: AdmissibleSet> Step<S> for ByApproach<'_> {
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
         let gives_up = Change { gives_up: true, ..Change::default() };
-        let Load::Force(force) = state.load else { return Ok(gives_up) };
-        let wanted = force / state.grid.element_area();
-        let goal = Goal { criterion: Criterion::Residual, tolerance: AIM * goal.tolerance, ..*goal };
-        let mut task = Task { problem, state, set, goal, monitor };
+        let Load::Force(force) = task.state.load else { return Ok(gives_up) };
+        let wanted = force / task.state.grid.element_area();
+        let aim = Goal { criterion: Criterion::Residual, tolerance: AIM * task.goal.tolerance, ..task.goal };
+        let goal = std::mem::replace(&mut task.goal, aim);
         let found = match self.last {
-            None => self.enclose(&mut task, wanted)?,
-            Some(_) => self.narrow(&mut task, wanted)?,
+            None => self.enclose(task, wanted)?,
+            Some(_) => self.narrow(task, wanted)?,
         };
+        task.goal = goal;
+        let (state, set) = (&mut *task.state, task.set);
         if !found {
             // The force is not carried.
             state.u_is = Freshness::Stale;

@@ -13,10 +13,9 @@
 //! The order of (4.1) and (4.2) matters: with the product before the truncation the loop cycles for ever.
 
 use super::best::Best;
-use super::task::Task;
 use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Survey};
 use crate::error::{Error, Result};
-use crate::methods::{Change, Step};
+use crate::methods::{Change, Step, Task};
 use crate::progress::Outcome;
 
 /// Runs one method from what the state holds. Unless it converges, `best` knows the best iterate.
@@ -82,7 +81,7 @@ pub fn iterate<S: AdmissibleSet>(
 /// A step and its products. Coefficients of an elastic body are positive definite: where round-off says otherwise the method is at its
 /// end, and only a caller's table is refused for it.
 fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
-    let change = match method.step(task.problem, task.state, task.set, &task.goal, task.monitor) {
+    let change = match method.step(task) {
         Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {
             log::info!("{}: {message}", method.name());
             task.state.u_is = Freshness::Stale;

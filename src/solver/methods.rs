@@ -6,7 +6,6 @@ use super::estimates;
 use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
-use super::task::Task;
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
 use crate::methods::descent::Descent;
@@ -14,10 +13,10 @@ use crate::methods::direct::Direct;
 use crate::methods::multigrid::CycleShape;
 use crate::methods::norm::Norm;
 use crate::methods::projected_cg::ProjectedCg;
-use crate::methods::{Start, Step};
+use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
 
-/// A guess, or a stalled iterate, whose violation is larger is worth less than what the coarser grids find.
+/// A guess whose violation is larger is worth less than what the coarser grids find.
 const WORTHLESS: f64 = 0.3;
 
 /// The methods of a solver, set up when they are first asked for and kept.
@@ -69,22 +68,15 @@ impl Methods {
     ) -> Result<Outcome> {
         self.best.forget();
         let has_direct = self.direct.is_some();
-        let (mut stop, mut first) = (Outcome::Stagnated, true);
-        for &stage in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct) {
-            let from_nothing = match std::mem::take(&mut first) {
-                true => match self.take_over(stage, task, from)? {
-                    Some(from_nothing) => from_nothing,
+        let mut stop = Outcome::Stagnated;
+        for (i, &stage) in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct).enumerate() {
+            if i > 0 {
+                self.hand_over(stage, task);
+            } else {
+                match self.take_over(stage, task, from)? {
+                    Some(true) => self.start(stage, task, from, error_ratio)?,
+                    Some(false) => {}
                     None => return Ok(Outcome::Converged),
-                },
-                false => self.hand_over(stage, task),
-            };
-            if from_nothing {
-                self.start(stage, task, from)?;
-                if error_ratio > 0.0 {
-                    let predicted = estimates::predict(task.problem, task.state);
-                    // An answer whose residual is larger than that is none, however coarse the grid.
-                    let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);
-                    task.goal.tolerance = task.goal.tolerance.max(enough);
                 }
             }
             stop = self.run(stage, task)?;
@@ -133,38 +125,47 @@ impl Methods {
         Ok(Some(false))
     }
 
-    /// The next method goes on from the best iterate; true if that is worth less than a start of its own.
-    fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> bool {
-        // What the direct solve leaves, having done nothing, is the start of the next.
-        if stage == Stage::ProjectedCg {
-            return false;
+    /// The next method goes on from the best iterate; from what the direct solve leaves, having done nothing, as it is.
+    fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) {
+        if stage != Stage::ProjectedCg {
+            log::info!("no further progress on this scene: {stage:?} takes over");
+            self.best.restore(task);
         }
-        log::info!("no further progress on this scene: {stage:?} takes over");
-        self.best.restore(task);
-        stage == Stage::FullMultigrid && !(self.best.violation <= WORTHLESS)
     }
 
-    /// A start from nothing.
-    fn start<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>, from: Start) -> Result<()> {
+    /// A start from nothing. An `error_ratio` may raise the tolerance of the goal.
+    fn start<S: AdmissibleSet>(
+        &mut self,
+        stage: Stage,
+        task: &mut Task<'_, '_, S>,
+        from: Start,
+        error_ratio: f64,
+    ) -> Result<()> {
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
                 // A guess that is worth nothing is gone.
                 if from != Start::Nothing {
                     task.state.unload();
                 }
-                self.projected_cg.start(task.problem, task.state, task.set, &task.goal, task.monitor)
+                self.projected_cg.start(task)?;
             }
             Stage::FullMultigrid if !S::FIXED => {
                 task.state.unload();
                 let multigrid = set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?;
-                multigrid.start(task, &mut self.norm)
+                multigrid.start(task, &mut self.norm)?;
             }
             _ => {
                 task.state.unload();
                 task.state.start(task.problem.self_influence());
-                Ok(())
             }
         }
+        if error_ratio > 0.0 {
+            let predicted = estimates::predict(task.problem, task.state);
+            // An answer whose residual is larger than that is none, however coarse the grid.
+            let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);
+            task.goal.tolerance = task.goal.tolerance.max(enough);
+        }
+        Ok(())
     }
 
     fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Outcome> {

@@ -19,7 +19,6 @@ mod report;
 mod take_over;
 mod tangential;
 mod tangential_estimates;
-mod task;
 mod turns;
 
 use std::sync::Arc;

@@ -2,12 +2,12 @@
 
 use super::best::Best;
 use super::iterate::iterate;
-use super::task::Task;
 use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
 use crate::memory::blank;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
+use crate::methods::Task;
 use crate::progress::{Goal, Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;

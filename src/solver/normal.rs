@@ -2,11 +2,11 @@
 
 use super::methods;
 use super::take_over;
-use super::task::Task;
 use super::{Guess, InitialGuess, Options, Solver};
 use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
 use crate::error::Result;
 use crate::memory::{reserve, zeros};
+use crate::methods::Task;
 use crate::progress::{Monitor, Outcome};
 use crate::scene::{PressureLimit, Scene};
 

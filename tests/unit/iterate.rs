@@ -1,6 +1,5 @@
 //! Unit tests of `solver/iterate.rs`.
 
-use super::super::task::Task;
 use super::*;
 use crate::contact::NonNegative;
 use crate::contact::{Problem, State};

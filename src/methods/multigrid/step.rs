@@ -3,11 +3,10 @@
 //! Step 2 restricts the system to C, step 3 is the cycle; steps (4.1) and (4.2), and who decides to go on, are the loop's.
 
 use super::Multigrid;
-use crate::contact::{AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step};
-use crate::progress::{Goal, Monitor};
+use crate::methods::{Change, Habits, Step, Task};
 use crate::scene::Load;
 
 /// Memory for cycles, kept from one solve to the next.
@@ -46,14 +45,8 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        _: &mut Problem,
-        state: &mut State,
-        _: S,
-        _: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
+        let Task { state, monitor, .. } = task;
         let (multigrid, l) = (&mut *self.multigrid, self.level);
         let Workspace { residual, unit } = &mut *self.workspace;
         // 2. p = 0 in E, and the system restricted to C.

@@ -2,11 +2,11 @@
 
 use super::{conjugate_gradients, minimal_residual, InnerStop};
 use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
-use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Problem, Snapshot, State, Survey};
+use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step};
-use crate::progress::{Goal, Monitor};
+use crate::methods::{Change, Habits, Step, Task};
+use crate::progress::Goal;
 use crate::scene::Load;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
@@ -52,14 +52,8 @@ impl Norm {
     }
 
     /// 2. The equations on the contact area, from the pressures there are. Returns the update.
-    fn solve<S: AdmissibleSet>(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<f64> {
+    fn solve<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<f64> {
+        let Task { problem, state, goal, monitor, .. } = task;
         if state.contact_count() == 0 {
             return Ok(0.0);
         }
@@ -81,7 +75,7 @@ impl Norm {
         };
         monitor.count.update = update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
-        refresh(problem, state, set);
+        refresh(task);
         Ok(update)
     }
 
@@ -107,7 +101,8 @@ impl Norm {
 
     /// Step 3: elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
     /// solve is to follow; if not, the state is a trial: perhaps the violations are within the tolerance.
-    fn exchange<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &mut State, set: S) -> bool {
+    fn exchange<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> bool {
+        let (state, set) = (&mut *task.state, task.set);
         if self.guard.allows_all(violators(state, set)) {
             admit(state, set);
             truncate(state, set);
@@ -116,7 +111,7 @@ impl Norm {
         self.before.keep(state);
         self.u_before.clone_from(&state.u);
         truncate(state, set);
-        problem.refresh(state, set);
+        task.refresh();
         self.next = Next::ExchangeOne;
         false
     }
@@ -138,7 +133,8 @@ impl Norm {
 }
 
 /// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
-fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
+    let (state, set) = (&mut *task.state, task.set);
     let held = S::LIMITED && state.has_limited();
     for i in 0..state.p.len() {
         state.p[i] = if held && state.at_limit[i] { set.limit(i) } else { 0.0 };
@@ -146,13 +142,14 @@ fn start_from_zero<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, s
     }
     state.u_is = Freshness::Exact;
     if held || matches!(state.load, Load::Force(_)) {
-        refresh(problem, state, set);
+        refresh(task);
     }
 }
 
 /// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
 /// is for the next exchange.
-fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
+    let Task { problem, state, set, .. } = task;
     let beside_limits = S::LIMITED && state.has_limited();
     match state.load {
         Load::Force(force) if beside_limits && state.contact.contains(&true) => {
@@ -161,7 +158,7 @@ fn refresh<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
             state.p.iter_mut().zip(&state.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += even);
         }
         Load::Force(_) if S::LIMITED && !beside_limits => _ = state.balance_force(),
-        _ => _ = state.carry_force(set),
+        _ => _ = state.carry_force(*set),
     }
     problem.displace(&state.p, &mut state.u);
     state.u_is = Freshness::Exact;
@@ -197,41 +194,35 @@ impl<S: AdmissibleSet> Step<S> for Norm {
         self.before.reserve(state, "NORM's workspace")
     }
 
-    fn step(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
         match self.next {
             Next::GoOn => {
-                if state.p.iter().all(|p| *p == 0.0) {
-                    start_from_zero(problem, state, set);
+                if task.state.p.iter().all(|p| *p == 0.0) {
+                    start_from_zero(task);
                 }
             }
             Next::Exchange => {
-                if !self.exchange(problem, state, set) {
+                if !self.exchange(task) {
                     return Ok(Change { update: self.update, ..Change::default() });
                 }
-                start_from_zero(problem, state, set);
+                start_from_zero(task);
             }
             Next::ExchangeOne => {
-                let floor = Goal { tolerance: FLOOR.max(goal.tolerance), ..*goal };
-                if floor.holds(&Survey::of(state), 0.0, set) {
+                let floor = Goal { tolerance: FLOOR.max(task.goal.tolerance), ..task.goal };
+                if floor.holds(&Survey::of(task.state), 0.0, task.set) {
                     return Ok(Change { gives_up: true, ..Change::default() });
                 }
-                self.exchange_one(state, set);
-                start_from_zero(problem, state, set);
+                self.exchange_one(task.state, task.set);
+                start_from_zero(task);
             }
         }
-        let update = self.solve(problem, state, set, goal, monitor)?;
+        let update = self.solve(task)?;
         self.update = update;
+        let Task { state, set, goal, monitor, .. } = task;
         monitor.count.active_set_steps += 1;
-        let changes = if S::FIXED { 0 } else { violators(state, set) as u64 };
+        let changes = if S::FIXED { 0 } else { violators(state, *set) as u64 };
         monitor.count.active_set_changes += changes;
-        let gives_up = !self.judge(state, set, goal, update, changes);
+        let gives_up = !self.judge(state, *set, goal, update, changes);
         Ok(Change { update, changes, gives_up })
     }
 }

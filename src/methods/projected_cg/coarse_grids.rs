@@ -10,12 +10,13 @@ use std::f64::consts::PI;
 
 use super::level::Level;
 use super::End;
-use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, State};
+use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::blank;
 use crate::methods::multigrid::{coarsen, transfer};
+use crate::methods::Task;
 use crate::operator::reserve;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal, Monitor};
@@ -99,16 +100,10 @@ impl CoarseGrids {
         self.grids.iter_mut().for_each(|grid| grid.level.forget_window());
     }
 
-    /// Solves on the coarser grids; `fine` gets what they found. Returns what its u is.
-    pub fn start<S: AdmissibleSet>(
-        &mut self,
-        fine: &mut State,
-        set: S,
-        self_influence: f64,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Freshness> {
-        let count = self.grids.len();
+    /// Solves on the coarser grids; the task's state gets what they found. Returns what its u is.
+    pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Freshness> {
+        let (count, self_influence) = (self.grids.len(), task.problem.self_influence());
+        let Task { state: fine, set, goal, monitor, .. } = task;
         if count == 0 {
             // A guess that was worth nothing is gone.
             fine.p.fill(0.0);
@@ -116,7 +111,7 @@ impl CoarseGrids {
             fine.start(self_influence);
             return Ok(Freshness::Stale);
         }
-        let highest = self.restrict(fine, set, self_influence)?;
+        let highest = self.restrict(fine, *set, self_influence)?;
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
@@ -148,7 +143,7 @@ impl CoarseGrids {
                         truncate_to(to, S::within(&limits));
                         self.grids[l - 1].limits = limits;
                     }
-                    None => truncate_to(to, set),
+                    None => truncate_to(to, *set),
                 }
             }
         }
@@ -177,7 +172,7 @@ impl CoarseGrids {
 
     /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over C). Errors of
     /// `EPSILON u` that change from element to element, all wave numbers k alike, take pressures of `E* |k|/2` times themselves.
-    pub fn noise(&self, fine: &Grid, self_influence: f64) -> f64 {
+    pub fn noise(&self, fine: &Problem) -> f64 {
         let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
         let (mut deepest, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
         for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
@@ -185,8 +180,8 @@ impl CoarseGrids {
             squares += state.p[i] * state.p[i];
             count += 1.0;
         }
-        let wave_number = (PI * PI / 3.0).sqrt() * (1.0 / fine.dx).hypot(1.0 / fine.dy);
-        let modulus = fine.modulus(self_influence);
+        let wave_number = (PI * PI / 3.0).sqrt() * (1.0 / fine.grid.dx).hypot(1.0 / fine.grid.dy);
+        let modulus = fine.grid.modulus(fine.self_influence());
         f64::from(f32::EPSILON) * deepest * 0.5 * modulus * wave_number / f64::sqrt(squares / count)
     }
 

@@ -28,13 +28,13 @@
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
-//! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
-//! product pays all.
+//! is A p, may be negative; it is truncated.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::passes::{Step, Update};
+use super::search::Search;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
@@ -46,12 +46,6 @@ use crate::scene::Load;
 pub(super) const OWED: f64 = 0.1;
 /// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
 const FIRST_STEP: f64 = 0.4;
-/// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
-/// forecasts, each the last alpha.
-const FIRST_FORECAST: f64 = 0.9;
-const FORECASTS: (f64, f64) = (0.3, 1.0);
-/// A forecast that alpha is further away from than by this factor was worth nothing.
-const FAR_OFF: f64 = 3.0;
 /// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
 /// many roundings without a fresh u.
 const ROUNDINGS: f64 = 200.0;
@@ -165,10 +159,7 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
-        // Without a preconditioner the first forecast is missing.
-        let forecast = self.preconditioner.as_ref().map(|_| first);
-        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true }
+        Search::new(self.preconditioner.is_some())
     }
 
     /// One iteration, r being what z holds; none where there is no direction.
@@ -229,12 +220,11 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
+    /// alpha; where elements are at their limit that of the forecast, if it pays what is owed.
     fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
-        let pays = std::mem::take(&mut search.is_first) || limited;
-        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
+        if limited && self.owed() > OWED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }
@@ -274,38 +264,4 @@ impl Cycle {
             self.residual <= goal.tolerance.max(floor)
         }
     }
-}
-
-/// What an iteration leaves to the next.
-struct Search {
-    /// alpha', if there is one.
-    forecast: Option<f64>,
-    /// Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
-    may_hold_back: bool,
-    /// (t, q); 0 where the next direction is conjugate to none.
-    tq: f64,
-    is_first: bool,
-}
-
-impl Search {
-    /// The forecast, unless it was far off: then it holds nobody back.
-    fn believed(&mut self, alpha: f64) -> Option<f64> {
-        let good = self.forecast.filter(|forecast| self.may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
-        self.may_hold_back = !self.may_hold_back || good.is_some();
-        if !self.may_hold_back {
-            self.tq = 0.0;
-        }
-        good
-    }
-
-    /// The next forecast: this alpha, within the usual range where it is near that.
-    fn expect(&mut self, alpha: f64, preconditioned: bool) {
-        let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
-        let near = preconditioned && within_factor(alpha, usual, FAR_OFF);
-        self.forecast = Some(if near { usual } else { alpha }).filter(|_| alpha > 0.0);
-    }
-}
-
-fn within_factor(value: f64, other: f64, factor: f64) -> bool {
-    value * factor > other && value < factor * other
 }

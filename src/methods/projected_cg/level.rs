@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::inner::Inner;
+use super::inner::{in_either, Inner};
 use super::scaling::Scaling;
-use super::{End, Window};
+use super::{Cycle, End, Window};
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -94,7 +94,8 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let windowed = |w: &Windowed| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes);
+        let windowed =
+            |w: &Windowed| in_either!(&w.inner, inner => inner.bytes()) + w.part.as_ref().map_or(0, State::bytes);
         self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
@@ -114,24 +115,27 @@ impl Level {
         self.on_window(state, set, displacement, |inner, grid, units, state, set| {
             let work = grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
-                inner.correct(state, set);
+                in_either!(inner, inner => inner.correct(state, set));
             }
             if displacement != Freshness::Exact {
-                inner.displace(state);
+                in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
-            inner.run(state, set, goal, |cycle| {
+            let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
                 monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
-            })
+            };
+            in_either!(inner, inner => inner.run(state, set, goal, after_cycle))
         })
     }
 
     /// Improves p where u is near A p, without a product; u is not known afterwards.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set);
-        self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| inner.correct(state, set))
+        self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| {
+            in_either!(inner, inner => inner.correct(state, set));
+        })
     }
 
     /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
@@ -146,18 +150,18 @@ impl Level {
         let threads = &self.threads.clone();
         let Windowed { window, inner, units, part, .. } = self.choose_window(state)?;
         let grid = window.grid(&state.grid);
-        inner.wake(grid.len());
+        in_either!(inner, inner => inner.wake(grid.len()));
         if S::LIMITED {
             reserve(&mut limits, grid.len(), "limits of the pressures")?;
             limits.clear();
             let mx = state.grid.mx;
             let elements = window.y.clone().flat_map(|y| window.x.clone().map(move |x| y * mx + x));
             limits.extend(elements.map(|i| set.limit(i) * units.pressure()));
-            inner.reserve_for_limits()?;
+            in_either!(inner, inner => inner.reserve_for_limits()?);
         }
         let Some(part) = part else {
             let result = work(inner, &grid, units, state, S::within(&limits));
-            inner.rest();
+            in_either!(inner, inner => inner.rest());
             self.limits = limits;
             return Ok(result);
         };
@@ -189,7 +193,7 @@ impl Level {
             units.convert(part);
         }
         let result = work(inner, &grid, units, part, S::within(&limits));
-        inner.rest();
+        in_either!(inner, inner => inner.rest());
         if *units != Scaling::SAME {
             units.convert_back(part);
         }
@@ -247,7 +251,7 @@ impl Level {
         let windowed = match self.windowed.take().filter(fits) {
             Some(mut windowed) => {
                 if !windowed.is_current {
-                    windowed.inner.renew(&self.influence, factor, &grid, operator)?;
+                    in_either!(&mut windowed.inner, inner => inner.renew(&self.influence, factor, &grid, operator)?);
                 }
                 let part = match (part, windowed.part) {
                     (Some(new), None) => Some(new()?),

@@ -20,7 +20,8 @@
 //! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
 //! forecast.
 
-use super::passes::{Update, HELD_BACK};
+use super::exchange::HELD_BACK;
+use super::passes::Update;
 use super::vectors::{Beyond, Iteration};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;

@@ -2,6 +2,7 @@
 //! iteration over the grids.
 
 mod coarse_grids;
+mod exchange;
 mod inner;
 mod iteration;
 mod level;
@@ -10,6 +11,7 @@ mod passes;
 mod preconditioner;
 mod predictor;
 mod scaling;
+mod search;
 mod segments;
 mod step;
 mod vectors;

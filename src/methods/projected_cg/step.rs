@@ -11,9 +11,9 @@ use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::{release, reserve, rests};
-use crate::methods::{Change, Habits, Step};
+use crate::methods::{Change, Habits, Step, Task};
 use crate::operator::Precision;
-use crate::progress::{Goal, Monitor};
+use crate::progress::Goal;
 use crate::threads::Threads;
 
 /// The iteration aims at this part of the tolerance: unpaid truncations and single precision rounding must still pass the certificate,
@@ -83,28 +83,21 @@ impl ProjectedCg {
     }
 
     /// From nothing: what the coarser grids find.
-    pub fn start<S: AdmissibleSet>(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<()> {
-        let coarse = coarse_grids(&mut self.coarse, problem, self.precision)?;
-        state.u_is = coarse.start(state, set, problem.self_influence(), goal, monitor)?;
+    pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
+        let coarse = coarse_grids(&mut self.coarse, task.problem, self.precision)?;
+        task.state.u_is = coarse.start(task)?;
         let single = self.precision != Precision::Double;
-        let near = state.u_is == Freshness::Near && !monitor.is_cancelled();
-        let noisy = near && single && coarse.noise(&problem.grid, problem.self_influence()) > NOISE * goal.tolerance;
-        if rests::<f64>(state.p.len()) {
+        let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();
+        let noisy = near && single && coarse.noise(task.problem) > NOISE * task.goal.tolerance;
+        if rests::<f64>(task.state.p.len()) {
             self.coarse = None;
             release();
         }
         if noisy {
-            self.finest.correct(state, set)?;
+            self.finest.correct(task.state, task.set)?;
             self.finest.rest();
-            problem.refresh(state, set);
-            monitor.count_products(problem.take_products(), problem.work);
+            task.refresh();
+            task.count_products();
         }
         Ok(())
     }
@@ -157,18 +150,8 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 3, progress: 0.5 }
     }
 
-    fn begin(&mut self, _: &State) -> Result<()> {
-        Ok(())
-    }
-
-    fn step(
-        &mut self,
-        problem: &mut Problem,
-        state: &mut State,
-        set: S,
-        goal: &Goal,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Change> {
+    fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
+        let Task { problem, state, set, goal, monitor } = task;
         let was = state.u_is;
         if goal.by_update() {
             reserve(&mut self.before, state.p.len(), "the pressures before")?;
@@ -177,12 +160,12 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let tolerance = if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance };
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
         let inner = Goal { tolerance, max_cycles, ..*goal };
-        let end = self.finest.run(state, set, was, &inner, problem.grid.len(), monitor)?;
+        let end = self.finest.run(state, *set, was, &inner, problem.grid.len(), monitor)?;
         self.finest.rest();
         state.u_is = Freshness::Stale;
         let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;
         if gives_up || goal.by_update() {
-            problem.refresh(state, set);
+            problem.refresh(state, *set);
         }
         if !goal.by_update() {
             return Ok(Change { gives_up, ..Change::default() });

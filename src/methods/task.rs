@@ -5,10 +5,15 @@ use crate::progress::{Goal, Monitor};
 
 /// What is to be solved on one grid.
 pub struct Task<'a, 'm, S> {
+    /// The grid and the operator.
     pub problem: &'a mut Problem,
+    /// The unknowns.
     pub state: &'a mut State,
+    /// The pressures that are admissible.
     pub set: S,
+    /// What is to be reached.
     pub goal: Goal,
+    /// Who counts and watches.
     pub monitor: &'a mut Monitor<'m>,
 }
 

@@ -1,0 +1,46 @@
+//! What an iteration leaves to the next: a forecast of its step length, and what its direction is conjugate to.
+
+/// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
+/// forecasts, each the last alpha.
+const FIRST_FORECAST: f64 = 0.9;
+const FORECASTS: (f64, f64) = (0.3, 1.0);
+/// A forecast that alpha is further away from than by this factor was worth nothing.
+const FAR_OFF: f64 = 3.0;
+
+/// What an iteration leaves to the next.
+pub(super) struct Search {
+    /// alpha', if there is one.
+    pub(super) forecast: Option<f64>,
+    /// Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
+    pub(super) may_hold_back: bool,
+    /// (t, q); 0 where the next direction is conjugate to none.
+    pub(super) tq: f64,
+}
+
+impl Search {
+    /// Before the first iteration; without a preconditioner its forecast is missing.
+    pub(super) fn new(preconditioned: bool) -> Search {
+        Search { forecast: preconditioned.then_some(FIRST_FORECAST), may_hold_back: true, tq: 0.0 }
+    }
+
+    /// The forecast, unless it was far off: then it holds nobody back.
+    pub(super) fn believed(&mut self, alpha: f64) -> Option<f64> {
+        let good = self.forecast.filter(|forecast| self.may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
+        self.may_hold_back = !self.may_hold_back || good.is_some();
+        if !self.may_hold_back {
+            self.tq = 0.0;
+        }
+        good
+    }
+
+    /// The next forecast: this alpha, within the usual range where it is near that.
+    pub(super) fn expect(&mut self, alpha: f64, preconditioned: bool) {
+        let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
+        let near = preconditioned && within_factor(alpha, usual, FAR_OFF);
+        self.forecast = Some(if near { usual } else { alpha }).filter(|_| alpha > 0.0);
+    }
+}
+
+fn within_factor(value: f64, other: f64, factor: f64) -> bool {
+    value * factor > other && value < factor * other
+}
