@@ -159,16 +159,18 @@ fn what_is_not_to_be_had_is_said() {
     assert_eq!((cone[0].obstacle, cone[0].grid), (Some(Obstacle::Singular), None));
     let rows = list(&surface("r^2"), none, Quantity::Force, &[1e-15, 1e-3]);
     assert_eq!((rows[0].obstacle, rows[1].obstacle), (Some(Obstacle::RoundOff), None));
-    let dear = rows[1];
+    // How many samples there are, and so which grid is found, depends on the clock: limits are such as no grid keeps.
+    let (bytes, elements) = (8 * 16 * 16, 16 * 16);
     for (accuracy, obstacle) in [
-        (Accuracy { max_bytes: dear.bytes / 2, ..none }, Obstacle::Memory),
-        (Accuracy { max_elements: dear.grid.expect("a grid").len() as u64 - 1, ..none }, Obstacle::Elements),
+        (Accuracy { max_bytes: bytes, ..none }, Obstacle::Memory),
+        (Accuracy { max_elements: elements, ..none }, Obstacle::Elements),
         (Accuracy { max_seconds: 1e-9, ..none }, Obstacle::Time),
     ] {
         let row = list(&surface("r^2"), accuracy, Quantity::Force, &[1e-3])[0];
-        assert_eq!((row.obstacle, row.grid), (Some(obstacle), dear.grid));
+        assert_eq!(row.obstacle, Some(obstacle), "{row:?}");
         // What it would take is told all the same.
-        assert!(row.seconds > 0.0 && row.bytes > dear.bytes / 2, "{row:?}");
+        let grid = row.grid.expect("a grid");
+        assert!(row.seconds > 0.0 && row.bytes > bytes && grid.len() as u64 > elements, "{row:?}");
     }
 }
 
