@@ -24,8 +24,9 @@ const LEVELS: usize = 3;
 const DECAY: f64 = 0.7;
 
 /// E, and its transpose.
+#[derive(Default)]
 pub struct Extension {
-    /// The given grid first.
+    /// The given grid first; none before it is set up.
     grids: Vec<Fields>,
 }
 
@@ -70,7 +71,8 @@ impl Extension {
     /// C has changed: where `bound` is positive.
     pub fn contact_changed(&mut self, bound: &[f64]) {
         let decay = |is_known: bool| if is_known { 0.0 } else { DECAY };
-        self.grids[0].decay.iter_mut().zip(bound).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
+        let Some(given) = self.grids.first_mut() else { return };
+        given.decay.iter_mut().zip(bound).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
         for l in 1..self.grids.len() {
             let (fine, coarse) = pair(&mut self.grids, l);
             let (mx, fine_mx) = (coarse.mx, fine.mx);

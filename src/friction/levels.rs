@@ -30,13 +30,36 @@ pub struct Level {
     pub problem: Problem,
     pub state: State,
     pub memory: Memory,
+    /// Where iterations are not prepared yet: the coefficients, and whether directions may be multiplied in single precision.
+    pending: Option<(Quadrant, bool)>,
 }
 
 impl Level {
-    /// Nothing slides.
-    pub fn new(grid: Grid, operators: Operators) -> Result<Level> {
-        let n = grid.len();
-        Ok(Level { problem: Problem::new(grid, operators)?, state: State::new(n)?, memory: Memory::new(n)? })
+    /// Nothing slides. Iterations are to be [prepared](Level::prepare).
+    fn new(grid: Grid, operators: Operators) -> Result<Level> {
+        let (state, memory) = (State::new(grid.len())?, Memory::default());
+        Ok(Level { problem: Problem::new(grid, operators)?, state, memory, pending: None })
+    }
+
+    /// The finest grid alone, for products only before it is [ready to iterate](Level::be_ready).
+    pub fn alone(tangential: &Tangential, grid: Grid, single: bool, threads: &Threads) -> Result<Level> {
+        let quadrant = Quadrant::new(tangential, &grid, (0.0, 0.0), &threads.suited_to(grid.len()))?;
+        let operators = Operators::new(&quadrant, &grid, None, false, threads)?;
+        Ok(Level { pending: Some((quadrant, single)), ..Level::new(grid, operators)? })
+    }
+
+    /// Prepares iterations, if they are not.
+    pub fn be_ready(&mut self) -> Result<()> {
+        match self.pending.take() {
+            Some((quadrant, single)) => self.prepare(&quadrant, single),
+            None => Ok(()),
+        }
+    }
+
+    fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
+        self.problem.prepare(quadrant, single)?;
+        self.memory = Memory::new(self.problem.grid.len())?;
+        Ok(())
     }
 
     /// The force, and the creepages that were found, of a step of rolling.
@@ -80,14 +103,17 @@ pub fn levels(
 ) -> Result<Vec<Level>> {
     let by = |rolling: Option<Rolling>| rolling.map_or((0.0, 0.0), |rolling| rolling.by);
     let mut quadrant = Quadrant::new(tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
-    let operators = Operators::new(&quadrant, &grid, rolling, (single, false), threads)?;
-    let mut levels = vec![Level::new(grid, operators)?];
+    let mut finest = Level::new(grid, Operators::new(&quadrant, &grid, rolling, false, threads)?)?;
+    finest.prepare(&quadrant, single)?;
+    let mut levels = vec![finest];
     let (mut last, mut rolling) = (grid, rolling);
     while let Some(grid) = coarser(&last) {
         let tangential = quadrant.tangential().for_element(grid.dx, grid.dy)?;
         rolling = rolling.map(|rolling| rolling.on(&last, &grid));
         quadrant = quadrant.coarser(&tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
-        levels.push(Level::new(grid, Operators::new(&quadrant, &grid, rolling, (single, true), threads)?)?);
+        let mut level = Level::new(grid, Operators::new(&quadrant, &grid, rolling, single, threads)?)?;
+        level.prepare(&quadrant, single)?;
+        levels.push(level);
         last = grid;
     }
     Ok(levels)

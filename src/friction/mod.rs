@@ -12,7 +12,7 @@
 //! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `solver` | coarser grids, nested iteration, and the whole solve |
+//! | `levels`, `nested`, `request`, `take_over`, `solver` | coarser grids, nested iteration, and the whole solve |
 
 mod certificate;
 pub mod coefficients;
@@ -29,6 +29,7 @@ mod newton;
 mod operators;
 mod problem;
 mod quadrant;
+mod request;
 mod sensitivity;
 mod series;
 mod shift;
@@ -37,6 +38,7 @@ mod solver;
 mod spectrum;
 mod step;
 mod system;
+mod take_over;
 mod tables;
 mod tangent;
 mod toeplitz;
@@ -47,7 +49,8 @@ pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
-pub use solver::{Request, Solver};
+pub use request::{Request, Start, Superposed};
+pub use solver::Solver;
 pub use toeplitz::{Toeplitz, Workspace};
 
 /// A vector of the plane: `[x, y]`.

@@ -67,7 +67,7 @@ fn one(
     part: f64,
     work: &mut Work<'_>,
 ) -> Result<Outcome> {
-    let Level { problem, state, memory } = level;
+    let Level { problem, state, memory, .. } = level;
     let grid = problem.grid;
     let mut end = Outcome::Stagnated;
     // Nothing moves, and nothing did.

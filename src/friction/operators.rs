@@ -30,25 +30,21 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// On a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision, `only`:
-    /// whether all may.
+    /// On a grid, with coefficients that reach far enough: products in double precision, or where `single` in that precision only. What
+    /// iterations need beside is to be [prepared](Operators::prepare).
     pub fn new(
         quadrant: &Quadrant,
         grid: &Grid,
         rolling: Option<Rolling>,
-        (single, only): (bool, bool),
+        single: bool,
         threads: &Threads,
     ) -> Result<Operators> {
         let threads = &threads.suited_to(grid.len());
         let tangential = quadrant.tangential();
-        let (exact, fast) = if single && only {
-            (None, Some(product(quadrant, grid, rolling, threads)?))
-        } else {
-            let exact = product(quadrant, grid, rolling, threads)?;
-            let fast = single.then(|| exact.in_precision()).transpose()?;
-            (Some(exact), fast)
+        let (exact, fast) = match single {
+            true => (None, Some(product(quadrant, grid, rolling, threads)?)),
+            false => (Some(product(quadrant, grid, rolling, threads)?), None),
         };
-        let inverse = Toeplitz::nearly_inverse(quadrant, grid, threads)?;
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         let rolling = rolling.map(|rolling| (rolling, March::new(&rolling)));
         // Between the centres as the march has it.
@@ -57,13 +53,23 @@ impl Operators {
             tangential: tangential.clone(),
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
-            inverse: inverse.map(with_workspace).transpose()?,
+            inverse: None,
             rolling,
             self_influence: (xx - there[0]).max(yy - there[1]),
             a0: xx.max(yy),
             threads: threads.clone(),
             products: 0,
         })
+    }
+
+    /// Sets up what iterations need: directions, where `single` in single precision, and the inverse.
+    pub fn prepare(&mut self, quadrant: &Quadrant, grid: &Grid, single: bool) -> Result<()> {
+        if let (true, None, Some((exact, _))) = (single, &self.fast, &self.exact) {
+            self.fast = Some(with_workspace(exact.in_precision()?)?);
+        }
+        let inverse = Toeplitz::nearly_inverse(quadrant, grid, &self.threads)?;
+        self.inverse = inverse.map(with_workspace).transpose()?;
+        Ok(())
     }
 
     /// The step of steady rolling.

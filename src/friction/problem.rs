@@ -14,7 +14,9 @@
 use std::ops::Range;
 
 use super::extension::Extension;
+use super::march::Rolling;
 use super::operators::Operators;
+use super::quadrant::Quadrant;
 use super::vectors;
 use super::Vector;
 use crate::error::Result;
@@ -112,12 +114,23 @@ impl Problem {
             slip: zeros(n, FIELDS)?,
             offset: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
-            extension: Extension::new(&grid, &operators.threads)?,
+            extension: Extension::default(),
             operators,
             runs: Vec::new(),
             count: 0,
             rms_bound: 0.0,
         })
+    }
+
+    /// Sets up what iterations need beside products.
+    pub fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
+        self.operators.prepare(quadrant, &self.grid, single)?;
+        // In steady rolling nothing is continued.
+        if self.operators.rolling.is_none() {
+            self.extension = Extension::new(&self.grid, self.threads())?;
+            self.extension.contact_changed(&self.bound);
+        }
+        Ok(())
     }
 
     /// To be called when `bound` has changed.
@@ -138,6 +151,11 @@ impl Problem {
             squares += (g / largest) * (g / largest);
         }
         self.rms_bound = largest * (squares / self.count.max(1) as f64).sqrt();
+    }
+
+    /// Whether its operators are those of a grid and a step.
+    pub fn suits(&self, grid: &Grid, rolling: Option<Rolling>) -> bool {
+        self.grid == *grid && self.operators.step() == rolling
     }
 
     /// The elements of C.

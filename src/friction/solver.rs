@@ -5,11 +5,12 @@ use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
 use super::nested::{self, Work, COARSE, COUNTS};
-use super::problem::{square, Problem, Scale};
+use super::problem::square;
+use super::request::{Request, Start};
 use super::sensitivity;
 use super::shift::Memory;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
-use super::window::{displaced, Displaced, Window};
+use super::window::{Displaced, Window};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Error, Result};
@@ -20,46 +21,36 @@ use crate::threads::Threads;
 
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
-/// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
-const MOSTLY_SLIP: f64 = 0.8;
-
-/// Rigid slips and what tractions displace may be so far apart.
-const LARGEST_RATIO: f64 = 1e60;
-
-/// What is asked of a solve.
-pub struct Request<'a> {
-    /// The pressures of the normal problem, `[my][mx]`.
-    pub pressure: &'a [f64],
-    /// The friction.
-    pub friction: &'a Friction<'a>,
-    /// Of the residual.
-    pub tolerance: f64,
-    /// Iterations on the finest grid at most.
-    pub limit: u64,
-    /// Unlike bodies: the sideways displacements by the pressures, less those before the step.
-    pub sideways: Option<&'a [Vector]>,
-    /// Whether this is the same step once more, with other pressures: it starts from the last result, and what was before stays.
-    pub again: bool,
-    /// Whether errors are to be estimated.
-    pub estimates: bool,
-}
+/// A start that leaves more than this residual is worth less than the coarser grids.
+const WORTHLESS: f64 = 0.1;
 
 /// Solves tangential problems on one grid and keeps what the next can use: operators of the box around C, and the tractions.
 pub struct Solver {
-    grid: Grid,
-    tangential: Tangential,
+    pub(super) grid: Grid,
+    pub(super) tangential: Tangential,
     single: bool,
-    threads: Threads,
+    pub(super) threads: Threads,
     /// The finest first; none: nothing was solved yet.
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
+    /// Whether the coarser grids are among them.
+    has_coarser: bool,
     /// Products displaced by so many elements.
-    displaced: Option<Displaced>,
-    solution: Solution,
+    pub(super) displaced: Option<Displaced>,
+    pub(super) solution: Solution,
     /// The tractions before the step, where they were kept.
-    before: Vec<Vector>,
+    pub(super) before: Vec<Vector>,
     /// The creepages found, times the length rolled.
-    offset: Vector,
+    pub(super) offset: Vector,
     has_solution: bool,
+}
+
+/// What a start by superposition is worth.
+#[derive(Default)]
+struct Near {
+    certificate: Certificate,
+    is_solution: bool,
+    is_worth_something: bool,
+    products: f64,
 }
 
 impl Solver {
@@ -71,6 +62,7 @@ impl Solver {
             single,
             threads: threads.clone(),
             levels: Vec::new(),
+            has_coarser: false,
             displaced: None,
             solution: Solution::default(),
             before: Vec::new(),
@@ -125,7 +117,7 @@ impl Solver {
             Previous::Kept => kept[i],
         };
         let forces = self.forces(friction, bound)?;
-        if keeps && !request.again {
+        if keeps && !matches!(request.start, Start::Again) {
             self.before.clone_from(&self.solution.traction);
         }
         let kept = &self.before;
@@ -137,16 +129,35 @@ impl Solver {
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
-            self.set_up(window, rolling)?;
-            let had_slip = self.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
-            self.check_range()?;
-            let goal = (request.tolerance, request.limit);
-            let nested = from_rest && !request.again;
-            let compared = nested && request.estimates && rolling.is_some();
-            let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
-            end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
-            report.products = work.products;
-            report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
+            let begin = |solver: &mut Solver, request: &Request<'_>| {
+                let had_slip = solver.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
+                solver.check_range().map(|()| had_slip)
+            };
+            let mut near = Near::default();
+            if let Start::Superposed(_) = request.start {
+                self.set_up_finest(window)?;
+                begin(self, request)?;
+                near = self.look(forces, request.tolerance);
+            }
+            report.products = near.products;
+            report.certificate = near.certificate;
+            if !near.is_solution {
+                let had_slip = if near.is_worth_something {
+                    self.levels[0].be_ready().map(|()| false)?
+                } else {
+                    self.set_up(window, rolling)?;
+                    begin(self, &Request { start: request.start.or_before(), ..*request })?
+                };
+                let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
+                let compared = nested && request.estimates && rolling.is_some();
+                let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
+                let goal = (request.tolerance, request.limit);
+                end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
+                report.products += work.products;
+                report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
+                let Level { problem, state, .. } = &self.levels[0];
+                report.certificate = Certificate::of(problem, state);
+            }
             report.carried = self.levels[0].problem.bound.iter().sum::<f64>() * self.grid.element_area();
         }
         self.write(friction, pressure, window, &mut report);
@@ -157,19 +168,6 @@ impl Solver {
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
-    }
-
-    /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
-    fn check_range(&self) -> Result<()> {
-        let problem = &self.levels[0].problem;
-        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
-        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && displaced / slip < LARGEST_RATIO) {
-            let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
-            return invalid(format!(
-                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e60 apart; {rule}"
-            ));
-        }
-        Ok(())
     }
 
     /// The forces that are given; refuses those that are more than friction carries.
@@ -195,84 +193,46 @@ impl Solver {
     /// Operators of a window.
     fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
         let grid = window.grid(&self.grid);
-        let fits = |problem: &Problem| problem.grid == grid && problem.operators.step() == rolling;
-        if self.levels.first().is_some_and(|level| fits(&level.problem)) {
+        if self.has_coarser && self.levels.first().is_some_and(|level| level.problem.suits(&grid, rolling)) {
             return Ok(());
         }
         self.levels.clear();
         self.levels = levels(&self.tangential, grid, rolling, self.single, &self.threads)?;
+        self.has_coarser = true;
         Ok(())
     }
 
-    /// g, w, and for rolling the tractions to start from. Returns whether most of C slipped before.
-    fn take_over(
-        &mut self,
-        (request, from_rest): (&Request<'_>, bool),
-        window: Window,
-        bound: impl Fn(usize) -> f64,
-        before: impl Fn(&[Vector], usize) -> Vector,
-    ) -> Result<bool> {
-        let Request { friction, again, .. } = *request;
-        let Level { problem, state, memory: _ } = &mut self.levels[0];
-        state.unload();
-        for (k, i) in window.elements(&self.grid) {
-            problem.bound[k] = bound(i);
-            let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-            problem.rigid[k] = super::problem::add(friction.rigid_slip_at(&self.grid, i), sideways);
-            state.q[k] = before(&self.before, i);
-        }
-        // A warm start of steady rolling starts from the last creepages, too.
-        let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
-        let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-        problem.offset = [0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 });
-        problem.scale = match friction.motion {
-            Motion::Shift => Scale::SlipOrDisplacement,
-            Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
-            _ => Scale::Slip,
-        };
-        problem.bound_changed();
-        problem.slip.copy_from_slice(&problem.rigid);
-        if !from_rest {
-            self.leave(friction)?;
-        }
-        let Level { problem, state, .. } = &mut self.levels[0];
-        if again {
-            window.elements(&self.grid).for_each(|(k, i)| state.q[k] = self.solution.traction[i]);
-            problem.offset = self.offset;
-        }
-        if !again && from_rest {
-            return Ok(false);
-        }
-        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
-        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
-        problem.refresh(state);
-        Ok(mostly)
-    }
-
-    /// w less the displacements before the step, by the tractions that the state holds.
-    fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
-        let Level { problem, state, .. } = &mut self.levels[0];
-        match friction.motion {
-            Motion::SteadyRolling => return Ok(()),
-            Motion::Shift => problem.operators.multiply(&state.q, problem.rms_bound(), &mut state.u),
-            Motion::TransientRolling => {
-                let by = friction.elements_rolled(&self.grid);
-                let displaced = displaced(&mut self.displaced, &self.tangential, problem.grid, by, &self.threads)?;
-                displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
-            }
-        }
-        for (w, u) in problem.slip.iter_mut().zip(&state.u) {
-            *w = [w[0] - u[0], w[1] - u[1]];
+    /// What a product by the finest grid alone takes.
+    fn set_up_finest(&mut self, window: Window) -> Result<()> {
+        let grid = window.grid(&self.grid);
+        if !self.levels.first().is_some_and(|level| level.problem.suits(&grid, None)) {
+            self.levels.clear();
+            self.levels.push(Level::alone(&self.tangential, grid, self.single, &self.threads)?);
+            self.has_coarser = false;
         }
         Ok(())
+    }
+
+    /// What the start is worth, whose displacements are fresh.
+    fn look(&mut self, forces: Forces, tolerance: f64) -> Near {
+        let Level { problem, state, .. } = &mut self.levels[0];
+        let certificate = Certificate::of(problem, state);
+        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let below = |bound: f64| certificate.residual < bound && missing < bound;
+        Near {
+            certificate,
+            is_solution: below(tolerance),
+            is_worth_something: below(WORTHLESS),
+            products: problem.take_products() as f64,
+        }
     }
 
     /// See [`Report::sensitivities`].
     fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
         let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(Level { problem, state, memory })) = (window, self.levels.first_mut()) else {
-            return Ok(derivatives);
-        };
+        let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
+        level.be_ready()?;
+        let Level { problem, state, memory, .. } = level;
         sensitivity::predict(problem, state, &mut memory.tangent);
         for by in 0..3 {
             let mut change = memory.fields.take(state.q.len())?;
@@ -300,7 +260,6 @@ impl Solver {
         let distance = friction.distance(&self.grid);
         let mut offset = [0.0; 2];
         if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
-            report.certificate = Certificate::of(problem, state);
             offset = problem.offset;
             self.offset = offset;
             for (k, i) in window.elements(&self.grid).filter(|(_, i)| pressure[*i] > 0.0) {

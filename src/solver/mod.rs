@@ -16,6 +16,7 @@ mod normal;
 mod options;
 mod refinement;
 mod report;
+mod superposition;
 mod take_over;
 mod tangential;
 mod tangential_estimates;

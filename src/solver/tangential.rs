@@ -5,7 +5,7 @@ use crate::contact::State;
 use crate::effects::Previous;
 use crate::error::{invalid, Error, Result};
 use crate::friction::{
-    Compliance, Coupling, CrossTables, Report, Request, Solution, Solver, Source, Tangential, Vector,
+    Compliance, Coupling, CrossTables, Report, Request, Solution, Solver, Source, Start, Tangential, Vector,
 };
 use crate::grid::Grid;
 use crate::memory::zeros;
@@ -107,6 +107,16 @@ impl Tangent {
         again: bool,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
+        self.solve_from(if again { Start::Again } else { Start::Before }, turn, pressure, monitor)
+    }
+
+    fn solve_from(
+        &mut self,
+        start: Start<'_>,
+        turn: &Turn<'_>,
+        pressure: &[f64],
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Report)> {
         let Tangent { solver, coupled } = self;
         if let Some(coupled) = coupled {
             coupled.displace(turn, pressure)?;
@@ -117,7 +127,7 @@ impl Tangent {
             tolerance: turn.options.tolerance,
             limit: turn.options.max_cycles as u64,
             sideways: coupled.as_ref().map(|coupled| &coupled.sideways[..]),
-            again,
+            start,
             estimates: turn.options.estimates,
         };
         solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
@@ -130,10 +140,10 @@ impl Tangent {
         stop: Outcome,
         turn: &Turn<'_>,
         pressure: &[f64],
-        again: bool,
+        start: Start<'_>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        match self.solve(turn, pressure, again, monitor) {
+        match self.solve_from(start, turn, pressure, monitor) {
             Err(Error::Infeasible(message)) if stop != Outcome::Converged => {
                 log::info!("the normal problem is not solved: {message}");
                 let stays = |prescribed: Prescribed| match prescribed {
@@ -141,7 +151,7 @@ impl Tangent {
                     given => given,
                 };
                 let friction = Friction { prescribed: turn.friction.prescribed.map(stays), ..*turn.friction };
-                self.solve(&Turn { friction: &friction, ..*turn }, pressure, again, monitor)
+                self.solve_from(start, &Turn { friction: &friction, ..*turn }, pressure, monitor)
             }
             found => found,
         }

@@ -1,9 +1,10 @@
 //! Normal and tangential problem in turns. Of unlike bodies each changes the other.
 
+use super::superposition::Smaller;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Options, Solver};
 use crate::error::Result;
-use crate::friction;
+use crate::friction::{self, Start};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Scene;
 
@@ -49,7 +50,12 @@ impl Solver {
         mut stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, friction::Report)> {
-        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, false, monitor)?;
+        let smaller = if tangent.is_of_like_bodies() { self.smaller_load(turn, stop, monitor)? } else { None };
+        let start = smaller.as_ref().map_or(Start::Before, Smaller::start);
+        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, start, monitor)?;
+        if let Some(smaller) = smaller {
+            (found.products, found.seconds) = (found.products + smaller.products, found.seconds + smaller.seconds);
+        }
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
         for _ in 0..MOST_TURNS {
             let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
@@ -63,7 +69,7 @@ impl Solver {
             let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
             (stop, _) = self.solve_normal(&scene, &options, None, monitor)?;
             let (products, seconds) = (found.products, found.seconds);
-            (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, true, monitor)?;
+            (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, Start::Again, monitor)?;
             (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
         }
         log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");

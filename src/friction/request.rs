@@ -1,0 +1,55 @@
+//! What is asked of a tangential solve.
+
+use super::Vector;
+use crate::effects::Friction;
+
+/// What is asked of a solve.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// The pressures of the normal problem, `[my][mx]`.
+    pub pressure: &'a [f64],
+    /// The friction.
+    pub friction: &'a Friction<'a>,
+    /// Of the residual.
+    pub tolerance: f64,
+    /// Iterations on the finest grid at most.
+    pub limit: u64,
+    /// Unlike bodies: the sideways displacements by the pressures, less those before the step.
+    pub sideways: Option<&'a [Vector]>,
+    /// Where it starts.
+    pub start: Start<'a>,
+    /// Whether errors are to be estimated.
+    pub estimates: bool,
+}
+
+/// Where a solve starts.
+#[derive(Clone, Copy)]
+pub enum Start<'a> {
+    /// From the tractions before the step; from rest on the coarsest grid.
+    Before,
+    /// A shift from rest, from the pressures of a smaller load.
+    Superposed(Superposed<'a>),
+    /// The same step once more, with other pressures: from the last result. What was before the step stays.
+    Again,
+}
+
+/// Tractions near those of a shift from rest: `q = along (p - p*)`.
+#[derive(Clone, Copy)]
+pub struct Superposed<'a> {
+    /// p*, `[my][mx]`.
+    pub smaller: &'a [f64],
+    /// mu times the direction.
+    pub along: Vector,
+    /// The shift where forces are given, else 0.
+    pub offset: Vector,
+}
+
+impl Start<'_> {
+    /// Without what is superposed.
+    pub fn or_before(self) -> Self {
+        match self {
+            Start::Superposed(_) => Start::Before,
+            other => other,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! What a solve takes over: bounds, rigid slip and the tractions to start from.
+
+use super::levels::Level;
+use super::problem::{add, square, Scale};
+use super::request::{Request, Start, Superposed};
+use super::solver::Solver;
+use super::window::{displaced, Window};
+use super::Vector;
+use crate::effects::{Friction, Motion, Prescribed, Previous};
+use crate::error::{invalid, Result};
+
+/// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
+const MOSTLY_SLIP: f64 = 0.8;
+
+/// Rigid slips and what tractions displace may be so far apart.
+const LARGEST_RATIO: f64 = 1e60;
+
+impl Solver {
+    /// g, w, and for rolling the tractions to start from. Returns whether most of C slipped before.
+    pub(super) fn take_over(
+        &mut self,
+        (request, from_rest): (&Request<'_>, bool),
+        window: Window,
+        bound: impl Fn(usize) -> f64,
+        before: impl Fn(&[Vector], usize) -> Vector,
+    ) -> Result<bool> {
+        let Request { friction, start, .. } = *request;
+        let Level { problem, state, .. } = &mut self.levels[0];
+        state.unload();
+        for (k, i) in window.elements(&self.grid) {
+            problem.bound[k] = bound(i);
+            let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
+            problem.rigid[k] = add(friction.rigid_slip_at(&self.grid, i), sideways);
+            state.q[k] = before(&self.before, i);
+        }
+        // A warm start of steady rolling starts from the last creepages, too.
+        let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
+        let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
+        problem.offset = [0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 });
+        problem.scale = match friction.motion {
+            Motion::Shift => Scale::SlipOrDisplacement,
+            Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
+            _ => Scale::Slip,
+        };
+        problem.bound_changed();
+        problem.slip.copy_from_slice(&problem.rigid);
+        if !from_rest {
+            self.leave(friction)?;
+        }
+        let Level { problem, state, .. } = &mut self.levels[0];
+        match start {
+            Start::Before if from_rest => return Ok(false),
+            Start::Before => {}
+            Start::Superposed(Superposed { smaller, along, offset }) => {
+                for (k, i) in window.elements(&self.grid) {
+                    let missing = request.pressure[i].max(0.0) - smaller[i];
+                    state.q[k] = along.map(|along| along * missing);
+                }
+                problem.offset = offset;
+            }
+            Start::Again => {
+                window.elements(&self.grid).for_each(|(k, i)| state.q[k] = self.solution.traction[i]);
+                problem.offset = self.offset;
+            }
+        }
+        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
+        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
+        problem.refresh(state);
+        Ok(mostly)
+    }
+
+    /// w less the displacements before the step, by the tractions that the state holds.
+    fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
+        let Level { problem, state, .. } = &mut self.levels[0];
+        match friction.motion {
+            Motion::SteadyRolling => return Ok(()),
+            Motion::Shift => problem.operators.multiply(&state.q, problem.rms_bound(), &mut state.u),
+            Motion::TransientRolling => {
+                let by = friction.elements_rolled(&self.grid);
+                let displaced = displaced(&mut self.displaced, &self.tangential, problem.grid, by, &self.threads)?;
+                displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
+            }
+        }
+        for (w, u) in problem.slip.iter_mut().zip(&state.u) {
+            *w = [w[0] - u[0], w[1] - u[1]];
+        }
+        Ok(())
+    }
+
+    /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
+    pub(super) fn check_range(&self) -> Result<()> {
+        let problem = &self.levels[0].problem;
+        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
+        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && displaced / slip < LARGEST_RATIO) {
+            let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
+            return invalid(format!(
+                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e60 apart; {rule}"
+            ));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,171 @@
+//! Where a shift from rest starts: at the pressures p* of a smaller load.
+//!
+//! ```text
+//! q = mu (p - p*) t       p* by the approach less |w|/(mu k),  or by the force less |F|/mu;   t: opposite to the shift w, or along F
+//! ```
+//!
+//! k is the ratio of the tangential to the normal influence, `(1/G - nu/(2 G))/(1/G - nu/G)` as a mean over all directions. Where p*
+//! touches, p and p* displace by the same but for a constant, which q makes of it: that sticks. The rest of C has `q = mu p t`, and it slips.
+//! (Cattaneo 1938 and Mindlin 1949 for balls; Jager 1998 and Ciavarella 1998 for any surface.)
+//!
+//! With nu = 0 both influences are the same, and this is the solution; otherwise the residual is some 5 % of nu. So the smaller load is
+//! solved no better than that. What p leaves of its own conditions goes into the distance, so that it leaves nothing in the slip.
+
+use std::time::Instant;
+
+use super::methods;
+use super::options::Method;
+use super::tangential::Turn;
+use super::task::Task;
+use super::{Outcome, Solver};
+use crate::contact::{lowest, NonNegative, State};
+use crate::effects::{Coefficient, Motion, Prescribed, Previous};
+use crate::error::Result;
+use crate::friction::{Compliance, Start, Superposed, Vector};
+use crate::grid::Grid;
+use crate::memory::blank;
+use crate::methods::Start as NormalStart;
+use crate::progress::{Criterion, Goal, Monitor, Progress};
+use crate::scene::Load;
+
+/// A shift that takes less than this part of the approach away is not worth it: p - p* loses digits.
+const LEAST: f64 = 0.01;
+/// The smaller load is solved to this part of the tolerance.
+const AIM: f64 = 0.7;
+/// Of nu: how much of the residual of the superposition the smaller load may have.
+const OF_POISSON: f64 = 5e-3;
+/// Iterations at most: it is a start only.
+const MOST: u64 = 60;
+
+/// The pressures of the smaller load, and what they cost.
+pub struct Smaller {
+    state: State,
+    along: Vector,
+    offset: Vector,
+    /// In two-component products: two of one component count as one.
+    pub products: f64,
+    pub seconds: f64,
+}
+
+impl Smaller {
+    /// The start that they make.
+    pub fn start(&self) -> Start<'_> {
+        Start::Superposed(Superposed { smaller: &self.state.p, along: self.along, offset: self.offset })
+    }
+}
+
+/// What a scene shifts by.
+struct Push {
+    mu: f64,
+    /// k.
+    ratio: f64,
+    /// t.
+    direction: Vector,
+    /// `|w|/(mu k)`, or `|F|/mu`.
+    less: f64,
+    by_force: bool,
+}
+
+impl Push {
+    /// Of a shift from rest in one direction, with nothing that the superposition does not know.
+    fn of(turn: &Turn<'_>) -> Option<Push> {
+        let (scene, friction) = (turn.scene, turn.friction);
+        let Coefficient::Uniform(mu) = friction.coefficient else { return None };
+        let is_simple = friction.motion == Motion::Shift
+            && friction.previous == Previous::None
+            && friction.spin == 0.0
+            && friction.rigid_slip.is_none()
+            && friction.influence.is_none()
+            && scene.influence.is_none()
+            && scene.layer.is_none()
+            && scene.pressure_limit.is_none()
+            && !turn.options.is_fixed();
+        let Compliance { shear, poisson, .. } = Compliance::of(&scene.bodies);
+        let ratio = (shear - 0.5 * poisson) / (shear - poisson);
+        let by_force = friction.prescribed.iter().any(|given| matches!(given, Prescribed::Force(_)));
+        let push = friction.prescribed.map(|given| match given {
+            Prescribed::Force(force) => force,
+            Prescribed::Creepage(shift) => -shift,
+        });
+        let is_mixed = |(given, push): (&Prescribed, f64)| matches!(given, Prescribed::Creepage(_)) && push != 0.0;
+        if !is_simple || by_force && friction.prescribed.iter().zip(push).any(is_mixed) {
+            return None;
+        }
+        let length = push[0].hypot(push[1]);
+        let less = if by_force { length / mu } else { length / (mu * ratio) };
+        let is_there = less.is_finite() && less > 0.0 && ratio.is_finite();
+        is_there.then(|| Push { mu, ratio, direction: push.map(|push| push / length), less, by_force })
+    }
+}
+
+impl Solver {
+    /// The smaller load of a scene whose normal problem ended with `stop`; none where the superposition says nothing.
+    pub(super) fn smaller_load(
+        &mut self,
+        turn: &Turn<'_>,
+        stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Option<Smaller>> {
+        let began = Instant::now();
+        let Some(push) = Push::of(turn).filter(|_| stop == Outcome::Converged && self.problem.symmetric) else {
+            return Ok(None);
+        };
+        let depth = self.state.approach - lowest(&self.state.h);
+        let (load, sunk) = if push.by_force {
+            let force = self.state.force();
+            let part = push.less / force;
+            if !(part < 1.0) {
+                return Ok(None);
+            }
+            // Of a parabola or a more conforming surface at least.
+            (Load::Force(force - push.less), 2.0 / 3.0 * part * depth)
+        } else {
+            (Load::Approach(self.state.approach - push.less), push.less.min(depth))
+        };
+        if !(sunk >= LEAST * depth) {
+            return Ok(None);
+        }
+        let mut state = self.without_residual(load)?;
+        let mut products = 0.0;
+        if sunk < depth {
+            let Compliance { shear, poisson, .. } = Compliance::of(&turn.scene.bodies);
+            let wanted = AIM * turn.options.tolerance.max(OF_POISSON * poisson / shear);
+            let tolerance = wanted * sunk / (depth - sunk);
+            products = 0.5 * self.solve_smaller(&mut state, tolerance.min(wanted.sqrt()), monitor)?;
+        } else {
+            state.unload();
+        }
+        let along = push.direction.map(|t| push.mu * t);
+        let slid = if push.by_force { push.ratio * (self.state.approach - state.approach) } else { 0.0 };
+        let offset = along.map(|along| -along * slid);
+        Ok(Some(Smaller { state, along, offset, products, seconds: began.elapsed().as_secs_f64() }))
+    }
+
+    /// The state of another load, with the distance of which p is the exact solution.
+    fn without_residual(&self, load: Load) -> Result<State> {
+        let State { grid, h, u, contact, approach, round_off, .. } = &self.state;
+        let mut distance = blank(h.len(), f64::NAN, "the distance of a smaller load")?;
+        for (i, distance) in distance.iter_mut().enumerate() {
+            *distance = if contact[i] { approach - u[i] } else { h[i] };
+        }
+        let mut state = State::new(*grid, distance, load, *approach)?;
+        state.round_off = *round_off;
+        state.forget();
+        Ok(state)
+    }
+
+    /// Solves the smaller load. Returns the products that it took.
+    fn solve_smaller(&mut self, state: &mut State, tolerance: f64, monitor: &mut Monitor<'_>) -> Result<f64> {
+        let finest = self.problem.grid;
+        let mut tell = |progress: &Progress| {
+            let grid = Grid { mx: progress.mx, my: progress.my, ..finest };
+            !monitor.tangential_done(&grid, progress.residual)
+        };
+        let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
+        let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: MOST };
+        let mut task = Task { problem: &mut self.problem, state, set: NonNegative, goal, monitor: &mut own };
+        let stages = methods::stages::<NonNegative>(Method::ProjectedCg, true, true);
+        self.methods.solve(&mut task, NormalStart::Nothing, stages, 0.0)?;
+        Ok(own.count.work_units)
+    }
+}
