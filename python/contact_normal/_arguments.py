@@ -82,8 +82,13 @@ def integer(name: str, value: Any, bits: int = 32) -> int:
     return whole
 
 
+_PAIR = c_double * 2
+
+
 def pointer(array: npt.NDArray[Any], kind: Any = c_double) -> Any:
     """The address of a contiguous array."""
+    if array.size and array.flags.writeable:
+        return POINTER(kind)(kind.from_buffer(array))
     return array.ctypes.data_as(POINTER(kind))
 
 
@@ -120,20 +125,26 @@ def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
 
 def pair(name: str, value: Any) -> Any:
     """One value for both bodies, or two."""
+    if isinstance(value, float):
+        return _PAIR(value, value)
+    if isinstance(value, tuple) and len(value) == 2 and all(isinstance(one, float) for one in value):
+        return _PAIR(*value)
     values = _plain(name, value, "fiu", "one real number or two").astype(np.float64)
     if values.shape not in ((), (1,), (2,)):
         raise ValueError(f"{name} has shape {values.shape}; it must be one value for both bodies, or two")
-    return (c_double * 2)(*np.broadcast_to(values, (2,)))
+    return _PAIR(*np.broadcast_to(values, (2,)))
+
+
+_OPTIONS = {field[0]: field[1] for field in Options._fields_ if field[0] in SolveOptions.__annotations__}
 
 
 def options(given: Mapping[str, Any]) -> Any:
     """The struct of options with those that are given."""
     struct = initialised("options")
-    members = {field[0]: field[1] for field in Options._fields_ if field[0] in SolveOptions.__annotations__}
     for name, value in given.items():
-        if name not in members:
-            raise TypeError(f"no option {name}; there are: {', '.join(sorted(members))}")
+        if name not in _OPTIONS:
+            raise TypeError(f"no option {name}; there are: {', '.join(sorted(_OPTIONS))}")
         if isinstance(value, str):
             value = _constants.value_of(name, value)
-        setattr(struct, name, integer(name, value) if members[name] is c_int32 else value)
+        setattr(struct, name, integer(name, value) if _OPTIONS[name] is c_int32 else value)
     return struct

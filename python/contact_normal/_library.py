@@ -153,11 +153,16 @@ library = load()
 VERSION: str = library.contact_normal_version().decode()
 
 
+_INITIALISED: dict[str, Any] = {}
+
+
 def initialised(name: str) -> Any:
     """A struct as its `_init` of the library fills it."""
-    struct = SIZED[name]()
-    getattr(library, f"contact_normal_{name}_init")(ctypes.byref(struct))
-    return struct
+    kind = SIZED[name]
+    if name not in _INITIALISED:
+        _INITIALISED[name] = kind()
+        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(_INITIALISED[name]))
+    return kind.from_buffer_copy(_INITIALISED[name])
 
 
 class ContactNormalError(Exception):

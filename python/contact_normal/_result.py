@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from ctypes import c_int32
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._stress import SubsurfaceStress
 
+_REPORTED = [name for name in names(Report) if name not in ("struct_size", "ledger", "ledger_capacity")]
+_ROW = [name for name in names(LedgerRow) if name != "reserved"]
 _LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
 
 
@@ -86,18 +89,33 @@ class Result:
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene) -> None:
         self.status, self.message = status, message
         self.pressure, self.deformed_distance, self.displacement = outputs.doubles
-        self.contact: npt.NDArray[np.bool_] = outputs.contact != 0
-        self.at_limit: npt.NDArray[np.bool_] = outputs.contact == 2
-        self._scene = scene
+        self._scene, self._outputs, self._report = scene, outputs, report
         self.traction, self.slip, self.adhesion = outputs.traction, outputs.slip, outputs.adhesion
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
-        hidden = ("struct_size", "ledger", "ledger_capacity")
-        self.report: dict[str, Any] = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
-        rows = outputs.rows[: min(report.ledger_rows, _LEDGER_ROOM)]
-        members = [name for name in names(LedgerRow) if name != "reserved"]
-        estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
-        self.ledger = Ledger(({name: getattr(row, name) for name in members} for row in rows), estimated)
+
+    # What follows is made when it is first asked for: small problems take no longer than that would.
+    @cached_property
+    def contact(self) -> npt.NDArray[np.bool_]:
+        """The contact area, with the elements at the pressure limit."""
+        return self._outputs.contact != 0
+
+    @cached_property
+    def at_limit(self) -> npt.NDArray[np.bool_]:
+        """The elements at the pressure limit."""
+        return self._outputs.contact == 2
+
+    @cached_property
+    def report(self) -> dict[str, Any]:
+        """The numbers of `contact_normal_report`."""
+        return {name: _value(getattr(self._report, name)) for name in _REPORTED}
+
+    @cached_property
+    def ledger(self) -> Ledger:
+        """One dict per grid."""
+        rows = self._outputs.rows[: min(self._report.ledger_rows, _LEDGER_ROOM)]
+        estimated = "force" if self._scene.struct.load == PRESCRIBED_APPROACH else "approach"
+        return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), estimated)
 
     @property
     def approach(self) -> float:
@@ -194,6 +212,9 @@ class Result:
         return subsurface(self._scene, self.pressure, depths, traction, body, principal, threads)
 
 
+_ROWS = LedgerRow * _LEDGER_ROOM
+
+
 def _value(value: Any) -> Any:
     """A number, or a tuple of those of an array."""
     return value if isinstance(value, (int, float)) else tuple(value)
@@ -221,5 +242,5 @@ class Outputs:
         for k in range(2):
             self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
         self.fields.adhesion = pointer(self.adhesion, c_int32)
-        self.rows = (LedgerRow * _LEDGER_ROOM)()
+        self.rows = _ROWS()
         self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM

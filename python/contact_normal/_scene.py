@@ -155,15 +155,17 @@ _FRICTION_NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offs
 _FRICTION_PAIRS = ("previous_traction", "rigid_slip")
 
 
-def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    known = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence", "influence_cross",
+_FRICTION = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence", "influence_cross",
              *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
-    unknown = sorted(set(value) - set(known))
+
+
+def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
+    unknown = sorted(set(value).difference(_FRICTION))
     if unknown:
-        raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(known)}")
+        raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(_FRICTION)}")
     effect, kept = initialised("friction"), []
     coefficient = value.get("coefficient", 0.0)
-    if np.ndim(coefficient) == 0:
+    if isinstance(coefficient, float) or np.ndim(coefficient) == 0:
         effect.coefficient = coefficient
     else:
         kept.append(doubles("friction['coefficient']", coefficient, shape))
@@ -175,7 +177,7 @@ def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
     effect.creepage = pair("friction['creepage']", value.get("creepage", 0.0))
     effect.spin_centre = pair("friction['spin_centre']", value.get("spin_centre", 0.0))
     forces = value.get("force", (None, None))
-    if np.ndim(forces) == 0 or len(forces) != 2:
+    if not isinstance(forces, (tuple, list)) and np.ndim(forces) == 0 or len(forces) != 2:
         raise ValueError(f"friction['force'] is {forces!r}; it must be a pair, None where the creepage is given")
     for k, force in enumerate(forces):
         if force is not None:
