@@ -23,13 +23,15 @@ mod patches;
 mod period;
 mod pressure_limit;
 mod tables;
+mod tangential_influence;
 
 pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};
-pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
+pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use layer::Layer;
 pub use list::{check_effects, excluded_method, replace_bodies};
 pub use named::Named;
 pub use patches::Patches;
 pub use period::Period;
 pub use pressure_limit::PressureLimit;
+pub use tangential_influence::TangentialInfluence;

@@ -188,8 +188,10 @@ impl Tangential {
         self.fill_far::<6>(s6, y, far6);
         self.fill_far::<4>(s4, y, far4);
         self.fill_far::<2>(s2, y, far2);
-        for (kx, entry) in out.iter_mut().enumerate() {
-            entry[2] = self.mixed(kx as f64, ky as f64);
+        if self.compliance.poisson != 0.0 {
+            for (kx, entry) in out.iter_mut().enumerate() {
+                entry[2] = self.mixed(kx as f64, ky as f64);
+            }
         }
     }
 
@@ -211,7 +213,7 @@ impl Tangential {
         let (half_diagonal2, area) = (0.25 * (self.dx * self.dx + self.dy * self.dy), self.dx * self.dy);
         let inverse = x.map(|x| 1.0 / (x * x + y * y));
         let t: [f64; L] = from_fn(|l| x[l] * x[l] * inverse[l]);
-        self.series.each_ref().map(|series| {
+        let sum = |series: &Series| {
             let mut sum = [0.0; L];
             for k in (0..=K).rev() {
                 let mut value = [series[k][k + 1]; L];
@@ -221,7 +223,11 @@ impl Tangential {
                 sum = from_fn(|l| sum[l] * (half_diagonal2 * inverse[l]) + value[l]);
             }
             from_fn(|l| area * inverse[l].sqrt() * sum[l])
-        })
+        };
+        let xx = sum(&self.series[0]);
+        // Without nu both are the integral of 1/r.
+        let yy = if self.compliance.poisson == 0.0 { xx } else { sum(&self.series[1]) };
+        [xx, yy]
     }
 
     /// Axx and Ayy at an offset `kx, ky >= 0` nearer than the series reaches.

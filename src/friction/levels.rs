@@ -161,18 +161,20 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
     let (from, to) = (coarse.problem.grid, fine.problem.grid);
     // Elements of a coarse one by those of them in C: q carries on C what it carried on the whole.
     let mut shares: Vec<f64> = zeros(from.len(), "the start from a coarser grid")?;
-    for (k, share) in shares.iter_mut().enumerate() {
-        let in_contact = from.children(&to, k).filter(|&child| fine.problem.bound[child] > 0.0).count();
-        *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
-    }
+    fine.problem.threads().for_each_plain_row(&mut shares, from.mx, |iy, row| {
+        for (ix, share) in row.iter_mut().enumerate() {
+            let all = from.children(&to, iy * from.mx + ix);
+            let in_contact = all.filter(|&child| fine.problem.bound[child] > 0.0).count();
+            *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
+        }
+    });
     // Behind the leading edge tractions of steady rolling begin as their bound does.
     let is_rolling = fine.problem.operators.rolling.is_some();
     let (x, y) = (places(to.mx, from.mx), places(to.my, from.my));
-    for i in 0..to.len() {
+    let between = |i: usize| {
         let g = fine.problem.bound[i];
-        fine.state.q[i] = [0.0; 2];
         if !(g > 0.0) {
-            continue;
+            return [0.0; 2];
         }
         let (mut direction, mut traction, mut weights, mut all_slip) = ([0.0; 2], [0.0; 2], 0.0, true);
         for (column, in_x) in x[i % to.mx] {
@@ -190,7 +192,7 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
             }
         }
         let length = square(direction).sqrt();
-        fine.state.q[i] = if weights == 0.0 {
+        if weights == 0.0 {
             [0.0; 2]
         } else if all_slip && length > 0.0 {
             onto_disc(direction.map(|v| g * v / length), g)
@@ -198,8 +200,11 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
             onto_disc(direction.map(|v| g * v / weights), g)
         } else {
             onto_disc(traction.map(|v| v / weights), g)
-        };
-    }
+        }
+    };
+    fine.problem.threads().for_each_plain_row(&mut fine.state.q, to.mx, |iy, row| {
+        row.iter_mut().enumerate().for_each(|(ix, q)| *q = between(iy * to.mx + ix));
+    });
     let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
     fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
     fine.state.is_exact = false;

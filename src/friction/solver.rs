@@ -1,6 +1,6 @@
 //! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
 
-use super::certificate::Certificate;
+use super::certificate::{is_on_circle, Certificate};
 use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
@@ -121,7 +121,8 @@ impl Solver {
             self.before.clone_from(&self.solution.traction);
         }
         let kept = &self.before;
-        let from_rest = (0..self.grid.len()).all(|i| before(kept, i) == [0.0; 2]);
+        let from_rest =
+            friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(kept, i) == [0.0; 2]);
         let rolling = (friction.motion == Motion::SteadyRolling)
             .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
         let window =
@@ -179,8 +180,11 @@ impl Solver {
                 (forces.given[k], forces.sum[k]) = (true, force / area);
             }
         }
+        if !forces.any() {
+            return Ok(forces);
+        }
         let greatest: f64 = (0..self.grid.len()).map(bound).sum();
-        if forces.any() && !(square(forces.sum).sqrt() < greatest) {
+        if !(square(forces.sum).sqrt() < greatest) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",
                 square(forces.sum).sqrt() * area,
@@ -254,23 +258,38 @@ impl Solver {
     /// The result on the whole grid, and what is to be said of it.
     fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], window: Option<Window>, report: &mut Report) {
         let Solution { traction, slip, adhesion } = &mut self.solution;
-        traction.fill([0.0; 2]);
-        slip.fill([0.0; 2]);
-        adhesion.fill(EXTERIOR);
-        let distance = friction.distance(&self.grid);
+        let (grid, threads) = (self.grid, self.threads.suited_to(self.grid.len()));
+        let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
         if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
             offset = problem.offset;
             self.offset = offset;
-            for (k, i) in window.elements(&self.grid).filter(|(_, i)| pressure[*i] > 0.0) {
-                let (q, g) = (state.q[k], problem.bound[k]);
-                traction[i] = q;
-                slip[i] = problem.slip_at(k, &state.u);
-                let slides = square(q).sqrt() >= g * super::certificate::ON_THE_CIRCLE;
-                adhesion[i] = if slides { SLIP } else { STICK };
-                // Without friction all slips.
-                report.certificate.slip_count += usize::from(!(g > 0.0));
-            }
+            let width = problem.grid.mx;
+            // Of element i, the elements in contact of its row of the window, and where these are there.
+            let touching = |iy: usize| {
+                let rows = (window.y.0..window.y.1).contains(&iy).then(|| iy - window.y.0);
+                let places = rows.into_iter().flat_map(|row| (row * width..).zip(window.row(&grid, row)));
+                places.filter(|(_, i)| pressure[*i] > 0.0).map(move |(k, i)| (k, i - iy * grid.mx))
+            };
+            threads.for_each_row_pair((traction, grid.mx), (slip, grid.mx), |iy, traction, slip| {
+                traction.fill([0.0; 2]);
+                slip.fill([0.0; 2]);
+                touching(iy).for_each(|(k, ix)| (traction[ix], slip[ix]) = (state.q[k], problem.slip_at(k, &state.u)));
+            });
+            threads.for_each_plain_row(adhesion, grid.mx, |iy, adhesion| {
+                adhesion.fill(EXTERIOR);
+                for (k, ix) in touching(iy) {
+                    adhesion[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
+                }
+            });
+            // Without friction all slips.
+            let without = |k: &usize| !(problem.bound[*k] > 0.0);
+            let all = (window.y.0..window.y.1).flat_map(|iy| touching(iy).map(|(k, _)| k));
+            report.certificate.slip_count += all.filter(without).count();
+        } else {
+            traction.fill([0.0; 2]);
+            slip.fill([0.0; 2]);
+            adhesion.fill(EXTERIOR);
         }
         for (k, prescribed) in friction.prescribed.iter().enumerate() {
             report.creepage[k] = match prescribed {

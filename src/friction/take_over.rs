@@ -12,8 +12,8 @@ use crate::error::{invalid, Result};
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
 
-/// Rigid slips and what tractions displace may be so far apart.
-const LARGEST_RATIO: f64 = 1e60;
+/// Rigid slips and what tractions displace may be so far apart: single precision ends at 1e38.
+const LARGEST_RATIO: f64 = 1e30;
 
 impl Solver {
     /// g, w, and for rolling the tractions to start from. Returns whether most of C slipped before.
@@ -21,17 +21,26 @@ impl Solver {
         &mut self,
         (request, from_rest): (&Request<'_>, bool),
         window: Window,
-        bound: impl Fn(usize) -> f64,
-        before: impl Fn(&[Vector], usize) -> Vector,
+        bound: impl Fn(usize) -> f64 + Sync + Send,
+        before: impl Fn(&[Vector], usize) -> Vector + Sync + Send,
     ) -> Result<bool> {
         let Request { friction, start, .. } = *request;
+        let (grid, kept) = (&self.grid, &self.before);
         let Level { problem, state, .. } = &mut self.levels[0];
+        let (threads, width) = (problem.threads().clone(), problem.grid.mx);
         state.unload();
-        for (k, i) in window.elements(&self.grid) {
-            problem.bound[k] = bound(i);
-            let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-            problem.rigid[k] = add(friction.rigid_slip_at(&self.grid, i), sideways);
-            state.q[k] = before(&self.before, i);
+        threads.for_each_row_pair((&mut problem.bound, width), (&mut problem.rigid, width), |iy, bounds, rigid| {
+            let places = window.row(grid, iy);
+            for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
+                *g = bound(i);
+                let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
+                *rigid = add(friction.rigid_slip_at(grid, i), sideways);
+            }
+        });
+        if !from_rest {
+            threads.for_each_plain_row(&mut state.q, width, |iy, row| {
+                row.iter_mut().zip(window.row(grid, iy)).for_each(|(q, i)| *q = before(kept, i));
+            });
         }
         // A warm start of steady rolling starts from the last creepages, too.
         let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
@@ -43,7 +52,9 @@ impl Solver {
             _ => Scale::Slip,
         };
         problem.bound_changed();
-        problem.slip.copy_from_slice(&problem.rigid);
+        threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
+            slip.copy_from_slice(rigid);
+        });
         if !from_rest {
             self.leave(friction)?;
         }
@@ -52,10 +63,12 @@ impl Solver {
             Start::Before if from_rest => return Ok(false),
             Start::Before => {}
             Start::Superposed(Superposed { smaller, along, offset }) => {
-                for (k, i) in window.elements(&self.grid) {
-                    let missing = request.pressure[i].max(0.0) - smaller[i];
-                    state.q[k] = along.map(|along| along * missing);
-                }
+                threads.for_each_plain_row(&mut state.q, width, |iy, row| {
+                    for (q, i) in row.iter_mut().zip(window.row(&self.grid, iy)) {
+                        let missing = request.pressure[i].max(0.0) - smaller[i];
+                        *q = along.map(|along| along * missing);
+                    }
+                });
                 problem.offset = offset;
             }
             Start::Again => {
@@ -94,7 +107,7 @@ impl Solver {
         if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && displaced / slip < LARGEST_RATIO) {
             let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
             return invalid(format!(
-                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e60 apart; {rule}"
+                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e30 apart; {rule}"
             ));
         }
         Ok(())

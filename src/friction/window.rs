@@ -32,11 +32,17 @@ impl Window {
         Grid { mx: self.x.1 - self.x.0, my: self.y.1 - self.y.0, ..*grid }
     }
 
+    /// Of row iy of the window the indices on the whole grid.
+    pub fn row(&self, grid: &Grid, iy: usize) -> std::ops::Range<usize> {
+        let start = (self.y.0 + iy) * grid.mx;
+        start + self.x.0..start + self.x.1
+    }
+
     /// Of each element of the window its index, and that on the whole grid.
     pub fn elements(self, grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
         let (mx, width) = (grid.mx, self.x.1 - self.x.0);
-        let count = width * (self.y.1 - self.y.0);
-        (0..count).map(move |k| (k, (self.y.0 + k / width) * mx + self.x.0 + k % width))
+        let row = move |y: usize| (0..width).map(move |x| (y * width + x, (self.y.0 + y) * mx + self.x.0 + x));
+        (0..self.y.1 - self.y.0).flat_map(row)
     }
 }
 

@@ -54,6 +54,9 @@ impl Solver {
         let start = smaller.as_ref().map_or(Start::Before, Smaller::start);
         let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, start, monitor)?;
         if let Some(smaller) = smaller {
+            if tangential_stop == Outcome::Converged && monitor.is_cancelled() {
+                tangential_stop = Outcome::Cancelled;
+            }
             (found.products, found.seconds) = (found.products + smaller.products, found.seconds + smaller.seconds);
         }
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };

@@ -1,6 +1,6 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
-use contact_normal::friction::Request;
+use contact_normal::friction::{Request, Start};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Prescribed, Previous};
 use contact_normal::solver::Outcome;
@@ -109,7 +109,7 @@ fn forces_that_friction_cannot_carry_are_refused() {
                 tolerance: 1e-6,
                 limit: 1000,
                 sideways: None,
-                again: false,
+                start: Start::Before,
                 estimates: false,
             },
             &mut |_, _| true,
@@ -128,6 +128,38 @@ fn forces_that_friction_cannot_carry_are_refused() {
     let (end, report) = solve(&Friction { spin: 50.0, ..with(0.9) }).unwrap();
     assert_eq!(end, Outcome::Converged);
     assert!((report.force[0] - 0.9 * carried).abs() <= 1e-6 * carried && report.creepage[0] < -50.0 * 0.5);
+}
+
+#[test]
+fn slips_that_dwarf_what_tractions_displace_are_refused() {
+    let (grid, g) = disc(20, |_, _| true);
+    let shifted = |by: f64, mu: f64| {
+        let friction =
+            Friction { prescribed: [Prescribed::Creepage(by), Prescribed::Creepage(0.0)], ..Friction::new(mu) };
+        let (start, limit) = (Start::Before, 1000);
+        let request = Request {
+            pressure: &g,
+            friction: &friction,
+            tolerance: 1e-6,
+            limit,
+            sideways: None,
+            start,
+            estimates: false,
+        };
+        solver(&grid, 0.3).solve(&request, &mut |_, _| true)
+    };
+    // An element displaces itself by some 0.1 per traction, and tractions are of order mu.
+    for (by, mu) in [(1e32, 1.0), (1e-32, 1.0), (1.0, 1e32), (1.0, 1e-32)] {
+        let refused = shifted(by, mu).unwrap_err();
+        assert!(refused.to_string().contains("more than 1e30 apart"), "{refused}");
+    }
+    for (by, mu) in [(1e28, 1.0), (1e-28, 1.0), (1.0, 1e28), (1.0, 1e-28)] {
+        let (end, report) = shifted(by, mu).unwrap();
+        assert_eq!(end, Outcome::Converged, "{by} {mu}");
+        let all = report.certificate.stick_count + report.certificate.slip_count;
+        let expected = if by > mu { (0, all) } else { (all, 0) };
+        assert_eq!((report.certificate.stick_count, report.certificate.slip_count), expected, "{by} {mu}");
+    }
 }
 
 #[test]
@@ -157,7 +189,7 @@ fn a_callback_cancels_wherever_it_is_told() {
         tolerance: 1e-6,
         limit: 1000,
         sideways: None,
-        again: false,
+        start: Start::Before,
         estimates: false,
     };
     let mut total = 0;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Vector};
+use contact_normal::friction::{dense, Start, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 
@@ -77,7 +77,7 @@ fn previous_tractions_may_be_given_or_kept() {
         tolerance: 1e-6,
         limit: 100,
         sideways: None,
-        again: false,
+        start: Start::Before,
         estimates: false,
     };
     assert!(solver(&grid, 0.3).solve(&nothing, &mut |_, _| true).is_err());

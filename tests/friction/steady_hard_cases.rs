@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::Request;
+use contact_normal::friction::{Request, Start};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
@@ -37,7 +37,7 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
             tolerance: 1e-6,
             limit: 100,
             sideways: None,
-            again: false,
+            start: Start::Before,
             estimates: false,
         };
         let refused = solver(&grid, NU).solve(&request, &mut |_, _| true).unwrap_err();
@@ -201,7 +201,7 @@ fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
             tolerance: 1e-8,
             limit: 1000,
             sideways: None,
-            again: false,
+            start: Start::Before,
             estimates: false,
         };
         let mut calls = 0;
