@@ -196,8 +196,9 @@ impl Solver {
         (report.limit, report.halving) = estimates::estimate(rows, &self.problem, &self.state, outline, seconds);
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
         let alike = self.friction.as_ref().is_some_and(|tangent| tangent.is_of_like_bodies());
-        if let (Some(friction), Some(found), true) = (&scene.friction, &mut report.friction, alike) {
-            found.error = tangential_estimates::estimate(&self.problem, &self.state, &ledger.outline, friction, found);
+        if let (Some(friction), Some(found)) = (&scene.friction, &mut report.friction) {
+            let contact = (&self.problem, &self.state, &ledger.outline);
+            found.error = tangential_estimates::estimate(contact, (friction, alike), found);
         }
     }
 

@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::friction::{Compliance, Start, Superposed, Vector};
 use crate::grid::Grid;
 use crate::memory::blank;
-use crate::methods::Step;
+use crate::methods::{Step, Task};
 use crate::progress::{Criterion, Goal, Monitor, Progress};
 use crate::scene::Load;
 
@@ -159,9 +159,11 @@ impl Solver {
         };
         let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: MOST };
-        let (problem, method) = (&mut self.problem, &mut self.methods.projected_cg);
-        method.start(problem, state, NonNegative, &goal, &mut own)?;
-        method.step(problem, state, NonNegative, &goal, &mut own)?;
-        Ok(own.count.work_units + self.problem.take_products() as f64)
+        let mut task = Task { problem: &mut self.problem, state, set: NonNegative, goal, monitor: &mut own };
+        let method = &mut self.methods.projected_cg;
+        method.start(&mut task)?;
+        method.step(&mut task)?;
+        task.count_products();
+        Ok(own.count.work_units)
     }
 }

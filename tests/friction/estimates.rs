@@ -10,6 +10,11 @@ const RADIUS: f64 = 100.0;
 
 /// A ball with a contact radius of 1 on m x m elements, off the middle of an element, pressed down and moved; its mu N is returned, too.
 fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
+    moved_between(m, Bodies::same(1.0, nu), friction)
+}
+
+/// The same of any bodies.
+fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     let d = 2.37 / m as f64;
     let grid = Grid::new(m, m, d, d).unwrap();
     // In elements, somewhere between the centres.
@@ -17,9 +22,10 @@ fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static
     let place = |i: usize, k: usize| (i as f64 - 0.5 * (m - 1) as f64) * d + off[k];
     let h: Vec<f64> =
         (0..m * m).map(|i| (place(i % m, 0).powi(2) + place(i / m, 1).powi(2)) / (2.0 * RADIUS)).collect();
-    let force = 4.0 / (3.0 * (1.0 - nu) * RADIUS);
+    let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = bodies;
+    let force = 4.0 / (3.0 * RADIUS) / (0.5 * ((1.0 - nu1) / g1 + (1.0 - nu2) / g2));
     let friction = friction(MU * force, off.map(|off| -off));
-    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(1.0, nu), Load::Force(force)) };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(force)) };
     let options = Options { estimates: true, tolerance: 1e-7, ..Options::default() };
     let (_, stop, report) = solve(&scene, &options).unwrap();
     assert_eq!(stop, Outcome::Converged);
@@ -61,6 +67,46 @@ fn the_error_of_cattaneos_force_or_shift_is_covered() {
     let median = median(ratios);
     println!("estimated over true, median: {median}");
     assert!(median <= 10.0, "{median}");
+}
+
+#[test]
+fn the_error_of_a_shift_of_unlike_bodies_is_covered() {
+    let pairs = [([1.0, 1e9], [0.3, 0.3]), ([1.0, 3.0], [0.1, 0.45]), ([1.0, 1e9], [0.0, 0.3])];
+    let mut ratios = Vec::new();
+    for (shear_modulus, poisson_ratio) in pairs {
+        let bodies = Bodies { shear_modulus, poisson_ratio };
+        for part in [0.2, 0.5, 0.8] {
+            let by_shift = |m: usize| {
+                moved_between(m, bodies, |carried, _| Friction {
+                    prescribed: [Prescribed::Creepage(-0.6 * part * carried), Prescribed::Creepage(0.0)],
+                    ..Friction::new(MU)
+                })
+            };
+            let by_force = |m: usize| {
+                moved_between(m, bodies, |carried, _| Friction {
+                    prescribed: [Prescribed::Force(part * carried), Prescribed::Force(0.0)],
+                    ..Friction::new(MU)
+                })
+            };
+            // A twentieth of the errors looked at.
+            let (force, creepage) = (by_shift(160).0.force, by_force(160).0.creepage);
+            for m in [20, 24, 32, 40] {
+                let (shifted, pushed) = (by_shift(m).0, by_force(m).0);
+                for k in 0..2 {
+                    let errors = [(shifted.force[k] - force[k]).abs(), (pushed.creepage[k] - creepage[k]).abs()];
+                    for (error, estimate) in errors.into_iter().zip([shifted.error[k], pushed.error[k]]) {
+                        assert!(error <= estimate, "{bodies:?} {m} {part}: {error:e}, estimated {estimate:e}");
+                        if k == 0 {
+                            ratios.push(estimate / error);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    let median = median(ratios);
+    println!("estimated over true, median: {median}");
+    assert!(median <= 20.0, "{median}");
 }
 
 #[test]
