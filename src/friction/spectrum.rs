@@ -12,7 +12,8 @@ use super::coefficients::Entry;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
-use crate::operator::fft::{ColumnTransform, Complex, Real, RowTransform};
+use crate::operator::fft::{ColumnTransform, Complex, Real};
+use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
 /// What memory is for.

@@ -24,7 +24,8 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 use crate::operator::columns::{for_each_mirrored_block, BLOCK};
-use crate::operator::fft::{good_length, ColumnTransform, Complex, Real, RowTransform};
+use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
+use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
 /// Displacements at the centres.

@@ -8,7 +8,7 @@ use super::fft::{Complex, Real};
 use crate::threads::Threads;
 
 /// Columns in a block: 8 double-precision complex numbers are two cache lines.
-pub const BLOCK: usize = 8;
+pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
 const TILE: usize = 4;
 

@@ -11,7 +11,8 @@ use std::mem::take;
 use std::ops::Range;
 
 use super::columns::for_each_block;
-use super::fft::{ColumnTransform, Complex, Real, RowTransform};
+use super::fft::{ColumnTransform, Complex, Real};
+use super::row_transform::RowTransform;
 use super::rows::{Product, Rows};
 use crate::error::Result;
 use crate::grid::Grid;

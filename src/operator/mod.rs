@@ -9,6 +9,7 @@ pub mod fft;
 #[allow(clippy::module_inception)]
 mod operator;
 mod row_tables;
+pub mod row_transform;
 mod rows;
 mod workspace;
 

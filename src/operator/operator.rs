@@ -11,8 +11,9 @@ use std::iter::once;
 use std::ops::Range;
 
 use super::convolution::{Convolution, Even, SetUp};
-use super::fft::{good_length, Complex, Real, RowTransform};
+use super::fft::{good_length, Complex, Real};
 use super::row_tables::PerRow;
+use super::row_transform::RowTransform;
 use super::rows::{Product, Rows};
 use super::workspace::Workspace;
 use crate::error::Result;
@@ -211,9 +212,9 @@ impl<T: Real> Operator<T> {
         let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
-            return self.rows.back(p, product, |_, u, row| u.copy_from_slice(row));
+            return self.rows.back(p, product);
         }
-        self.rows.back(p, product, |iy, p, row| {
+        self.rows.back_with(p, product, |iy, p, row| {
             for ((p, value), d) in p.iter_mut().zip(row).zip(&self.diagonal[iy * self.rows.mx..]) {
                 *p = *value + *d * *p;
             }
@@ -224,9 +225,9 @@ impl<T: Real> Operator<T> {
         let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
-            return self.rows.back(u, product, |_, u, row| u.copy_from_slice(row));
+            return self.rows.back(u, product);
         }
-        self.rows.back(u, product, |iy, u, row| {
+        self.rows.back_with(u, product, |iy, u, row| {
             let first = iy * self.rows.mx;
             for (((u, value), d), p) in u.iter_mut().zip(row).zip(&self.diagonal[first..]).zip(&p[first..]) {
                 *u = *value + *d * *p;

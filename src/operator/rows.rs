@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::fft::{Complex, Real, RowTransform};
+use super::fft::{Complex, Real};
+use super::row_transform::RowTransform;
 use crate::threads::Threads;
 
 /// Rows of the grid, padded to the period in x.
@@ -39,24 +40,40 @@ impl<T: Real> Rows<T> {
         let bins = &mut product.bins[loaded.start * nb..loaded.end * nb];
         let first = loaded.start;
         self.threads.for_each_row(bins, nb, &mut product.pieces, |i, row_bins, piece| {
-            let row = &mut piece.row[..self.transform.length()];
-            row[..self.mx].copy_from_slice(&p[(first + i) * self.mx..(first + i + 1) * self.mx]);
-            row[self.mx..].fill(T::zero());
+            let row = &p[(first + i) * self.mx..(first + i + 1) * self.mx];
             self.transform.forward(row, row_bins, &mut piece.scratch);
         });
         loaded
     }
 
+    /// Transforms all rows back to u.
+    pub fn back(&self, u: &mut [T], product: &mut Product<T>) {
+        self.back_by(u, product, |_, u, row_bins, piece| self.transform.inverse(row_bins, u, &mut piece.scratch));
+    }
+
     /// Transforms all rows back; `write(iy, row of u, values)` takes each of them.
-    pub fn back(&self, u: &mut [T], product: &mut Product<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
+    pub fn back_with(
+        &self,
+        u: &mut [T],
+        product: &mut Product<T>,
+        write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
+    ) {
+        self.back_by(u, product, |iy, u, row_bins, piece| {
+            let row = &mut piece.row[..self.mx];
+            self.transform.inverse(row_bins, row, &mut piece.scratch);
+            write(iy, u, row);
+        });
+    }
+
+    fn back_by(
+        &self,
+        u: &mut [T],
+        product: &mut Product<T>,
+        work: impl Fn(usize, &mut [T], &mut [Complex<T>], &mut Piece<T>) + Sync + Send,
+    ) {
         let Product { bins, pieces } = product;
         let nb = self.transform.bins();
-        let bins = &mut bins[..self.my * nb];
-        self.threads.for_each_row_pair_with((u, self.mx), (bins, nb), pieces, |iy, u_row, row_bins, piece| {
-            // The inverse overwrites its input.
-            self.transform.inverse(row_bins, &mut piece.row[..self.transform.length()], &mut piece.scratch);
-            write(iy, u_row, &piece.row[..self.mx]);
-        });
+        self.threads.for_each_row_pair_with((u, self.mx), (&mut bins[..self.my * nb], nb), pieces, work);
     }
 }
 

@@ -81,7 +81,7 @@ impl<T: Real> Operator<T> {
             Columns::Convolution(_) => 0,
             Columns::PerRow(_) => 2 * self.rows.my,
         };
-        self.rows.transform.length().max(sums)
+        self.rows.mx.max(sums)
     }
 
     /// Values of a block of columns.

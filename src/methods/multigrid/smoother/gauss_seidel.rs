@@ -14,7 +14,8 @@
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::fft::{good_length, ColumnTransform, Complex, RowTransform};
+use crate::operator::fft::{good_length, ColumnTransform, Complex};
+use crate::operator::row_transform::RowTransform;
 use crate::operator::zeros;
 
 /// Rows in a block whose mutual influence is summed directly.
