@@ -160,12 +160,7 @@ impl<T: Real> Convolution<T> {
                 Spectrum::Even(s) => {
                     let s = &s[(first + c) * (py / 2 + 1)..(first + c + 1) * (py / 2 + 1)];
                     let (lower, upper) = column.split_at_mut(py / 2 + 1);
-                    for (value, &factor) in lower.iter_mut().zip(s) {
-                        *value = *value * factor;
-                    }
-                    for (value, &factor) in upper.iter_mut().rev().zip(&s[1..]) {
-                        *value = *value * factor;
-                    }
+                    pulp::Arch::new().dispatch(Multiply { lower, upper, s });
                 }
                 Spectrum::General(s) => {
                     for (value, &factor) in column.iter_mut().zip(&s[(first + c) * py..]) {
@@ -293,5 +288,31 @@ impl<T: Real> Convolution<T> {
         });
         self.spectrum = Spectrum::General(spectrum);
         Ok(())
+    }
+}
+
+/// A column times its spectrum: bins up to py/2, and those beyond. Compiled for the vectors of this machine; no bit depends on them.
+struct Multiply<'a, T: Real> {
+    lower: &'a mut [Complex<T>],
+    upper: &'a mut [Complex<T>],
+    s: &'a [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
+    type Output = ();
+
+    // Loops over slices of one length, which the compiler can vectorise.
+    #[inline(always)]
+    fn call(self) {
+        let Multiply { lower, upper, s } = self;
+        let (n, m) = (lower.len(), upper.len());
+        for (value, &factor) in lower.iter_mut().zip(&s[..n]) {
+            *value = Complex::new(value.re * factor, value.im * factor);
+        }
+        let mirrored = &s[1..=m];
+        for k in 0..m {
+            let (value, factor) = (upper[k], mirrored[m - 1 - k]);
+            upper[k] = Complex::new(value.re * factor, value.im * factor);
+        }
     }
 }
