@@ -25,7 +25,7 @@ impl<T: Real> Toeplitz<T> {
             let q = &q[(first + i) * mx..(first + i + 1) * mx];
             piece.row.iter_mut().zip(q).for_each(|(to, q)| *to = T::of(scale * q[component]));
             piece.row[mx..].fill(T::zero());
-            self.real_rows.forward(&mut piece.row, to, &mut piece.scratch);
+            self.real_rows.forward(&piece.row, to, &mut piece.scratch);
         });
         for_each_block(bins, nb, &self.threads, pieces, |block, piece| {
             let columns = &mut piece.columns[..block.columns() * length];

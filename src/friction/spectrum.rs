@@ -183,7 +183,7 @@ impl SetUp {
     fn transform_row(&mut self, rows: &RowTransform<f64>, mut take: impl FnMut(usize, usize, Complex<f64>)) {
         for component in 0..3 {
             self.values.iter_mut().zip(&self.row).for_each(|(value, entry)| *value = entry[component]);
-            rows.forward(&mut self.values, &mut self.bins, &mut self.scratch);
+            rows.forward(&self.values, &mut self.bins, &mut self.scratch);
             self.bins.iter().enumerate().for_each(|(k, bin)| take(k, component, *bin));
         }
     }

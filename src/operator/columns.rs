@@ -7,10 +7,10 @@ use std::ops::Range;
 use super::fft::{Complex, Real};
 use crate::threads::Threads;
 
-/// Columns in a block: 8 double-precision complex numbers are two cache lines.
+/// Columns in a block: of complex numbers four cache lines in double precision, two in single.
 pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
-const TILE: usize = 4;
+const TILE: usize = 8;
 
 /// One block of columns of a row-major matrix: no two of them overlap.
 pub struct Block<'a, T> {

@@ -69,7 +69,7 @@ impl GaussSeidel {
             for kx in 1 - mx as i64..mx as i64 {
                 row[kx.rem_euclid(px as i64) as usize] = normalisation * influence.at(kx, d as i64);
             }
-            rows.forward(&mut row, bins, &mut scratch);
+            rows.forward(&row, bins, &mut scratch);
         }
 
         let mut halves = Vec::new();
@@ -215,7 +215,7 @@ impl GaussSeidel {
                 *r -= c * change;
             }
         }
-        self.rows.forward(&mut self.row, changes, &mut self.scratch);
+        self.rows.forward(&self.row, changes, &mut self.scratch);
     }
 }
 
