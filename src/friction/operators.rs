@@ -10,6 +10,9 @@ use crate::grid::Grid;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
 
+/// An iteration takes so many times as long as a product of one component.
+const WORK: usize = 3;
+
 /// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
 pub struct Operators {
     /// The coefficients.
@@ -39,7 +42,7 @@ impl Operators {
         single: bool,
         threads: &Threads,
     ) -> Result<Operators> {
-        let threads = &threads.suited_to(grid.len());
+        let threads = &threads.suited_to(WORK * grid.len());
         let tangential = quadrant.tangential();
         let (exact, fast) = match single {
             true => (None, Some(product(quadrant, grid, rolling, threads)?)),

@@ -16,7 +16,7 @@ use super::tangent::{Side, Tangent};
 use super::vectors::{self, Fields, BLOCK};
 use super::Vector;
 use crate::error::Result;
-use crate::memory::zeros;
+use crate::memory::{blank, keep};
 use crate::progress::Outcome;
 
 /// Iterations without a new least residual after which another method takes over.
@@ -59,7 +59,7 @@ pub struct Goal<'a> {
 impl Memory {
     /// For n elements.
     pub fn new(n: usize) -> Result<Memory> {
-        let field = || zeros(n, "the iteration on discs");
+        let field = || blank(n, [f64::NAN; 2], "the iteration on discs");
         Ok(Memory {
             tangent: Tangent::new(n)?,
             direction: field()?,
@@ -70,6 +70,13 @@ impl Memory {
             z: field()?,
             fields: Fields::default(),
         })
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        let Memory { direction, chord, product, debt, given, z, .. } = self;
+        keep([direction, chord, product, debt, given, z]);
     }
 }
 
