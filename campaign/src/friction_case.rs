@@ -40,6 +40,8 @@ impl Place {
         let modulus = if random.chance(0.3) { random.decades(1e-6, 1e9) } else { 1.0 };
         let nu = random.between(-0.5, 0.5);
         let (shear_modulus, poisson_ratio) = match random.uniform() {
+            // Without nu shifts start from a smaller load.
+            u if u < 0.2 => ([modulus; 2], [0.0; 2]),
             u if u < 0.7 => ([modulus; 2], [nu; 2]),
             u if u < 0.8 => ([modulus, f64::INFINITY], [nu, 0.3]),
             _ => ([modulus, modulus * random.decades(0.1, 10.0)], [nu, random.between(0.0, 0.5)]),

@@ -12,8 +12,10 @@ use crate::error::{invalid, Result};
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
 
-/// Rigid slips and what tractions displace may be so far apart: single precision ends at 1e38.
+/// Rigid slips may be so many times what tractions displace: single precision ends at 1e38.
 const LARGEST_RATIO: f64 = 1e30;
+/// And this part of it: the round-off of what pressures displace sideways is a slip, too.
+const LEAST_RATIO: f64 = 1e-60;
 
 impl Solver {
     /// g, w, and for rolling the tractions to start from. Returns whether most of C slipped before.
@@ -104,10 +106,10 @@ impl Solver {
     pub(super) fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
-        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && displaced / slip < LARGEST_RATIO) {
+        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && slip / displaced > LEAST_RATIO) {
             let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
             return invalid(format!(
-                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e30 apart; {rule}"
+                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e30 times or less than 1e-60 times that; {rule}"
             ));
         }
         Ok(())
