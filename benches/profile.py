@@ -30,7 +30,7 @@ PARTS = [
     ("preconditioner", r"apply_in_place"),
     ("set-up", r"even_spectrum|inverse_circulant|Solver::new|Iteration<T>::new|orkspace<|fill_row|zeros<"),
     ("products", r"\bapply<|apply_rows|::apply"),
-    ("products or preconditioner", r"transform_rows|convolve_columns|for_each_block|for_each_row|rustfft|realfft"),
+    ("products or preconditioner", r"transform_rows|convolve_columns|for_each_block|for_each_row|rustfft|row_transform"),
     ("vector passes", r"Iteration|iterate|projected_cg|Level"),
 ]
 

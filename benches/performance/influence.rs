@@ -7,6 +7,7 @@ use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
 
 use crate::case::{ellipse, Case};
 use crate::measure::{in_turns, median, shown, Product};
+use crate::summary;
 
 /// What it may cost in products.
 const AT_MOST: f64 = 2.5;
@@ -52,6 +53,7 @@ fn row(case: &Case, name: &str, skew: f64) {
         &mut || solve(alone),
     ]);
     let [product, set, both, alone] = [0, 1, 2, 3].map(|i| median(&times[i]));
+    summary::note(summary::TABLE, (both - alone) / product);
     println!(
         "| {} | {name} | {} | {:.1} | {:.1} | {AT_MOST} | {} |",
         case.name,
@@ -97,6 +99,7 @@ pub fn row_tables() {
         assert_eq!(stop, Outcome::Converged);
     }]);
     let call = median(&times[0]);
+    summary::note(summary::GROOVE, 1e3 * call);
     let mark = if call <= GROOVE { "met" } else { "MISSED" };
     println!("\n### A call with tables of {ROWS} rows, {COLUMNS} columns, from the solution\n");
     println!("{}, at most {}: {mark}.", shown(call), shown(GROOVE));

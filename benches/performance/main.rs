@@ -4,7 +4,8 @@
 //!
 //! `cargo bench -- --large`: with 4096 x 4096 elements (2 GB), memory with 8192 x 8192 (5 GB); `-- --huge`: and 16384 x 16384 (20 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
 //! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet.
-//! Further arguments name the tables: cold steps limits versus influence force accuracy growth norm memory batch dense methods friction.
+//! Further arguments name the tables: cold steps limits versus speedup one influence force accuracy growth norm
+//! memory batch dense methods friction. The last table has all targets of which something was run.
 
 mod case;
 mod dense;
@@ -13,6 +14,7 @@ mod influence;
 mod limits;
 mod measure;
 mod methods;
+mod summary;
 mod targets;
 mod versus;
 
@@ -84,7 +86,14 @@ fn main() {
         measure::by_processor(false);
         friction::shifts(threads, &sizes[..sizes.len().min(3)]);
     }
+    if wanted("speedup") && threads > 1 {
+        measure::by_processor(false);
+        targets::speed_up(threads, sizes);
+    }
     measure::by_processor(processor);
+    if wanted("one") {
+        targets::one_element();
+    }
     if wanted("influence") {
         influence::another_table(sizes);
         influence::row_tables();
@@ -121,4 +130,5 @@ fn main() {
     if wanted("methods") {
         methods::methods(if quick { &[128] } else { &[128, 256, 512] });
     }
+    summary::print();
 }

@@ -2,11 +2,14 @@
 
 use std::process::Command;
 
-use contact_normal::scene::{Load, Scene};
+use contact_normal::grid::Grid;
+use contact_normal::influence::Table;
+use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Problem, Solver};
 
 use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
 use crate::measure::{cold, in_turns, median, seconds, shown, size, Product};
+use crate::summary;
 
 /// What the small grids may cost on top of their products.
 const SMALL_GRID_EXTRA: f64 = 50e-6;
@@ -50,6 +53,13 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     let call = &mut || _ = cold(&scene, &options);
     let times = in_turns(&mut [call, &mut || product.run()]);
     let (call, product) = (median(&times[0]), median(&times[1]));
+    match (case.name.split_once(' '), threads) {
+        (Some(("ellipse", "16")), 1) => summary::note(summary::SMALL_16, 1e6 * call),
+        (Some(("ellipse", "64")), 1) => summary::note(summary::SMALL_64, 1e6 * call),
+        (Some(("ellipse", m)), 1) if m != "32" => summary::note(summary::ELLIPSE, call / product),
+        (Some(("rough", _)), 1) => summary::note(summary::ROUGH, call / product),
+        _ => {}
+    }
     println!(
         "| {} | {} | {:.1} % | {} | {} | {:.1} | {:.1} | {at_most} | {} |",
         case.name,
@@ -104,6 +114,9 @@ pub fn time_steps(threads: usize) {
         }
         let [later, product] = [0, 1].map(|i| median(&times[i]));
         let first = median(&first_steps);
+        if threads == 1 {
+            summary::note(summary::STEPS, later / product);
+        }
         println!(
             "| {} | {} | {} | {} | {:.1} / {:.1} | 5 | {} |",
             case.name,
@@ -115,6 +128,35 @@ pub fn time_steps(threads: usize) {
             mark(first.max(later), 5.0 * product)
         );
     }
+}
+
+/// Two threads against one, cold calls in turns; and one element with a table of its own.
+pub fn speed_up(threads: usize, sizes: &[usize]) {
+    println!("\n### {threads} threads against one, cold\n");
+    println!("| case | one thread | {threads} threads | ratio | at least | |");
+    println!("|---|---|---|---|---|---|");
+    for case in sizes.iter().filter(|m| **m >= 512).flat_map(|&m| [ellipse(m), rough(m)]) {
+        let [one, several] = [1, threads].map(options);
+        let times = in_turns(&mut [&mut || _ = cold(&case.scene(), &one), &mut || _ = cold(&case.scene(), &several)]);
+        let (one, several) = (median(&times[0]), median(&times[1]));
+        let ratio = one / several;
+        summary::note(summary::SPEED_UP, ratio);
+        println!("| {} | {} | {} | {ratio:.2} | 1.75 | {} |", case.name, shown(one), shown(several), mark(1.75, ratio));
+    }
+}
+
+/// A cold call of one element with a table of its own.
+pub fn one_element() {
+    let grid = Grid::new(1, 1, 1.0, 1.0).expect("a grid");
+    let table = || Table::new(1, 1, &[1.0; 4], &grid).expect("a table");
+    let scene = Scene::new(grid, &[0.0], Bodies::same(1.0, 0.3), Load::Approach(0.1));
+    let call = || {
+        let scene = Scene { influence: Some(table()), ..scene.clone() };
+        (0..100).for_each(|_| _ = cold(&scene, &options(1)));
+    };
+    let took = 1e4 * median(&in_turns(&mut [&mut { call }])[0]);
+    summary::note(summary::ONE, took);
+    println!("\n### One element with a table of its own, cold\n\n{took:.2} us, at most 4: {}.", mark(took, 4.0));
 }
 
 /// Prescribed force against the approach that it leads to.
@@ -200,6 +242,10 @@ pub fn growth(threads: usize, sizes: &[usize]) {
         }
         calls.push((m, call));
     }
+    if let [first, .., last] = &calls[..] {
+        let exponent = (last.1 / first.1).ln() / (2.0 * (last.0 as f64 / first.0 as f64).ln());
+        summary::note(summary::GROWTH, exponent);
+    }
 }
 
 /// Many small problems in one call: how much faster two workers are than one.
@@ -224,6 +270,7 @@ pub fn batch() {
     let times = in_turns(&mut [&mut || solve(one, 1), &mut || solve(two, 2)]);
     let (one, two) = (median(&times[0]), median(&times[1]));
     let rate = |seconds: f64| COUNT as f64 / seconds;
+    summary::note(summary::BATCH, rate(two));
     println!(
         "| {} | {:.0} | {} | {:.0} | {:.2} | 1.8 | {} |",
         shown(one),
@@ -272,6 +319,17 @@ pub fn memory(cases: &[(&str, usize, f64)]) {
         let numbers: Vec<f64> = text.split_whitespace().map(|x| x.parse().expect("a number")).collect();
         let [before, peak] = [numbers[0], numbers[1]].map(|bytes| bytes / (m * m) as f64);
         let (all, call) = (numbers[1] / 1e9, shown(numbers[2]));
+        match m {
+            8192 => {
+                summary::note(summary::BYTES_8192, all);
+                summary::note(summary::SECONDS_8192, numbers[2]);
+            }
+            16384 => {
+                summary::note(summary::BYTES_16384, all);
+                summary::note(summary::SECONDS_16384, numbers[2]);
+            }
+            _ => {}
+        }
         println!(
             "| {name} {m} | {before:.0} | {peak:.1} | {all:.2} GB | {call} | {at_most:.1} | {} |",
             mark(peak, *at_most)

@@ -9,6 +9,7 @@ use contact_normal::scene::Load;
 
 use crate::case::{by_name, Case};
 use crate::measure::{cold, median, seconds, shown};
+use crate::summary;
 
 /// The argument that makes a process do nothing but [`call`].
 pub const CALL: &str = "--call";
@@ -41,6 +42,9 @@ pub fn versus(threads: usize, sizes: &[usize]) {
             }
         }
         let [old, new] = times.map(|times| median(&times));
+        if threads == 1 && m >= 512 {
+            summary::note(summary::VERSUS, old / new);
+        }
         println!("| {name} {m} | {load} | {} | {} | {:.2} |", shown(old), shown(new), new / old);
     }
 }
