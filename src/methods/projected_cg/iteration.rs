@@ -36,7 +36,7 @@
 use super::passes::{Step, Update};
 use super::search::Search;
 use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
 use crate::scene::Load;
@@ -92,7 +92,7 @@ impl<T: Real> Iteration<T> {
             self.find_contact(state);
             self.residual(state);
             self.precondition(state);
-            self.direct(state, set, 0.0, None);
+            self.direct(state, 0.0, None);
             self.update_pressures(state, set, FIRST_STEP, None);
             self.debts.clear();
             state.carry_force(set);
@@ -166,7 +166,11 @@ impl<T: Real> Iteration<T> {
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
         // z = M r, t = max(z + beta t, -p/alpha'), and what is owed
         self.precondition(state);
-        self.direct(state, set, search.tq, search.forecast.filter(|_| search.may_hold_back && !S::FIXED));
+        let held_back = search.forecast.filter(|_| search.may_hold_back && !S::FIXED);
+        self.direct(state, search.tq, held_back);
+        if let (true, Some(forecast)) = (S::LIMITED, held_back) {
+            self.hold_at_limit(state, set, forecast);
+        }
         let forecast = search.forecast.unwrap_or(1.0);
         for &(i, d) in &self.debts {
             self.t[i] += T::of(d / forecast);
@@ -180,13 +184,17 @@ impl<T: Real> Iteration<T> {
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
         let held_back = search.believed(alpha);
-        if S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back)) {
+        let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
+        if near {
             self.remember(state);
         }
         self.pay(state, forecast, alpha);
 
         // p = p + alpha t, 4.1
-        let left = self.update_pressures(state, set, alpha, held_back);
+        let left = match S::LIMITED && !near {
+            true => self.update_pressures(state, NonNegative, alpha, held_back),
+            false => self.update_pressures(state, set, alpha, held_back),
+        };
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q, 4.2

@@ -244,8 +244,11 @@ fn enter<S: AdmissibleSet>(
     let (whole, n) = (state.grid, part.grid.len());
     if S::LIMITED {
         reserve(&mut part.at_limit, n, "elements at the limit")?;
+        part.at_limit.clear();
         part.at_limit.resize(n, false);
-        window.extract(&whole, &state.at_limit, &mut part.at_limit, threads);
+        if state.reached_limit {
+            window.extract(&whole, &state.at_limit, &mut part.at_limit, threads);
+        }
         part.reached_limit = state.reached_limit;
     } else {
         part.at_limit.clear();
@@ -285,9 +288,9 @@ fn leave<S: AdmissibleSet>(
     [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, whole.len(), f64::NAN));
     window.insert(&whole, &part.p, &mut state.p, 0.0, threads);
     window.insert(&whole, &part.contact, &mut state.contact, false, threads);
-    if S::LIMITED {
+    if S::LIMITED && part.reached_limit {
         window.insert(&whole, &part.at_limit, &mut state.at_limit, false, threads);
-        state.reached_limit |= part.reached_limit;
+        state.reached_limit = true;
     }
     state.approach = part.approach;
 }
