@@ -28,13 +28,14 @@
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
-//! is A p, may be negative; it is truncated.
+//! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
+//! product pays all.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::passes::{Step, Update};
-use super::search::Search;
+use super::search::{Search, FIRST_FORECAST};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
@@ -159,7 +160,9 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        Search::new(self.preconditioner.is_some())
+        let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
+        // Without a preconditioner the first forecast is missing.
+        Search::new(self.preconditioner.as_ref().map(|_| first))
     }
 
     /// One iteration, r being what z holds; none where there is no direction.
@@ -228,11 +231,12 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha; where elements are at their limit that of the forecast, if it pays what is owed.
+    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
     fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
-        if limited && self.owed() > OWED * alpha.abs() * step.t1 {
+        let pays = std::mem::take(&mut search.is_first) || limited;
+        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }
