@@ -5,6 +5,7 @@ use contact_normal::ffi::*;
 use crate::call::Outputs;
 use crate::case::Case;
 use crate::grid::Load;
+use crate::measures::Measures;
 
 /// A promise that was not kept.
 #[derive(Clone, Debug)]
@@ -16,113 +17,6 @@ pub struct Failure {
 
 fn failure(promise: &'static str, details: String) -> Vec<Failure> {
     vec![Failure { promise, details }]
-}
-
-/// The conditions of an answer, recomputed.
-struct Measures {
-    /// 2-norms over C of `h - approach + A p` and of `h - approach`.
-    residual: f64,
-    distance: f64,
-    /// Elements in C.
-    count: f64,
-    /// rms of `h - approach` over C and the elements at their limit.
-    rms: f64,
-    /// Largest -e outside and e at a limit.
-    violation: f64,
-    /// `sum of p |e|` over C, and `sum of p |u|`.
-    work: (f64, f64),
-    /// What rounding may do to one e.
-    rounding: f64,
-    /// Largest difference between the displacements returned and A p, and between the distances returned and theirs.
-    wrong_u: f64,
-    wrong_e: f64,
-}
-
-impl Measures {
-    fn of(case: &Case, found: &Outputs) -> Measures {
-        let operator = case.operator();
-        let u = operator.displace(&found.p);
-        let approach = found.report.approach;
-        let mut m = Measures {
-            residual: 0.0,
-            distance: 0.0,
-            count: 0.0,
-            rms: 0.0,
-            violation: 0.0,
-            work: (0.0, 0.0),
-            rounding: 0.0,
-            wrong_u: 0.0,
-            wrong_e: 0.0,
-        };
-        let mut limited = (0.0, 0.0);
-        let mut largest = approach.abs();
-        for (i, &u) in u.iter().enumerate() {
-            let (h, p) = (case.h[i], found.p[i]);
-            m.wrong_u = m.wrong_u.max((u - found.u[i]).abs());
-            largest = largest.max(u.abs());
-            if h.is_infinite() {
-                continue;
-            }
-            let e = h - approach + u;
-            // Two sums of three numbers.
-            let by_u = h - approach + found.u[i];
-            let allowed = 4.0 * f64::EPSILON * (h.abs() + approach.abs() + u.abs());
-            m.wrong_e = m.wrong_e.max((by_u - found.e[i]).abs() - allowed);
-            m.work.1 += p * u.abs();
-            match found.contact[i] {
-                0 => m.violation = m.violation.max(-e),
-                1 => {
-                    m.residual += e * e;
-                    m.distance += (h - approach).powi(2);
-                    m.count += 1.0;
-                    m.work.0 += p * e.abs();
-                    largest = largest.max(h.abs());
-                }
-                _ => {
-                    m.violation = m.violation.max(e);
-                    limited = (limited.0 + (h - approach).powi(2), limited.1 + 1.0);
-                    largest = largest.max(h.abs());
-                }
-            }
-        }
-        m.rms = ((m.distance + limited.0) / f64::max(m.count + limited.1, 1.0)).sqrt();
-        (m.residual, m.distance) = (m.residual.sqrt(), m.distance.sqrt());
-        m.rounding = operator.rounding(&found.p) + 8.0 * f64::EPSILON * largest;
-        m
-    }
-
-    /// In one line.
-    fn text(&self, found: &Outputs) -> String {
-        let (status, cycles, work) = (found.status, found.report.cycles, found.report.work_units);
-        let (residual, violation, rms) = (self.relative(), self.violation, self.rms);
-        format!("status {status}, {cycles} cycles, {work:.1} units: residual {residual:.2e}, violation {violation:.2e} of {rms:.2e}")
-    }
-
-    /// The residual over C, in parts of the distance.
-    fn relative(&self) -> f64 {
-        if self.residual == 0.0 {
-            0.0
-        } else {
-            self.residual / self.distance
-        }
-    }
-
-    /// Whether the residual is within a tolerance.
-    fn residual_holds(&self, tolerance: f64) -> bool {
-        // The tolerance is a double, the norms are sums of n squares.
-        self.residual <= tolerance * (1.0 + 1e-12) * self.distance + self.rounding * self.count.sqrt()
-    }
-
-    /// Whether the conditions hold but for what rounding may leave of each: then nobody can do better. With a prescribed force the
-    /// approach is a mean over C, a sum of so many numbers. Measured over 60000 cases: what stagnates is within four of one e's rounding
-    /// on small contact areas, within 13 of it on some thousand elements.
-    fn holds_to_rounding(&self, case: &Case, found: &Outputs) -> bool {
-        let (tolerance, rounding) = (case.how.tolerance, (10.0 + self.count.sqrt()) * self.rounding);
-        let pressures = found.p.iter().sum::<f64>();
-        let free = self.violation <= tolerance * self.rms + rounding
-            && self.work.0 <= tolerance * self.work.1 + rounding * pressures;
-        self.residual <= tolerance * self.distance + rounding * self.count.sqrt() && (case.how.fixed.is_some() || free)
-    }
 }
 
 /// Checks an answer; nothing if all promises are kept.

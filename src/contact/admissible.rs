@@ -31,6 +31,12 @@ pub trait AdmissibleSet: Copy + Send + Sync {
         f64::INFINITY
     }
 
+    /// Whether one of the pressures `p`, of elements from `first` on, is beyond its limit; many at a time, which the compiler can
+    /// vectorise.
+    fn any_beyond(&self, _first: usize, _p: impl Iterator<Item = f64>) -> bool {
+        false
+    }
+
     /// The admissible pressure nearest to `p`.
     fn project(&self, i: usize, p: f64) -> f64 {
         let p = p.max(0.0);
@@ -98,5 +104,15 @@ impl AdmissibleSet for PressureLimit<'_> {
     #[inline]
     fn limit(&self, i: usize) -> f64 {
         self.at(i)
+    }
+
+    #[inline]
+    fn any_beyond(&self, first: usize, p: impl Iterator<Item = f64>) -> bool {
+        match self {
+            PressureLimit::Uniform(limit) => p.fold(false, |any, p| any | (p > *limit)),
+            PressureLimit::PerElement(limits) => {
+                p.zip(&limits[first..]).fold(false, |any, (p, limit)| any | (p > *limit))
+            }
+        }
     }
 }

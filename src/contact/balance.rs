@@ -88,7 +88,7 @@ impl State {
 
     /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.
     pub fn project<S: AdmissibleSet>(&mut self, set: S) {
-        if !S::LIMITED {
+        if !S::LIMITED || !self.reached_limit && !set.any_beyond(0, self.p.iter().copied()) {
             return;
         }
         for i in 0..self.p.len() {

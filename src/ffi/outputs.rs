@@ -179,7 +179,7 @@ impl Outputs {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             unsafe { given.ledger.add(i).write(row.into()) };
         }
-        let report = contact_normal_report::of(report, rows.len(), given.ledger, given.ledger_capacity);
+        let report = contact_normal_report::of(report, rows.len(), given);
         // SAFETY: not null: a struct that declares its size.
         unsafe { structs::write(self.report, &report) }
     }

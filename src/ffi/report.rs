@@ -98,10 +98,8 @@ macro_rules! set_result {
         copy!($measures.certificate => $to: residual);
         copy!($measures => $to: approach, force, max_pressure, contact_area, corrected_area, contact_count);
         copy!($error => $to: untrusted);
-        $to.error_force = $error.force;
-        $to.error_max_pressure = $error.max_pressure;
-        $to.error_contact_area = $error.contact_area;
-        $to.error_corrected_area = $error.corrected_area;
+        ($to.error_force, $to.error_max_pressure) = ($error.force, $error.max_pressure);
+        ($to.error_contact_area, $to.error_corrected_area) = ($error.contact_area, $error.corrected_area);
         $to.error_pressure = $error.pressure;
     };
 }
@@ -218,26 +216,17 @@ pub struct contact_normal_report {
 
 versioned! {
     contact_normal_report, 264,
-    error_force: -1.0,
-    error_max_pressure: -1.0,
-    error_contact_area: -1.0,
-    corrected_area: -1.0,
-    error_corrected_area: -1.0,
-    error_pressure: -1.0,
-    halved_seconds: -1.0,
-    halved_error_force: -1.0,
+    error_force: -1.0, error_max_pressure: -1.0, error_contact_area: -1.0, error_pressure: -1.0,
+    corrected_area: -1.0, error_corrected_area: -1.0,
+    halved_seconds: -1.0, halved_error_force: -1.0,
     error_tangential: [-1.0; 2],
 }
 
 impl contact_normal_report {
-    /// The values of a report, and the ledger of the caller's.
-    pub(super) fn of(
-        report: &Report,
-        ledger_rows: usize,
-        ledger: *mut contact_normal_ledger_row,
-        ledger_capacity: i64,
-    ) -> Self {
-        let mut to = Self { ledger_rows: ledger_rows as i64, ledger_capacity, ledger, ..Self::defaults() };
+    /// The values of a report, and the ledger of the one `given`.
+    pub(super) fn of(report: &Report, ledger_rows: usize, given: &Self) -> Self {
+        let mut to = Self { ledger_rows: ledger_rows as i64, ..Self::defaults() };
+        (to.ledger, to.ledger_capacity) = (given.ledger, given.ledger_capacity);
         copy!(report.count => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
         copy!(report.measures.certificate => to: violation, complementarity, min_pressure);
         copy!(report.measures => to: edge_count);
@@ -250,9 +239,8 @@ impl contact_normal_report {
             copy!(found.certificate => to: stick_count, slip_count);
             (to.tangential_products, to.tangential_seconds) = (found.products, found.seconds);
             to.error_tangential = found.error;
-            for (to, from) in to.sensitivities.iter_mut().zip(found.sensitivities.iter().flatten().flatten()) {
-                *to = *from;
-            }
+            let sensitivities = found.sensitivities.iter().flatten().flatten();
+            to.sensitivities.iter_mut().zip(sensitivities).for_each(|(to, from)| *to = *from);
         }
         to.limited_by = match report.limit {
             Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,

@@ -9,6 +9,7 @@
 use super::Workspace;
 use crate::contact::{norm_of_distance, State};
 use crate::error::{Error, Result};
+use crate::methods::Task;
 use crate::scene::Load;
 
 /// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
@@ -24,20 +25,16 @@ pub struct InnerStop {
     pub update: f64,
     /// With `update`: the residual has to be at most this as well.
     pub believed: f64,
+    /// 2-norm over C of `h - approach`: what residuals are told relative to.
+    pub distance: f64,
     /// Iterations at most.
     pub iterations: usize,
 }
 
-/// Conjugate gradients from the state's p, whose u = A p is known. Updates p; u is not kept up to date.
-/// `displace` computes products; `go_on(update, residual)` is asked after each iteration. Returns the update: rms over C of the last
-/// change of p.
-pub fn conjugate_gradients(
-    state: &mut State,
-    stop: InnerStop,
-    workspace: &mut Workspace,
-    mut displace: impl FnMut(&[f64], &mut [f64]),
-    mut go_on: impl FnMut(f64, f64) -> bool,
-) -> Result<f64> {
+/// Conjugate gradients from the state's p, whose u = A p is known. Updates p; u is not kept up to date. Returns the update: rms over C
+/// of the last change of p.
+pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
+    let Task { problem, state, monitor, .. } = task;
     let n = state.p.len();
     let mean_free = matches!(state.load, Load::Force(_));
     let count = state.contact_count() as f64;
@@ -61,7 +58,7 @@ pub fn conjugate_gradients(
             // On few elements the solution is exact after few iterations, the last of which was no small update.
             return Ok(0.0);
         }
-        displace(direction, product);
+        problem.displace(direction, product);
         project(product);
         let curvature = dot(direction, product);
         if !(curvature > 0.0) {
@@ -82,7 +79,7 @@ pub fn conjugate_gradients(
         update = step.abs() * (dot(direction, direction) / count).sqrt();
         let small = update <= stop.update * (dot(&state.p, &state.p) / count).sqrt();
         let met = stop.update > 0.0 && small && rr.sqrt() <= stop.believed;
-        if !go_on(update, rr.sqrt()) || met {
+        if !monitor.cycle_done(&state.grid, 0, update, rr.sqrt() / stop.distance) || met {
             break;
         }
         for (d, r) in direction.iter_mut().zip(&*r) {

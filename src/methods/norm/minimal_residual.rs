@@ -6,6 +6,7 @@ use super::{InnerStop, Workspace};
 use crate::contact::{norm_of_distance, State};
 use crate::error::Result;
 use crate::memory::reserve;
+use crate::methods::Task;
 use crate::scene::Load;
 
 /// Directions kept before a restart.
@@ -109,13 +110,8 @@ impl Krylov {
 
 /// GMRES from the state's p, whose u = A p is known. With a prescribed force, corrections keep mean zero over C. Returns the update:
 /// rms over C of the last change of p.
-pub fn minimal_residual(
-    state: &mut State,
-    stop: InnerStop,
-    workspace: &mut Workspace,
-    mut displace: impl FnMut(&[f64], &mut [f64]),
-    mut go_on: impl FnMut(f64, f64) -> bool,
-) -> Result<f64> {
+pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
+    let Task { problem, state, monitor, .. } = task;
     let Workspace { residual, direction: full, product, krylov } = workspace;
     krylov.begin(state)?;
     let count = krylov.elements.len() as f64;
@@ -146,10 +142,10 @@ pub fn minimal_residual(
         let mut cancelled = false;
         while krylov.rotations.len() < RESTART && iterations < stop.iterations && !cancelled {
             krylov.write_last(full);
-            displace(full, product);
+            problem.displace(full, product);
             iterations += 1;
             let Some((left, is_last)) = krylov.add(product, project) else { break };
-            cancelled = !go_on(update, left);
+            cancelled = !monitor.cycle_done(&state.grid, 0, update, left / stop.distance);
             if left <= aim || is_last {
                 break;
             }
@@ -165,7 +161,7 @@ pub fn minimal_residual(
         if cancelled || krylov.rotations.is_empty() || small && left <= stop.believed {
             return Ok(update);
         }
-        displace(&state.p, product);
+        problem.displace(&state.p, product);
     }
 }
 

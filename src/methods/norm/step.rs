@@ -62,18 +62,14 @@ impl Norm {
             residual: if goal.by_update() { 0.0 } else { self.aim * goal.tolerance * h },
             update: if goal.by_update() { goal.tolerance } else { 0.0 },
             believed: self.aim * goal.residual() * h,
+            distance: h,
             iterations: goal.max_cycles.saturating_sub(monitor.count.cycles) as usize,
         };
-        let grid = state.grid;
-        let symmetric = problem.symmetric;
-        let product = |p: &[f64], u: &mut [f64]| problem.displace(p, u);
-        let go_on = |update: f64, residual: f64| monitor.cycle_done(&grid, 0, update, residual / h);
-        let update = if symmetric {
-            conjugate_gradients(state, stop, &mut self.inner, product, go_on)?
-        } else {
-            minimal_residual(state, stop, &mut self.inner, product, go_on)?
+        let update = match problem.symmetric {
+            true => conjugate_gradients(task, stop, &mut self.inner)?,
+            false => minimal_residual(task, stop, &mut self.inner)?,
         };
-        monitor.count.update = update;
+        task.monitor.count.update = update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
         refresh(task);
         Ok(update)

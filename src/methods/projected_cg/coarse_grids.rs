@@ -233,6 +233,9 @@ impl CoarseGrids {
 
 /// Pressures beyond their limit are at it.
 fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
+    if !state.reached_limit && !set.any_beyond(0, state.p.iter().copied()) {
+        return;
+    }
     for i in 0..state.p.len() {
         state.at_limit[i] = state.p[i] >= set.limit(i);
         state.reached_limit |= state.at_limit[i];

@@ -28,15 +28,16 @@
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
-//! is A p, may be negative; it is truncated.
+//! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
+//! product pays all.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::passes::{Step, Update};
-use super::search::Search;
+use super::search::{Search, FIRST_FORECAST};
 use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
 use crate::scene::Load;
@@ -92,7 +93,7 @@ impl<T: Real> Iteration<T> {
             self.find_contact(state);
             self.residual(state);
             self.precondition(state);
-            self.direct(state, set, 0.0, None);
+            self.direct(state, 0.0, None);
             self.update_pressures(state, set, FIRST_STEP, None);
             self.debts.clear();
             state.carry_force(set);
@@ -159,14 +160,20 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        Search::new(self.preconditioner.is_some())
+        let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
+        // Without a preconditioner the first forecast is missing.
+        Search::new(self.preconditioner.as_ref().map(|_| first))
     }
 
     /// One iteration, r being what z holds; none where there is no direction.
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
         // z = M r, t = max(z + beta t, -p/alpha'), and what is owed
         self.precondition(state);
-        self.direct(state, set, search.tq, search.forecast.filter(|_| search.may_hold_back && !S::FIXED));
+        let held_back = search.forecast.filter(|_| search.may_hold_back && !S::FIXED);
+        self.direct(state, search.tq, held_back);
+        if let (true, Some(forecast)) = (S::LIMITED, held_back) {
+            self.hold_at_limit(state, set, forecast);
+        }
         let forecast = search.forecast.unwrap_or(1.0);
         for &(i, d) in &self.debts {
             self.t[i] += T::of(d / forecast);
@@ -180,13 +187,17 @@ impl<T: Real> Iteration<T> {
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
         let held_back = search.believed(alpha);
-        if S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back)) {
+        let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
+        if near {
             self.remember(state);
         }
         self.pay(state, forecast, alpha);
 
         // p = p + alpha t, 4.1
-        let left = self.update_pressures(state, set, alpha, held_back);
+        let left = match S::LIMITED && !near {
+            true => self.update_pressures(state, NonNegative, alpha, held_back),
+            false => self.update_pressures(state, set, alpha, held_back),
+        };
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q, 4.2
@@ -220,11 +231,12 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha; where elements are at their limit that of the forecast, if it pays what is owed.
+    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
     fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
-        if limited && self.owed() > OWED * alpha.abs() * step.t1 {
+        let pays = std::mem::take(&mut search.is_first) || limited;
+        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }

@@ -165,46 +165,10 @@ impl Level {
             self.limits = limits;
             return Ok(result);
         };
-        if S::LIMITED {
-            reserve(&mut part.at_limit, grid.len(), "elements at the limit")?;
-            part.at_limit.resize(grid.len(), false);
-            window.extract(&state.grid, &state.at_limit, &mut part.at_limit, threads);
-            part.reached_limit = state.reached_limit;
-        } else {
-            part.at_limit.clear();
-        }
-        window.extract(&state.grid, &state.contact, &mut part.contact, threads);
-        // One after the other: what has been extracted rests.
-        let extract = |from: &mut Vec<f64>, to: &mut Vec<f64>| {
-            wake(to, grid.len(), f64::NAN);
-            window.extract(&state.grid, from, to, threads);
-        };
-        extract(&mut state.h, &mut part.h);
-        extract(&mut state.p, &mut part.p);
-        rest(&mut state.p);
-        if displacement == Freshness::Stale {
-            wake(&mut part.u, grid.len(), f64::NAN);
-        } else {
-            extract(&mut state.u, &mut part.u);
-        }
-        rest(&mut state.u);
-        (part.load, part.approach) = (state.load, state.approach);
-        if *units != Scaling::SAME {
-            units.convert(part);
-        }
+        enter::<S>((window, units), state, part, displacement, threads)?;
         let result = work(inner, &grid, units, part, S::within(&limits));
         in_either!(inner, inner => inner.rest());
-        if *units != Scaling::SAME {
-            units.convert_back(part);
-        }
-        [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, state.grid.len(), f64::NAN));
-        window.insert(&state.grid, &part.p, &mut state.p, 0.0, threads);
-        window.insert(&state.grid, &part.contact, &mut state.contact, false, threads);
-        if S::LIMITED {
-            window.insert(&state.grid, &part.at_limit, &mut state.at_limit, false, threads);
-            state.reached_limit |= part.reached_limit;
-        }
-        state.approach = part.approach;
+        leave::<S>((window, units), part, state, threads);
         self.limits = limits;
         Ok(result)
     }
@@ -267,4 +231,66 @@ impl Level {
         };
         Ok(self.windowed.insert(windowed))
     }
+}
+
+/// `part` becomes the window's part of a state, in the iteration's units. One array after the other: what has been extracted rests.
+fn enter<S: AdmissibleSet>(
+    (window, units): (&Window, &Scaling),
+    state: &mut State,
+    part: &mut State,
+    displacement: Freshness,
+    threads: &Threads,
+) -> Result<()> {
+    let (whole, n) = (state.grid, part.grid.len());
+    if S::LIMITED {
+        reserve(&mut part.at_limit, n, "elements at the limit")?;
+        part.at_limit.clear();
+        part.at_limit.resize(n, false);
+        if state.reached_limit {
+            window.extract(&whole, &state.at_limit, &mut part.at_limit, threads);
+        }
+        part.reached_limit = state.reached_limit;
+    } else {
+        part.at_limit.clear();
+    }
+    window.extract(&whole, &state.contact, &mut part.contact, threads);
+    let extract = |from: &[f64], to: &mut Vec<f64>| {
+        wake(to, n, f64::NAN);
+        window.extract(&whole, from, to, threads);
+    };
+    extract(&state.h, &mut part.h);
+    extract(&state.p, &mut part.p);
+    rest(&mut state.p);
+    if displacement == Freshness::Stale {
+        wake(&mut part.u, n, f64::NAN);
+    } else {
+        extract(&state.u, &mut part.u);
+    }
+    rest(&mut state.u);
+    (part.load, part.approach) = (state.load, state.approach);
+    if *units != Scaling::SAME {
+        units.convert(part);
+    }
+    Ok(())
+}
+
+/// The state takes p, C and the approach from the window's part of it.
+fn leave<S: AdmissibleSet>(
+    (window, units): (&Window, &Scaling),
+    part: &mut State,
+    state: &mut State,
+    threads: &Threads,
+) {
+    if *units != Scaling::SAME {
+        units.convert_back(part);
+    }
+    let whole = state.grid;
+    [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, whole.len(), f64::NAN));
+    window.insert(&whole, &part.p, &mut state.p, 0.0, threads);
+    window.insert(&whole, &part.contact, &mut state.contact, false, threads);
+    if S::LIMITED && part.reached_limit {
+        window.insert(&whole, &part.at_limit, &mut state.at_limit, false, threads);
+        state.reached_limit = true;
+    }
+    state.approach = part.approach;
 }

@@ -112,6 +112,24 @@ impl<T: Real> Iteration<T> {
         factor
     }
 
+    /// Elements that the forecast step would take beyond their limit are held back at it.
+    pub(super) fn hold_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
+        let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
+            for (run, local) in block.runs() {
+                let (p, t) = (&state.p[run.clone()], &mut t[local]);
+                if set.any_beyond(run.start, p.iter().zip(&*t).map(|(p, t)| p + forecast * t.to_double())) {
+                    for ((p, t), i) in p.iter().zip(t).zip(run) {
+                        *t = if p + forecast * t.to_double() > set.limit(i) {
+                            T::of((set.limit(i) - p) / forecast)
+                        } else {
+                            *t
+                        };
+                    }
+                }
+            }
+        });
+    }
+
     /// Whether this step takes an element to its limit, or nearly.
     pub(super) fn reaches_limit<S: AdmissibleSet>(
         &mut self,
@@ -120,13 +138,13 @@ impl<T: Real> Iteration<T> {
         alpha: f64,
         forecast: Option<f64>,
     ) -> bool {
-        let (t, p, farthest) = (&self.t, &state.p, forecast.map_or(alpha, |forecast| forecast.max(alpha)));
+        let (t, farthest) = (&self.t, forecast.map_or(alpha, |forecast| forecast.max(alpha)));
         let [reached] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let beyond = |i: usize| p[i] + farthest * t[i].to_double() >= set.limit(i) * (1.0 - HELD_BACK);
-                let any = run.fold(false, |any, i| any | beyond(i));
-                sums.add(1, |_| [f64::from(u8::from(any))]);
-            }
+            let beyond = block.runs().any(|(run, _)| {
+                let steps = state.p[run.clone()].iter().zip(&t[run.clone()]);
+                set.any_beyond(run.start, steps.map(|(p, t)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK)))
+            });
+            sums.add(1, |_| [f64::from(u8::from(beyond))]);
         });
         reached > 0.0
     }

@@ -1,7 +1,7 @@
 //! The passes over the contact area, each over its segments.
 
 use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
@@ -88,24 +88,21 @@ impl<T: Real> Iteration<T> {
     }
 
     /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C, but for what is missing; held back by the forecast,
-    /// if there is one. `tq` is (t, q) of the last direction, 0 if there is none.
-    pub(super) fn direct<S: AdmissibleSet>(&mut self, state: &State, set: S, tq: f64, forecast: Option<f64>) {
+    /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
+    pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
         let by_force = matches!(state.load, Load::Force(_));
         let (mean, beta) = self.conjugate(by_force, tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
-        let held = |i: usize, p: f64, t: T| match forecast {
+        let held = |p: f64, t: T| match forecast {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
-            Some(forecast) if S::LIMITED && p + forecast * t.to_double() > set.limit(i) => {
-                T::of((set.limit(i) - p) / forecast)
-            }
             _ => t,
         };
         let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
             for (run, local) in block.runs() {
-                let (start, p, z, t) = (run.start, &state.p[run.clone()], &z[run], &mut t[local]);
+                let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
                 sums.add(z.len(), |i| {
                     let direction = z[i] - mean + beta * t[i];
-                    t[i] = if by_force { direction } else { held(start + i, p[i], direction) };
+                    t[i] = if by_force { direction } else { held(p[i], direction) };
                     [direction.to_double()]
                 });
             }
@@ -115,8 +112,8 @@ impl<T: Real> Iteration<T> {
             let mean = T::of((sum - missing) / self.runs.count() as f64);
             let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
                 for (run, local) in block.runs() {
-                    for ((t, p), i) in t[local].iter_mut().zip(&state.p[run.clone()]).zip(run) {
-                        *t = held(i, *p, *t - mean);
+                    for (t, p) in t[local].iter_mut().zip(&state.p[run]) {
+                        *t = held(*p, *t - mean);
                     }
                 }
             });

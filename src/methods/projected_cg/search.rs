@@ -2,7 +2,7 @@
 
 /// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
 /// forecasts, each the last alpha.
-const FIRST_FORECAST: f64 = 0.9;
+pub(super) const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
@@ -15,12 +15,13 @@ pub(super) struct Search {
     pub(super) may_hold_back: bool,
     /// (t, q); 0 where the next direction is conjugate to none.
     pub(super) tq: f64,
+    pub(super) is_first: bool,
 }
 
 impl Search {
-    /// Before the first iteration; without a preconditioner its forecast is missing.
-    pub(super) fn new(preconditioned: bool) -> Search {
-        Search { forecast: preconditioned.then_some(FIRST_FORECAST), may_hold_back: true, tq: 0.0 }
+    /// Before the first iteration.
+    pub(super) fn new(forecast: Option<f64>) -> Search {
+        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true }
     }
 
     /// The forecast, unless it was far off: then it holds nobody back.

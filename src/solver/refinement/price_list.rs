@@ -187,8 +187,7 @@ impl Sample {
         quantity: Quantity,
         surface: &mut Option<SurfaceCallback<'_>>,
     ) -> Result<Taken> {
-        let began = Instant::now();
-        let mut reached: Vec<(f64, f64)> = Vec::new();
+        let (began, mut reached) = (Instant::now(), Vec::new());
         let elements = scaled(&scene.grid, doublings)?.len();
         let mut watch = |told: &Progress| {
             if told.mx * told.my == elements {
@@ -243,15 +242,13 @@ fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
 fn predict(scene: &Scene<'_>, samples: &[Sample], target: f64) -> Option<(i32, f64)> {
     let last = samples.last()?;
     let falling = last.falling?;
-    let most = (MOST_ELEMENTS as f64).log2() as i32;
-    let least = -(last.across.ilog2() as i32);
+    let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
         let enough = last.across as f64 * 2f64.powi(*k) >= ENOUGH_ACROSS as f64;
         enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
-    let seconds = seconds_on(samples, last.elements * 4f64.powi(k));
-    Some((k, seconds))
+    Some((k, seconds_on(samples, last.elements * 4f64.powi(k))))
 }
 
 /// One row.
@@ -276,8 +273,8 @@ fn price(
     if target < ROUND_OFF {
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
-    let Some(last) = samples.last().filter(|last| last.across >= ACROSS) else { return nothing };
-    let Some(falling) = last.falling else { return nothing };
+    let last = samples.last().filter(|last| last.across >= ACROSS);
+    let Some((last, falling)) = last.and_then(|last| Some((last, last.falling?))) else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, target) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
@@ -285,15 +282,12 @@ fn price(
     let seconds = seconds * last.seconds_to(tolerance) / last.seconds;
     let bytes = last.bytes * 4f64.powi(k);
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
-    let obstacle = if grid.len() as u64 > most {
-        Some(Obstacle::Elements)
-    } else if accuracy.max_bytes > 0 && bytes > accuracy.max_bytes as f64 {
-        Some(Obstacle::Memory)
-    } else if accuracy.is_late(seconds / speed_up) {
-        Some(Obstacle::Time)
-    } else {
-        None
-    };
+    let obstacles = [
+        (grid.len() as u64 > most, Obstacle::Elements),
+        (accuracy.max_bytes > 0 && bytes > accuracy.max_bytes as f64, Obstacle::Memory),
+        (accuracy.is_late(seconds / speed_up), Obstacle::Time),
+    ];
+    let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
         error: falling.after(k) + tolerance,
