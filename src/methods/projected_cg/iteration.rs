@@ -171,9 +171,7 @@ impl<T: Real> Iteration<T> {
         self.precondition(state);
         let held_back = search.forecast.filter(|_| search.may_hold_back && !S::FIXED);
         self.direct(state, search.tq, held_back);
-        if let (true, Some(forecast)) = (S::LIMITED, held_back) {
-            self.hold_at_limit(state, set, forecast);
-        }
+        held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);
         for &(i, d) in &self.debts {
             self.t[i] += T::of(d / forecast);
@@ -194,16 +192,16 @@ impl<T: Real> Iteration<T> {
         self.pay(state, forecast, alpha);
 
         // p = p + alpha t, 4.1
-        let left = match S::LIMITED && !near {
-            true => self.update_pressures(state, NonNegative, alpha, held_back),
-            false => self.update_pressures(state, set, alpha, held_back),
+        let left = if S::LIMITED && !near {
+            self.update_pressures(state, NonNegative, alpha, held_back)
+        } else {
+            self.update_pressures(state, set, alpha, held_back)
         };
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q, 4.2
         let mut update = Update { alpha, ..Update::default() };
-        let limited = S::LIMITED && state.has_limited();
-        let owed = self.owed();
+        let (limited, owed) = (S::LIMITED && state.has_limited(), self.owed());
         if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
             self.settle();
             update.settled = true;
@@ -212,13 +210,11 @@ impl<T: Real> Iteration<T> {
                 search.tq = 0.0;
             }
         }
-        match state.load {
-            Load::Force(_) => update.factor = self.carry_force::<S>(state),
-            Load::Approach(_) if update.settled && !limited && !S::FIXED => {
-                update.factor = self.least_energy(state, &update);
-            }
-            Load::Approach(_) => {}
-        }
+        update.factor = match state.load {
+            Load::Force(_) => self.carry_force::<S>(state),
+            Load::Approach(_) if update.settled && !limited && !S::FIXED => self.least_energy(state, &update),
+            Load::Approach(_) => update.factor,
+        };
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
