@@ -2,10 +2,15 @@
 //!
 //! ```text
 //! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C,
-//!                                                                              in steady rolling times 2: a step is 2 dq long
+//!                                                                              in steady rolling times 2: a step is 2 dq long,
+//!                                                                              and w a third of the difference ahead
 //! start of the next grid: q per area in C, interpolated between the centres of those in C, and back into the disc;
 //!                         where all that it is interpolated from slip, g times the direction of q/g; in steady rolling g times q/g
 //! ```
+//!
+//! In steady rolling what slips far turns against its slip: with d the q/g that is interpolated, s = w + u with w of the finer grid and u
+//! interpolated, and k = |s|/(a0 g), it starts from `d - 0.3 k^2 s/|s|`, back into the disc. Where spin dominates the slip turns from
+//! element to element, and coarse tractions do not show it; where little slips s is the difference of large numbers.
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
 
@@ -24,6 +29,10 @@ use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
 const COARSEST: usize = 24;
+/// How far ahead of a coarse element's centre the slip by spin is taken, of the difference of both steps.
+const AHEAD: f64 = 1.0 / 3.0;
+/// How much what slips turns against its slip.
+const TURNING: f64 = 0.3;
 
 /// One grid: its problem, its unknowns, the memory of its iteration.
 pub struct Level {
@@ -130,6 +139,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
     let all = children(&from, &to);
+    let turned = fine.ahead.map(|w| AHEAD * longer * (longer - 1.0) * w);
     for i in 0..to.len() {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
@@ -140,10 +150,12 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
         }
         let share = longer / f64::from(count.max(1));
         problem.bound[i] = bound / all as f64;
-        problem.slip[i] = [share * slip[0], share * slip[1]];
-        problem.rigid[i] = [share * rigid[0], share * rigid[1]];
+        let of_spin = f64::from(count.min(1));
+        problem.slip[i] = plus([share * slip[0], share * slip[1]], of_spin, turned);
+        problem.rigid[i] = plus([share * rigid[0], share * rigid[1]], of_spin, turned);
     }
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
+    problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();
     state.unload();
 }
@@ -170,13 +182,15 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
     });
     // Behind the leading edge tractions of steady rolling begin as their bound does.
     let is_rolling = fine.problem.operators.rolling.is_some();
+    let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
+    fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
     let (x, y) = (places(to.mx, from.mx), places(to.my, from.my));
     let between = |i: usize| {
         let g = fine.problem.bound[i];
         if !(g > 0.0) {
             return [0.0; 2];
         }
-        let (mut direction, mut traction, mut weights, mut all_slip) = ([0.0; 2], [0.0; 2], 0.0, true);
+        let mut mean = Mean::default();
         for (column, in_x) in x[i % to.mx] {
             for (row, in_y) in y[i / to.mx] {
                 let k = row * from.mx + column;
@@ -184,31 +198,79 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
                 if !(bound > 0.0) || weight == 0.0 {
                     continue;
                 }
-                let (q, share) = (coarse.state.q[k], shares[k]);
-                all_slip &= square(q).sqrt() >= ON_THE_CIRCLE * bound;
-                direction = plus(direction, weight / bound, q);
-                traction = plus(traction, weight * share, q);
-                weights += weight;
+                mean.add(weight, bound, shares[k], coarse.state.q[k], coarse.state.u[k]);
             }
         }
-        let length = square(direction).sqrt();
-        if weights == 0.0 {
-            [0.0; 2]
-        } else if all_slip && length > 0.0 {
-            onto_disc(direction.map(|v| g * v / length), g)
-        } else if is_rolling {
-            onto_disc(direction.map(|v| g * v / weights), g)
+        if mean.weights == 0.0 {
+            return [0.0; 2];
+        }
+        let direction = mean.direction();
+        if is_rolling && mean.any_slip {
+            let s = plus(add(fine.problem.slip[i], fine.problem.offset), shorter / mean.weights, mean.displaced);
+            let stiff = fine.problem.operators.self_influence * g;
+            onto_disc(turned_against(direction, s, stiff).map(|v| g * v), g)
+        } else if is_rolling || mean.all_slip {
+            onto_disc(direction.map(|v| g * v), g)
         } else {
-            onto_disc(traction.map(|v| v / weights), g)
+            onto_disc(mean.traction.map(|v| v / mean.weights), g)
         }
     };
     fine.problem.threads().for_each_plain_row(&mut fine.state.q, to.mx, |iy, row| {
         row.iter_mut().enumerate().for_each(|(ix, q)| *q = between(iy * to.mx + ix));
     });
-    let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
-    fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
     fine.state.is_exact = false;
     Ok(())
+}
+
+/// What a fine element interpolates from coarse ones: sums with weights.
+struct Mean {
+    /// Of q/g.
+    direction: Vector,
+    /// Of q, for what it carries.
+    traction: Vector,
+    /// Of u.
+    displaced: Vector,
+    weights: f64,
+    all_slip: bool,
+    any_slip: bool,
+}
+
+impl Default for Mean {
+    fn default() -> Mean {
+        let none = [0.0; 2];
+        Mean { direction: none, traction: none, displaced: none, weights: 0.0, all_slip: true, any_slip: false }
+    }
+}
+
+impl Mean {
+    fn add(&mut self, weight: f64, bound: f64, share: f64, q: Vector, u: Vector) {
+        let slips = square(q).sqrt() >= ON_THE_CIRCLE * bound;
+        (self.all_slip, self.any_slip) = (self.all_slip && slips, self.any_slip || slips);
+        self.direction = plus(self.direction, weight / bound, q);
+        self.traction = plus(self.traction, weight * share, q);
+        self.displaced = plus(self.displaced, weight, u);
+        self.weights += weight;
+    }
+
+    /// q/g; of length 1 where all slip.
+    fn direction(&self) -> Vector {
+        let length = square(self.direction).sqrt();
+        let by = if self.all_slip && length > 0.0 { length } else { self.weights };
+        self.direction.map(|v| v / by)
+    }
+}
+
+/// `d - TURNING k^2 s/|s|` with k = |s|/stiff, back into the disc of radius 1; k may be infinite.
+fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
+    let length = s[0].hypot(s[1]);
+    if length == 0.0 {
+        return onto_disc(d, 1.0);
+    }
+    let weight = TURNING * (length / stiff).powi(2);
+    let (share, rest) = (1.0 / (1.0 + 1.0 / weight), 1.0 / (1.0 + weight));
+    let turned = plus(d.map(|v| rest * v), -share, s.map(|s| s / length));
+    let by = square(turned).sqrt().max(rest);
+    turned.map(|v| v / by)
 }
 
 /// Of each fine place the two coarse ones between which its centre lies, with their weights.

@@ -24,11 +24,11 @@ use crate::progress::Outcome;
 
 /// The inner residual relative to that of the step.
 const INNER: f64 = 0.15;
-const INNER_ROLLING: f64 = 0.2;
+const INNER_ROLLING: f64 = 0.35;
 /// The last step need not be solved further than to this part of the tolerance, and what starts the next one does the rest, from
 /// residuals below that part of it.
 const ENOUGH: f64 = 0.9;
-const NEAR: f64 = 1.3;
+const NEAR: f64 = 1.5;
 /// But always to this part.
 const LEAST_GAIN: f64 = 0.5;
 /// It and rho are cut by this when steps bring nothing, down to the least.
@@ -43,6 +43,8 @@ const PART: f64 = 0.5;
 /// Steps without the residual falling to this part of its least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
+/// Coarser grids are left where q exceeds its bounds by so many times the tolerance: the next one cuts it off.
+const COARSE_EXCESS: f64 = 10.0;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
 /// Whatever the spin, a creepage far above it carries the force to mu N. Creepages of more than so many times that at which all slips,
@@ -68,7 +70,8 @@ pub fn solve(
         let rho = factor * if slip > 0.0 { cap.min(problem.rms_bound() / slip) } else { cap };
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
-        let worst = largest([sight.residual, sight.excess, missing]);
+        let worst =
+            largest([sight.residual, if certified { sight.excess } else { sight.excess / COARSE_EXCESS }, missing]);
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
             state.unload();
@@ -103,7 +106,8 @@ pub fn solve(
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
         let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS };
-        let effort = Effort { inner: enough, most, length: if cuts % 2 == 1 { PART } else { 1.0 } };
+        let effort =
+            Effort { inner: enough, most, left: sight.residual, length: if cuts % 2 == 1 { PART } else { 1.0 } };
         step(problem, state, tangent, (forces, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);

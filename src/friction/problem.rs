@@ -64,6 +64,8 @@ pub struct Problem {
     pub slip: Vec<Vector>,
     /// What is to be added to both on C: found where forces are given.
     pub offset: Vector,
+    /// In steady rolling: what the slip by spin gains a step ahead.
+    pub ahead: Vector,
     /// What residuals are compared with.
     pub scale: Scale,
     /// A.
@@ -113,6 +115,7 @@ impl Problem {
             rigid: zeros(n, FIELDS)?,
             slip: zeros(n, FIELDS)?,
             offset: [0.0; 2],
+            ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             extension: Extension::default(),
             operators,

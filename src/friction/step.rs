@@ -3,10 +3,11 @@
 //! It starts with the way to the circles and a part of what the preconditioner says, so that forces that are given are met:
 //!
 //! ```text
-//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/2/(1 + D/(10 a0)),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
+//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/5/(1 + D/(10 a0)),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
 //! ```
 //!
 //! Where the curvature D dominates M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
+//! Where x0 is short there is nothing to start with: all products are GMRES'.
 
 use super::certificate::scale;
 use super::fgmres::{self, Bordered, Until};
@@ -17,10 +18,15 @@ use super::tangent::{Side, Tangent};
 use super::vectors::{self, Fields};
 use super::Vector;
 use crate::error::Result;
+use crate::threads::Threads;
 
 /// theta where nothing slips, and how fast it comes to 1 with D.
-const LEAST_THETA: f64 = 0.5;
+const LEAST_THETA: f64 = 0.8;
 const TURNED: f64 = 0.1;
+
+/// The way to the circles is short where it displaces less than this part of what the linear solve leaves, and is less than this part of the
+/// residual beside the bounds.
+const SHORT: f64 = 0.1;
 
 /// What a step does.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +35,8 @@ pub struct Effort {
     pub inner: f64,
     /// Its directions at most.
     pub most: usize,
+    /// The residual of the step, relative.
+    pub left: f64,
     /// How much of the step is taken.
     pub length: f64,
 }
@@ -52,7 +60,30 @@ pub fn compliance(problem: &Problem) -> f64 {
     }
 }
 
+/// x0 at element i.
+#[inline]
+fn to_the_circle(tangent: &Tangent, bound: &[f64], state: &State, i: usize) -> Vector {
+    match tangent.side[i] {
+        Side::Slip => plus(tangent.normal[i].map(|n| bound[i] * n), -1.0, state.q[i]),
+        _ => [0.0; 2],
+    }
+}
+
+/// x0, as a root of a sum of squares.
+fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> f64 {
+    let squared = |i: usize| [square(to_the_circle(tangent, &problem.bound, state, i)), 0.0];
+    let [sum, _] = vectors::sum(problem.threads(), problem.bound.len(), squared);
+    sum.sqrt()
+}
+
 impl Start {
+    fn nothing(n: usize, threads: &Threads, fields: &mut Fields) -> Result<Start> {
+        let (mut gained, mut along) = (fields.take(n)?, fields.take(n)?);
+        vectors::fill(threads, &mut gained, |_| [0.0; 2]);
+        vectors::fill(threads, &mut along, |_| [0.0; 2]);
+        Ok(Start { gained, along, by: [0.0; 2] })
+    }
+
     fn new(system: &mut TangentSystem<'_>, state: &State, forces: Forces, fields: &mut Fields) -> Result<Start> {
         let (n, threads, tangent) = (state.q.len(), system.problem.threads().clone(), system.tangent);
         let mut along = fields.take(n)?;
@@ -63,13 +94,7 @@ impl Start {
             z.map(|z| theta * z)
         });
         let mut gained = fields.take(n)?;
-        vectors::fill(&threads, &mut gained, |i| {
-            if tangent.side[i] != Side::Slip {
-                return along[i];
-            }
-            let (g, normal, q) = (bound[i], tangent.normal[i], state.q[i]);
-            add([g * normal[0] - q[0], g * normal[1] - q[1]], along[i])
-        });
+        vectors::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
         let mut by = [0.0; 2];
         if forces.any() {
             let sum = sum_of_both(system.problem, &state.q, &gained);
@@ -126,9 +151,18 @@ pub fn step(
     let driving = vectors::dot(&threads, &tangent.driving, &tangent.driving);
     let target = effort.inner * driving.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
-    let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
     let mut product = fields.take(n)?;
-    system.multiply(&gained, &mut product);
+    let way = way_to_the_circles(system.problem, tangent, state);
+    let all = effort.left * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
+    let is_short = compliance(system.problem) * way <= SHORT * target && way <= SHORT * all;
+    let Start { gained, along, by } = if is_short {
+        vectors::fill(&threads, &mut product, |_| [0.0; 2]);
+        Start::nothing(n, &threads, fields)?
+    } else {
+        let start = Start::new(&mut system, state, forces, fields)?;
+        system.multiply(&start.gained, &mut product);
+        start
+    };
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| {
         let left = plus(tangent.driving[i], -1.0, tangent.project_inside(i, add(product[i], by)));

@@ -8,6 +8,7 @@ use super::window::{displaced, Window};
 use super::Vector;
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
+use crate::grid::Grid;
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -53,6 +54,7 @@ impl Solver {
             Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
             _ => Scale::Slip,
         };
+        problem.ahead = spin_ahead(friction, grid);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);
@@ -113,5 +115,14 @@ impl Solver {
             ));
         }
         Ok(())
+    }
+}
+
+/// What the slip by spin gains a step of steady rolling ahead.
+fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
+    let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
+    match friction.motion {
+        Motion::SteadyRolling => [-sine, cosine].map(|part| friction.spin * distance * distance * part),
+        _ => [0.0; 2],
     }
 }

@@ -8,6 +8,9 @@
 //!
 //! States come from the natural map and not from |q| = g: that makes the iterations robust. On a circle of radius g the slope of the
 //! slip along the tangent is as if a layer of compliance D lay between the bodies.
+//!
+//! Of tractions near their circle n is q/|q| and `D = -(n.s)/g`, which is the same at the solution: the way to the circle is then as short as
+//! it can be, of second order in what is missing.
 
 use super::certificate::{relative, rest};
 use super::problem::{add, dot, plus, square, Problem, State};
@@ -18,6 +21,11 @@ use crate::memory::zeros;
 
 /// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
 const MIXED: f64 = 0.5;
+
+/// Tractions are near their circles within this part of the radius.
+const NEAR_THE_CIRCLE: f64 = 0.2;
+/// And where the natural map turns them by less than the angle of this cosine: those against their slip are to turn round.
+const ALIGNED: f64 = 0.9;
 
 /// What an element does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,6 +62,17 @@ pub struct Sight {
     pub residual: f64,
     /// `rms_C(max(0, |q| - g))/rms_C(g)`.
     pub excess: f64,
+}
+
+/// n and D of an element that slips.
+#[inline]
+fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
+    let (length, reach) = (square(q).sqrt(), square(tau).sqrt());
+    if (length - g).abs() <= NEAR_THE_CIRCLE * g && dot(q, tau) >= ALIGNED * length * reach {
+        let n = q.map(|q| q / length);
+        return (n, (-dot(n, s) / g).max(0.0));
+    }
+    (tau.map(|tau| tau / reach), (reach / g - 1.0) * inverse_rho)
 }
 
 impl Tangent {
@@ -102,10 +121,11 @@ impl Tangent {
                     (side[k], driving[k]) = (Side::Stick, [-s[0], -s[1]]);
                     (curvature[k], mixing[k]) = (0.0, 1.0);
                     if square(tau) > g * g {
-                        let reach = square(tau).sqrt();
-                        let n = tau.map(|tau| tau * (1.0 / reach));
                         slips += 1.0;
-                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, (reach / g - 1.0) * inverse_rho);
+                        side[k] = Side::Slip;
+                        let n;
+                        (n, curvature[k]) = normal_and_curvature((q, s), g, tau, inverse_rho);
+                        normal[k] = n;
                         mixing[k] = 1.0 / (1.0 + MIXED * curvature[k] / a0);
                         driving[k] = plus([-s[0], -s[1]], dot(s, n), n);
                     }

@@ -122,14 +122,14 @@ fn cases_of_other_programs_are_met() {
             if k % 4 == 0 {
                 check(&case.grid, &case.bound, &case.friction, (&report, &solution));
             }
-            // One more: the certificate is not in the known ones. Most of those of pure spin are on the coarsest grid.
-            let most = if case.name.starts_with("spin") { 1.7 } else { 1.35 };
-            assert!(report.products <= most * f64::from(tight[1]) + 1.0, "{b} {}: {}", case.name, report.products);
+            // One more: the certificate is not in the known ones, which are rounded.
+            let most = 1.1 * (f64::from(tight[1]) + 0.5) + 1.0;
+            assert!(report.products <= most, "{b} {}: {}", case.name, report.products);
             products.push(report.products - 1.0);
         }
     }
     products.sort_by(f64::total_cmp);
-    assert!(products[products.len() / 2] <= 25.0, "{products:?}");
+    assert!(products[products.len() / 2] <= 22.0, "{products:?}");
 }
 
 #[test]
