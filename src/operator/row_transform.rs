@@ -54,8 +54,8 @@ impl<T: Real> RowTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
-        let length = self.complex.length() + self.complex.scratch_length();
-        scratch.resize(scratch.len().max(length), Complex::default());
+        let of_complex = if self.n % 2 == 0 { self.complex.scratch_to() } else { self.complex.scratch_length() };
+        scratch.resize(scratch.len().max(self.complex.length() + of_complex), Complex::default());
     }
 
     /// Real row to bins; what the row lacks of its length is zero.
