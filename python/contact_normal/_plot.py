@@ -18,12 +18,16 @@ class Solved(Protocol):
     """What is drawn of a `Result`."""
 
     pressure: Doubles
-    contact: npt.NDArray[np.bool_]
     traction: Doubles
     adhesion: npt.NDArray[np.int32]
     dx: float
     dy: float
-    report: dict[str, Any]
+
+    @property
+    def contact(self) -> npt.NDArray[np.bool_]: ...
+
+    @property
+    def report(self) -> dict[str, Any]: ...
 
 
 class Below(Protocol):

@@ -98,12 +98,14 @@ class Result:
     @cached_property
     def contact(self) -> npt.NDArray[np.bool_]:
         """The contact area, with the elements at the pressure limit."""
-        return self._outputs.contact != 0
+        of_any_kind: npt.NDArray[np.bool_] = self._outputs.contact != 0
+        return of_any_kind
 
     @cached_property
     def at_limit(self) -> npt.NDArray[np.bool_]:
         """The elements at the pressure limit."""
-        return self._outputs.contact == 2
+        at_limit: npt.NDArray[np.bool_] = self._outputs.contact == 2
+        return at_limit
 
     @cached_property
     def report(self) -> dict[str, Any]:
