@@ -8,8 +8,6 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use rayon::prelude::*;
-
 use crate::error::{Error, Result};
 
 /// Who does the work.
@@ -63,7 +61,7 @@ impl Threads {
             ours
         });
         let workers = rayon::ThreadPoolBuilder::new()
-            .num_threads(count)
+            .num_threads(count - 1)
             .thread_name(|i| format!("{THREAD_NAME}{i}"))
             .build()
             .map_err(|e| Error::OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
@@ -104,10 +102,28 @@ impl Threads {
     pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
         match self.workers() {
             None => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
-            Some(workers) => {
-                workers.install(|| scratch.par_iter_mut().enumerate().for_each(|(k, s)| work(k, s)));
-            }
+            Some(workers) => self.share(&workers, scratch.iter_mut().enumerate(), |(k, s)| work(k, s)),
         }
+    }
+
+    /// The calling thread and the others take pieces until there are none. The caller begins at once: it does not wait for others to wake.
+    fn share<P: Send>(
+        &self,
+        workers: &rayon::ThreadPool,
+        pieces: impl Iterator<Item = P> + Send,
+        work: impl Fn(P) + Sync,
+    ) {
+        let pieces = Mutex::new(pieces);
+        let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let take_all = || {
+            while let Some(piece) = next() {
+                work(piece);
+            }
+        };
+        workers.in_place_scope(|scope| {
+            (1..self.count()).for_each(|_| scope.spawn(|_| take_all()));
+            take_all();
+        });
     }
 
     /// Calls `own(scratch)` for the first on the calling thread, and meanwhile `others(scratch)` for the rest on the others.
@@ -167,10 +183,10 @@ impl Threads {
                 let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
                 pieces.for_each(|(k, ((a, b), scratch))| rows(k, a, b, scratch));
             }
-            Some(workers) => workers.install(|| {
-                let pieces = a.par_chunks_mut(of_a).zip(b.par_chunks_mut(of_b)).zip(scratch).enumerate();
-                pieces.for_each(|(k, ((a, b), scratch))| rows(k, a, b, scratch));
-            }),
+            Some(workers) => {
+                let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
+                self.share(&workers, pieces, |(k, ((a, b), scratch))| rows(k, a, b, scratch));
+            }
         }
     }
 
@@ -187,9 +203,10 @@ impl Threads {
         };
         match self.workers() {
             None => rows(0, data),
-            Some(workers) => workers.install(|| {
-                data.par_chunks_mut(rows_per_piece * length).enumerate().for_each(|(k, chunk)| rows(k, chunk));
-            }),
+            Some(workers) => {
+                let pieces = data.chunks_mut(rows_per_piece * length).enumerate();
+                self.share(&workers, pieces, |(k, chunk)| rows(k, chunk));
+            }
         }
     }
 
@@ -219,10 +236,10 @@ impl Threads {
             None => {
                 a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate().for_each(|(k, (a, b))| work(k, a, b))
             }
-            Some(workers) => workers.install(|| {
-                let chunks = a.par_chunks_mut(length_a).zip(b.par_chunks_mut(length_b)).enumerate();
-                chunks.for_each(|(k, (a, b))| work(k, a, b));
-            }),
+            Some(workers) => {
+                let pieces = a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate();
+                self.share(&workers, pieces, |(k, (a, b))| work(k, a, b));
+            }
         }
     }
 
