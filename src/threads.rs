@@ -100,19 +100,12 @@ impl Threads {
 
     /// Calls `work(k, scratch)` on each of the pieces' scratch.
     pub fn for_each<S: Send>(&self, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
-        match self.workers() {
-            None => scratch.iter_mut().enumerate().for_each(|(k, s)| work(k, s)),
-            Some(workers) => self.share(&workers, scratch.iter_mut().enumerate(), |(k, s)| work(k, s)),
-        }
+        self.share(scratch.iter_mut().enumerate(), |(k, s)| work(k, s));
     }
 
     /// The calling thread and the others take pieces until there are none. The caller begins at once: it does not wait for others to wake.
-    fn share<P: Send>(
-        &self,
-        workers: &rayon::ThreadPool,
-        pieces: impl Iterator<Item = P> + Send,
-        work: impl Fn(P) + Sync,
-    ) {
+    fn share<P: Send>(&self, pieces: impl Iterator<Item = P> + Send, work: impl Fn(P) + Sync) {
+        let Some(workers) = self.workers() else { return pieces.for_each(work) };
         let pieces = Mutex::new(pieces);
         let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
         let take_all = || {
@@ -178,16 +171,8 @@ impl Threads {
             }
         };
         let (of_a, of_b) = (rows_per_piece * length_a, rows_per_piece * length_b);
-        match self.workers() {
-            None => {
-                let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
-                pieces.for_each(|(k, ((a, b), scratch))| rows(k, a, b, scratch));
-            }
-            Some(workers) => {
-                let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
-                self.share(&workers, pieces, |(k, ((a, b), scratch))| rows(k, a, b, scratch));
-            }
-        }
+        let pieces = a.chunks_mut(of_a).zip(b.chunks_mut(of_b)).zip(scratch).enumerate();
+        self.share(pieces, |(k, ((a, b), scratch))| rows(k, a, b, scratch));
     }
 
     /// Calls `work(row, its data)` on each row of `data`.
@@ -201,13 +186,7 @@ impl Threads {
         let rows = |k: usize, rows: &mut [A]| {
             rows.chunks_mut(length).enumerate().for_each(|(i, row)| work(k * rows_per_piece + i, row));
         };
-        match self.workers() {
-            None => rows(0, data),
-            Some(workers) => {
-                let pieces = data.chunks_mut(rows_per_piece * length).enumerate();
-                self.share(&workers, pieces, |(k, chunk)| rows(k, chunk));
-            }
-        }
+        self.share(data.chunks_mut(rows_per_piece * length).enumerate(), |(k, chunk)| rows(k, chunk));
     }
 
     /// Calls `work(row, its data in a, its data in b)` on each row of both, a run of rows per piece; the last row may be shorter.
@@ -232,15 +211,8 @@ impl Threads {
         (b, length_b): (&mut [B], usize),
         work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
     ) {
-        match self.workers() {
-            None => {
-                a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate().for_each(|(k, (a, b))| work(k, a, b))
-            }
-            Some(workers) => {
-                let pieces = a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate();
-                self.share(&workers, pieces, |(k, (a, b))| work(k, a, b));
-            }
-        }
+        let pieces = a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate();
+        self.share(pieces, |(k, (a, b))| work(k, a, b));
     }
 
     /// These threads for a pass over arrays of so many elements, which takes about a tenth of the time of a product.
