@@ -13,7 +13,7 @@ mod steady;
 mod wheel_on_rail;
 
 use contact_normal::error::Error;
-use contact_normal::friction::{Compliance, Report, Request, Solver, Start, Tangential};
+use contact_normal::friction::{Compliance, Report, Request, Solver, Tangential};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
@@ -71,15 +71,7 @@ pub fn tangential(
 ) -> Result<(Outcome, Report, Solver), Error> {
     let compliance = Compliance { shear: 1.0, poisson: nu, unlike: 0.0 };
     let mut solver = Solver::new(grid, Tangential::new(grid.dx, grid.dy, compliance), true, &Threads::One);
-    let request = Request {
-        pressure: g,
-        friction,
-        tolerance,
-        limit: 1000,
-        sideways: None,
-        start: Start::Before,
-        estimates: false,
-    };
+    let request = Request::new(g, friction, tolerance);
     let (end, report) = solver.solve(&request, &mut |_, _| true)?;
     Ok((end, report, solver))
 }

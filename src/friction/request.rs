@@ -22,6 +22,13 @@ pub struct Request<'a> {
     pub estimates: bool,
 }
 
+impl<'a> Request<'a> {
+    /// From the tractions before the step, for like bodies, in 1000 iterations at most, without estimates.
+    pub fn new(pressure: &'a [f64], friction: &'a Friction<'a>, tolerance: f64) -> Request<'a> {
+        Request { pressure, friction, tolerance, limit: 1000, sideways: None, start: Start::Before, estimates: false }
+    }
+}
+
 /// Where a solve starts.
 #[derive(Clone, Copy)]
 pub enum Start<'a> {

@@ -1,6 +1,6 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
-use contact_normal::friction::{Request, Start};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Prescribed, Previous};
 use contact_normal::solver::Outcome;
@@ -101,20 +101,7 @@ fn forces_that_friction_cannot_carry_are_refused() {
         prescribed: [Prescribed::Force(part * carried), Prescribed::Force(0.0)],
         ..Friction::new(1.0)
     };
-    let solve = |friction: &Friction<'_>| {
-        solver(&grid, 0.3).solve(
-            &Request {
-                pressure: &g,
-                friction,
-                tolerance: 1e-6,
-                limit: 1000,
-                sideways: None,
-                start: Start::Before,
-                estimates: false,
-            },
-            &mut |_, _| true,
-        )
-    };
+    let solve = |friction: &Friction<'_>| solver(&grid, 0.3).solve(&Request::new(&g, friction, 1e-6), &mut |_, _| true);
     for part in [1.0, -1.0, 1.5, 1e9] {
         let refused = solve(&with(part)).unwrap_err();
         assert!(refused.to_string().contains("must be less than"), "{refused}");
@@ -136,16 +123,7 @@ fn slips_that_dwarf_what_tractions_displace_are_refused() {
     let shifted = |by: f64, mu: f64| {
         let friction =
             Friction { prescribed: [Prescribed::Creepage(by), Prescribed::Creepage(0.0)], ..Friction::new(mu) };
-        let (start, limit) = (Start::Before, 1000);
-        let request = Request {
-            pressure: &g,
-            friction: &friction,
-            tolerance: 1e-6,
-            limit,
-            sideways: None,
-            start,
-            estimates: false,
-        };
+        let request = Request::new(&g, &friction, 1e-6);
         solver(&grid, 0.3).solve(&request, &mut |_, _| true)
     };
     // An element displaces itself by some 0.1 per traction, and tractions are of order mu.
@@ -183,15 +161,7 @@ fn a_callback_cancels_wherever_it_is_told() {
     let (grid, g) = disc(64, |_, _| true);
     let friction =
         Friction { prescribed: [Prescribed::Creepage(-0.3), Prescribed::Creepage(0.1)], ..Friction::new(1.0) };
-    let request = Request {
-        pressure: &g,
-        friction: &friction,
-        tolerance: 1e-6,
-        limit: 1000,
-        sideways: None,
-        start: Start::Before,
-        estimates: false,
-    };
+    let request = Request::new(&g, &friction, 1e-6);
     let mut total = 0;
     solver(&grid, 0.3)
         .solve(&request, &mut |_, _| {

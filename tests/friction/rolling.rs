@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Start, Vector};
+use contact_normal::friction::{dense, Request, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 
@@ -71,15 +71,8 @@ fn previous_tractions_may_be_given_or_kept() {
     // From rest is something else, and nothing is kept by a new solver.
     let (_, from_rest) = run(&mut solver(&grid, 0.3), &g, &step, 1e-8);
     assert_ne!(of_kept.traction, from_rest.traction);
-    let nothing = contact_normal::friction::Request {
-        pressure: &g,
-        friction: &Friction { previous: Previous::Kept, ..step },
-        tolerance: 1e-6,
-        limit: 100,
-        sideways: None,
-        start: Start::Before,
-        estimates: false,
-    };
+    let continued = Friction { previous: Previous::Kept, ..step };
+    let nothing = Request { limit: 100, ..Request::new(&g, &continued, 1e-6) };
     assert!(solver(&grid, 0.3).solve(&nothing, &mut |_, _| true).is_err());
 }
 

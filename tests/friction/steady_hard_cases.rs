@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{Request, Start};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
@@ -31,15 +31,7 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
             assert!(apart <= 1e-6 * carried, "{spin} {part}: {:?}", found.0.force);
         }
         let all = with_forces([-1.0, 0.0], spin, &g, &grid);
-        let request = Request {
-            pressure: &g,
-            friction: &all,
-            tolerance: 1e-6,
-            limit: 100,
-            sideways: None,
-            start: Start::Before,
-            estimates: false,
-        };
+        let request = Request { limit: 100, ..Request::new(&g, &all, 1e-6) };
         let refused = solver(&grid, NU).solve(&request, &mut |_, _| true).unwrap_err();
         assert!(refused.to_string().contains("it must be less than"), "{refused}");
     }
@@ -195,15 +187,7 @@ fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
     let (grid, g) = ellipse(1.0, 40);
     for friction in [rolling([-0.4, 0.1], 0.3), with_forces([0.6, 0.2], 0.3, &g, &grid)] {
         assert_eq!(friction.motion, Motion::SteadyRolling);
-        let request = Request {
-            pressure: &g,
-            friction: &friction,
-            tolerance: 1e-8,
-            limit: 1000,
-            sideways: None,
-            start: Start::Before,
-            estimates: false,
-        };
+        let request = Request::new(&g, &friction, 1e-8);
         let mut calls = 0;
         for cancel in 0.. {
             let mut solver = solver(&grid, NU);

@@ -1,8 +1,6 @@
 //! Tangential problems on pressures that are given, and their conditions recomputed by direct sums.
 
-use contact_normal::friction::{
-    dense, Compliance, Report, Request, Solution, Solver, Start, Tangential, Vector, SLIP, STICK,
-};
+use contact_normal::friction::{dense, Compliance, Report, Request, Solution, Solver, Tangential, Vector, SLIP, STICK};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed};
 use contact_normal::solver::Outcome;
@@ -20,15 +18,7 @@ pub fn solver(grid: &Grid, nu: f64) -> Solver {
 
 /// Solves, and must converge.
 pub fn run(solver: &mut Solver, g: &[f64], friction: &Friction<'_>, tolerance: f64) -> (Report, Solution) {
-    let request = Request {
-        pressure: g,
-        friction,
-        tolerance,
-        limit: 1000,
-        sideways: None,
-        start: Start::Before,
-        estimates: false,
-    };
+    let request = Request::new(g, friction, tolerance);
     let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
     assert_eq!(end, Outcome::Converged, "{friction:?} {report:?}");
     (report, solver.solution().unwrap().clone())
