@@ -3,6 +3,9 @@
 use super::problem::{add, square, Problem};
 use super::vectors;
 use super::Vector;
+use crate::effects::{Friction, Prescribed};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
 
 /// Forces that are given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +19,29 @@ pub struct Forces {
 impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
+
+    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that.
+    pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
+        let area = grid.element_area();
+        let mut forces = Forces::NONE;
+        for (k, prescribed) in friction.prescribed.iter().enumerate() {
+            if let Prescribed::Force(force) = *prescribed {
+                (forces.given[k], forces.sum[k]) = (true, force / area);
+            }
+        }
+        if !forces.any() {
+            return Ok(forces);
+        }
+        let greatest: f64 = (0..grid.len()).map(bound).sum();
+        if !(square(forces.sum).sqrt() < greatest) {
+            return Err(Error::Infeasible(format!(
+                "the tangential force is {}; with this friction it must be less than {}",
+                square(forces.sum).sqrt() * area,
+                greatest * area
+            )));
+        }
+        Ok(forces)
+    }
 
     /// Whether there are any.
     pub fn any(&self) -> bool {

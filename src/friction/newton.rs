@@ -19,6 +19,7 @@ use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
 use super::tangent::{Sight, Tangent};
 use super::vectors::Fields;
+use super::Vector;
 use crate::error::{Error, Result};
 use crate::progress::Outcome;
 
@@ -85,10 +86,7 @@ pub fn solve(
             continue;
         }
         if forces.any() && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
-            return Err(Error::Infeasible(format!(
-                "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {:?}",
-                problem.offset
-            )));
+            return Err(ran_away(problem.offset));
         }
         since += 1;
         if worst < PROGRESS * least {
@@ -113,6 +111,13 @@ pub fn solve(
             return Ok(Outcome::Cancelled);
         }
     }
+}
+
+/// The creepages of forces that nothing reaches.
+fn ran_away(creepages: Vector) -> Error {
+    Error::Infeasible(format!(
+        "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {creepages:?}"
+    ))
 }
 
 /// The largest of these, which are not negative; NaN if there is one.

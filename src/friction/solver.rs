@@ -5,15 +5,15 @@ use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
 use super::nested::{self, Work, COARSE, COUNTS};
-use super::problem::square;
 use super::request::{Request, Start};
 use super::sensitivity;
 use super::shift::Memory;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
+use super::take_over::before;
 use super::window::{Displaced, Window};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::Outcome;
@@ -106,38 +106,26 @@ impl Solver {
         if keeps && !self.has_solution {
             return invalid("friction continues, but this solver holds no tractions yet".into());
         }
-        if self.solution.traction.is_empty() {
-            let n = self.grid.len();
-            self.solution =
-                Solution { traction: zeros(n, FIELDS)?, slip: zeros(n, FIELDS)?, adhesion: zeros(n, FIELDS)? };
-        }
-        let before = |kept: &[Vector], i: usize| match friction.previous {
-            Previous::None => [0.0; 2],
-            Previous::Given([x, y]) => [x[i], y[i]],
-            Previous::Kept => kept[i],
-        };
-        let forces = self.forces(friction, bound)?;
+        self.make_room()?;
+        let forces = Forces::of(friction, &self.grid, bound)?;
         if keeps && !matches!(request.start, Start::Again) {
             self.before.clone_from(&self.solution.traction);
         }
         let kept = &self.before;
         let from_rest =
-            friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(kept, i) == [0.0; 2]);
+            friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(friction, kept, i) == [0.0; 2]);
         let rolling = (friction.motion == Motion::SteadyRolling)
             .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
-        let window =
-            Window::around(&self.grid, |i| pressure[i] > 0.0 || rolling.is_none() && before(kept, i) != [0.0; 2]);
+        let window = Window::around(&self.grid, |i| {
+            pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
+        });
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
-            let begin = |solver: &mut Solver, request: &Request<'_>| {
-                let had_slip = solver.take_over((request, from_rest), window, bound, |kept, i| before(kept, i))?;
-                solver.check_range().map(|()| had_slip)
-            };
             let mut near = Near::default();
             if let Start::Superposed(_) = request.start {
                 self.set_up_finest(window)?;
-                begin(self, request)?;
+                self.begin(request, from_rest, window, bound)?;
                 near = self.look(forces, request.tolerance);
             }
             report.products = near.products;
@@ -147,17 +135,11 @@ impl Solver {
                     self.levels[0].be_ready().map(|()| false)?
                 } else {
                     self.set_up(window, rolling)?;
-                    begin(self, &Request { start: request.start.or_before(), ..*request })?
+                    let request = Request { start: request.start.or_before(), ..*request };
+                    self.begin(&request, from_rest, window, bound)?
                 };
                 let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
-                let compared = nested && request.estimates && rolling.is_some();
-                let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
-                let goal = (request.tolerance, request.limit);
-                end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
-                report.products += work.products;
-                report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
-                let Level { problem, state, .. } = &self.levels[0];
-                report.certificate = Certificate::of(problem, state);
+                end = self.iterate(request, forces, (nested, had_slip), watch, &mut report)?;
             }
             report.carried = self.levels[0].problem.bound.iter().sum::<f64>() * self.grid.element_area();
         }
@@ -171,27 +153,34 @@ impl Solver {
         Ok((end, report))
     }
 
-    /// The forces that are given; refuses those that are more than friction carries.
-    fn forces(&self, friction: &Friction<'_>, bound: impl Fn(usize) -> f64) -> Result<Forces> {
-        let area = self.grid.element_area();
-        let mut forces = Forces::NONE;
-        for (k, prescribed) in friction.prescribed.iter().enumerate() {
-            if let Prescribed::Force(force) = *prescribed {
-                (forces.given[k], forces.sum[k]) = (true, force / area);
-            }
+    /// Room for the result.
+    fn make_room(&mut self) -> Result<()> {
+        if self.solution.traction.is_empty() {
+            let n = self.grid.len();
+            self.solution =
+                Solution { traction: zeros(n, FIELDS)?, slip: zeros(n, FIELDS)?, adhesion: zeros(n, FIELDS)? };
         }
-        if !forces.any() {
-            return Ok(forces);
-        }
-        let greatest: f64 = (0..self.grid.len()).map(bound).sum();
-        if !(square(forces.sum).sqrt() < greatest) {
-            return Err(Error::Infeasible(format!(
-                "the tangential force is {}; with this friction it must be less than {}",
-                square(forces.sum).sqrt() * area,
-                greatest * area
-            )));
-        }
-        Ok(forces)
+        Ok(())
+    }
+
+    /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.
+    fn iterate(
+        &mut self,
+        request: &Request<'_>,
+        forces: Forces,
+        (nested, had_slip): (bool, bool),
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<Outcome> {
+        let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
+        let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
+        let goal = (request.tolerance, request.limit);
+        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
+        report.products += work.products;
+        report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
+        let Level { problem, state, .. } = &self.levels[0];
+        report.certificate = Certificate::of(problem, state);
+        Ok(end)
     }
 
     /// Operators of a window.

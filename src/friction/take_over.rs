@@ -19,13 +19,25 @@ const LARGEST_RATIO: f64 = 1e30;
 const LEAST_RATIO: f64 = 1e-60;
 
 impl Solver {
-    /// g, w, and for rolling the tractions to start from. Returns whether most of C slipped before.
-    pub(super) fn take_over(
+    /// g, w, and for rolling the tractions to start from; refuses slips out of range. Returns whether most of C slipped before.
+    pub(super) fn begin(
         &mut self,
-        (request, from_rest): (&Request<'_>, bool),
+        request: &Request<'_>,
+        from_rest: bool,
         window: Window,
         bound: impl Fn(usize) -> f64 + Sync + Send,
-        before: impl Fn(&[Vector], usize) -> Vector + Sync + Send,
+    ) -> Result<bool> {
+        let had_slip = self.take_over(request, from_rest, window, bound)?;
+        self.check_range()?;
+        Ok(had_slip)
+    }
+
+    fn take_over(
+        &mut self,
+        request: &Request<'_>,
+        from_rest: bool,
+        window: Window,
+        bound: impl Fn(usize) -> f64 + Sync + Send,
     ) -> Result<bool> {
         let Request { friction, start, .. } = *request;
         let (grid, kept) = (&self.grid, &self.before);
@@ -42,7 +54,7 @@ impl Solver {
         });
         if !from_rest {
             threads.for_each_plain_row(&mut state.q, width, |iy, row| {
-                row.iter_mut().zip(window.row(grid, iy)).for_each(|(q, i)| *q = before(kept, i));
+                row.iter_mut().zip(window.row(grid, iy)).for_each(|(q, i)| *q = before(friction, kept, i));
             });
         }
         // A warm start of steady rolling starts from the last creepages, too.
@@ -62,11 +74,24 @@ impl Solver {
         if !from_rest {
             self.leave(friction)?;
         }
+        if from_rest && matches!(start, Start::Before) {
+            return Ok(false);
+        }
+        self.start_from(request, window);
         let Level { problem, state, .. } = &mut self.levels[0];
-        match start {
-            Start::Before if from_rest => return Ok(false),
+        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
+        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
+        problem.refresh(state);
+        Ok(mostly)
+    }
+
+    /// The tractions and the offset to start from, where they are not those before the step.
+    fn start_from(&mut self, request: &Request<'_>, window: Window) {
+        let Level { problem, state, .. } = &mut self.levels[0];
+        match request.start {
             Start::Before => {}
             Start::Superposed(Superposed { smaller, along, offset }) => {
+                let (threads, width) = (problem.threads().clone(), problem.grid.mx);
                 threads.for_each_plain_row(&mut state.q, width, |iy, row| {
                     for (q, i) in row.iter_mut().zip(window.row(&self.grid, iy)) {
                         let missing = request.pressure[i].max(0.0) - smaller[i];
@@ -80,10 +105,6 @@ impl Solver {
                 problem.offset = self.offset;
             }
         }
-        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
-        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
-        problem.refresh(state);
-        Ok(mostly)
     }
 
     /// w less the displacements before the step, by the tractions that the state holds.
@@ -105,7 +126,7 @@ impl Solver {
     }
 
     /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
-    pub(super) fn check_range(&self) -> Result<()> {
+    fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
         if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && slip / displaced > LEAST_RATIO) {
@@ -115,6 +136,15 @@ impl Solver {
             ));
         }
         Ok(())
+    }
+}
+
+/// The traction of element i before the step; `kept` are those of the last result.
+pub(super) fn before(friction: &Friction<'_>, kept: &[Vector], i: usize) -> Vector {
+    match friction.previous {
+        Previous::None => [0.0; 2],
+        Previous::Given([x, y]) => [x[i], y[i]],
+        Previous::Kept => kept[i],
     }
 }
 

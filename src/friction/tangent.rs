@@ -122,10 +122,8 @@ impl Tangent {
                     (curvature[k], mixing[k]) = (0.0, 1.0);
                     if square(tau) > g * g {
                         slips += 1.0;
-                        side[k] = Side::Slip;
-                        let n;
-                        (n, curvature[k]) = normal_and_curvature((q, s), g, tau, inverse_rho);
-                        normal[k] = n;
+                        let (n, bend) = normal_and_curvature((q, s), g, tau, inverse_rho);
+                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, bend);
                         mixing[k] = 1.0 / (1.0 + MIXED * curvature[k] / a0);
                         driving[k] = plus([-s[0], -s[1]], dot(s, n), n);
                     }
