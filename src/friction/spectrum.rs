@@ -95,7 +95,7 @@ pub fn even<T: Real>(
         columns.fit(&mut scratch);
         (vec![Complex::default(); px.max(py)], scratch)
     };
-    let mut scratch: Vec<_> = (0..threads.pieces()).map(piece).collect();
+    let mut scratch: Vec<_> = (0..threads.count()).map(piece).collect();
     let mut in_x: Vec<Entry> = zeros(given.1 * nb, SPECTRUM)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {
         let row = &mut row[..px];
@@ -176,7 +176,7 @@ impl SetUp {
             waves: vec![[Complex::default(); 3]; columns.length()],
             scratch: scratch.clone(),
         };
-        (0..threads.pieces()).map(piece).collect()
+        (0..threads.count()).map(piece).collect()
     }
 
     /// Transforms the three components of `row`; `take(bin, component, value)` takes each value.

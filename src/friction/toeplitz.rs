@@ -188,7 +188,7 @@ impl<T: Real> Toeplitz<T> {
             let columns = vec![Complex::default(); BLOCK * py];
             Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
         };
-        Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.pieces()).map(piece).collect() })
+        Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.count()).map(piece).collect() })
     }
 
     /// Bytes of the spectrum.

@@ -43,7 +43,7 @@ impl<T> Shared<T> {
     }
 }
 
-/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, a run of blocks per piece of scratch.
+/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that does it.
 pub fn for_each_block<T: Real, S: Send>(
     data: &mut [Complex<T>],
     width: usize,
@@ -54,17 +54,14 @@ pub fn for_each_block<T: Real, S: Send>(
     assert_eq!(data.len() % width, 0);
     let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
     let blocks = width.div_ceil(BLOCK);
-    let blocks_per_piece = blocks.div_ceil(scratch.len());
-    threads.for_each(scratch, |k, s| {
-        for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(blocks) {
-            let (first, owner) = (b * BLOCK, PhantomData);
-            let columns = BLOCK.min(width - first);
-            work(&mut Block { data: shared.pointer(), rows, width, first, columns, owner }, s);
-        }
+    threads.for_each_with(blocks, scratch, |b, s| {
+        let (first, owner) = (b * BLOCK, PhantomData);
+        let columns = BLOCK.min(width - first);
+        work(&mut Block { data: shared.pointer(), rows, width, first, columns, owner }, s);
     });
 }
 
-/// Calls `work` on each block of columns of the matrix `data` with their mirror images, a run of blocks per piece of scratch.
+/// Calls `work` on each block of columns of the matrix `data` with their mirror images, with the scratch of the thread that does it.
 pub fn for_each_mirrored_block<T: Real, S: Send>(
     data: &mut [Complex<T>],
     width: usize,
@@ -76,19 +73,16 @@ pub fn for_each_mirrored_block<T: Real, S: Send>(
     let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
     let half = width / 2 + 1;
     let blocks = half.div_ceil(BLOCK);
-    let blocks_per_piece = blocks.div_ceil(scratch.len());
-    threads.for_each(scratch, |k, s| {
-        for b in k * blocks_per_piece..((k + 1) * blocks_per_piece).min(blocks) {
-            let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
-            // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
-            let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
-            let block = |first: usize, columns: usize| {
-                let (data, owner) = (shared.pointer(), PhantomData);
-                Block { data, rows, width, first, columns, owner }
-            };
-            let there = block(mirrored, behind - mirrored);
-            work(&mut MirroredBlock { here: block(first, end - first), there }, s);
-        }
+    threads.for_each_with(blocks, scratch, |b, s| {
+        let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
+        // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
+        let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
+        let block = |first: usize, columns: usize| {
+            let (data, owner) = (shared.pointer(), PhantomData);
+            Block { data, rows, width, first, columns, owner }
+        };
+        let there = block(mirrored, behind - mirrored);
+        work(&mut MirroredBlock { here: block(first, end - first), there }, s);
     });
 }
 

@@ -92,7 +92,7 @@ impl Piece {
         rows: &RowTransform<f64>,
         columns: &ColumnTransform<f64>,
     ) -> Result<()> {
-        pieces.resize_with(threads.pieces(), Piece::default);
+        pieces.resize_with(threads.count(), Piece::default);
         for piece in pieces {
             piece.row.resize(rows.length(), 0.0);
             let length = rows.bins().max(PAIRS * columns.length());

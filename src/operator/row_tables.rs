@@ -40,7 +40,7 @@ impl<T: Real> PerRow<T> {
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
         // Rows may be long: their scratch is as large as an array of the grid then.
         let scratch = |_| zeros(transform.scratch_length(), MATRICES);
-        let mut pieces = (0..threads.pieces()).map(scratch).collect::<Result<Vec<_>>>()?;
+        let mut pieces = (0..threads.count()).map(scratch).collect::<Result<Vec<_>>>()?;
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
@@ -89,7 +89,7 @@ impl<T: Real> PerRow<T> {
         }
         let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
-        let mut pieces: Vec<_> = (0..threads.pieces()).map(|_| (vec![0.0; px], rows.scratch())).collect();
+        let mut pieces: Vec<_> = (0..threads.count()).map(|_| (vec![0.0; px], rows.scratch())).collect();
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {

@@ -96,7 +96,7 @@ impl<T: Real> Operator<T> {
 
     /// Pieces of the work.
     fn pieces(&self) -> usize {
-        self.rows.threads.pieces()
+        self.rows.threads.count()
     }
 
     fn fit_scratch(&self, scratch: &mut Vec<Complex<T>>) {

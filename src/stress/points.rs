@@ -28,8 +28,7 @@ pub fn stress_at_points(
     body.check()?;
     loads.check(&body.grid)?;
     points.iter().enumerate().try_for_each(|(i, point)| check(body, i, *point))?;
-    threads
-        .for_each_row(out, 1, &mut vec![(); threads.pieces()], |i, out, ()| out[0] = at_point(body, loads, points[i]));
+    threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
     Ok(())
 }
 

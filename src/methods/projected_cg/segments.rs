@@ -36,7 +36,6 @@ pub struct Segments {
     first_before: Vec<u32>,
     sums: Vec<[f64; MOST_SUMS]>,
     threads: Threads,
-    pieces: Vec<()>,
 }
 
 impl Segments {
@@ -59,7 +58,6 @@ impl Segments {
             first_before: vec![0; blocks + 1],
             sums: vec![[0.0; MOST_SUMS]; blocks],
             threads: threads.clone(),
-            pieces: vec![(); threads.pieces()],
         })
     }
 
@@ -108,7 +106,7 @@ impl Segments {
     /// Sums over C: `work(runs, sums)` adds those of a block.
     pub fn sum<const K: usize>(&mut self, work: impl Fn(Block<'_>, &mut Sums<K>) + Sync + Send) -> [f64; K] {
         let (runs, first, block) = (&self.runs, &self.first, self.block);
-        self.threads.for_each_row(&mut self.sums, 1, &mut self.pieces, |b, total, ()| {
+        self.threads.for_each_plain_row(&mut self.sums, 1, |b, total| {
             let mut sums = Sums([[0.0; LANES]; K]);
             let block = Block { start: b * block, runs: &runs[first[b] as usize..first[b + 1] as usize] };
             work(block, &mut sums);
