@@ -23,7 +23,7 @@ pub enum Threads {
 }
 
 /// Elements of a grid from which on several threads multiply faster than one.
-const WORTH_WAKING: usize = 128 * 128;
+const WORTH_WAKING: usize = 64 * 64;
 
 /// Pieces that work is cut into, per thread: a thread held up by others leaves its share to them.
 const PIECES: usize = 8;
@@ -174,7 +174,7 @@ impl Threads {
 
     /// These threads for a pass over arrays of so many elements, which takes about a tenth of the time of a product.
     pub fn for_a_pass(&self, elements: usize) -> Threads {
-        self.suited_to(elements / 10)
+        self.suited_to(elements / 6)
     }
 
     /// These threads for work on so many elements: the caller's own where waking the others takes longer than the work.
