@@ -16,6 +16,9 @@ pub struct Forces {
     pub sum: Vector,
 }
 
+/// Round-off of the sum of all bounds, relative to it: that of 2^31 of them in any order.
+const ROUND_OFF: f64 = 1e-12;
+
 impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
@@ -33,7 +36,7 @@ impl Forces {
             return Ok(forces);
         }
         let greatest: f64 = (0..grid.len()).map(bound).sum();
-        if !(square(forces.sum).sqrt() < greatest) {
+        if !(square(forces.sum).sqrt() < greatest * (1.0 - ROUND_OFF)) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",
                 square(forces.sum).sqrt() * area,

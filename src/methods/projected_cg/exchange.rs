@@ -95,22 +95,33 @@ impl<T: Real> Iteration<T> {
                     any |= set.enters(true, h - approach + *u) & at_limit;
                 }
             }
-            entering[0] = any;
+            entering[0] = u32::from(any);
         });
+        if !self.entering.contains(&1) {
+            return 0;
+        }
         let waits = limited && self.limits.waits(h, u, at_limit, approach);
-        let mut entered = 0;
-        for (iy, _) in self.entering.iter().enumerate().filter(|(_, &any)| any) {
-            self.runs.change(iy * mx);
-            for i in iy * mx..(iy + 1) * mx {
-                let held = S::LIMITED && at_limit[i];
-                let stays = contact[i] || held && waits;
+        let (h, u, held) = (&h[..], &u[..], &at_limit[..]);
+        self.threads.for_each_row_pair((contact, mx), (&mut self.entering, 1), |iy, contact, entering| {
+            if std::mem::take(&mut entering[0]) == 0 {
+                return;
+            }
+            for (contact, i) in contact.iter_mut().zip(iy * mx..) {
+                let held = S::LIMITED && held[i];
+                let stays = *contact || held && waits;
                 if !stays && set.enters(held, h[i] - approach + u[i]) {
-                    contact[i] = true;
-                    entered += 1;
-                    if held {
-                        at_limit[i] = false;
-                    }
+                    *contact = true;
+                    entering[0] += 1;
                 }
+            }
+        });
+        let mut entered = 0;
+        for (iy, count) in self.entering.iter().enumerate().filter(|(_, &count)| count > 0) {
+            self.runs.change(iy * mx);
+            entered += u64::from(*count);
+            if limited {
+                let row = iy * mx..(iy + 1) * mx;
+                contact[row.clone()].iter().zip(&mut at_limit[row]).for_each(|(inside, held)| *held &= !inside);
             }
         }
         entered

@@ -88,9 +88,14 @@ impl<T: Real> Iteration<T> {
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         if self.preconditioner.is_some() {
             self.limits.forget();
-            state.fit_approach();
-            self.update_displacements(state, set, &Update::default());
             self.find_contact(state);
+            if S::LIMITED && state.has_limited() {
+                state.fit_approach();
+            } else {
+                self.fit_approach(state, &Update::default());
+            }
+            self.update_displacements(state, set, &Update::default());
+            self.runs.find(&state.contact);
             self.residual(state);
             self.precondition(state);
             self.direct(state, 0.0, None);

@@ -12,8 +12,9 @@ use crate::grid::Grid;
 use crate::memory::{keep, reserve};
 use crate::threads::Threads;
 
-/// Blocks of rows at most.
+/// Blocks of rows at most, and elements of a block at least: each costs some additions.
 const BLOCKS: usize = 64;
+const LEAST: usize = 512;
 /// Sums at most that a pass takes.
 const MOST_SUMS: usize = 5;
 /// Parts of each sum of a block: an addition does not wait for the one before.
@@ -24,41 +25,35 @@ pub struct Segments {
     mx: usize,
     /// Elements of a block.
     block: usize,
-    /// Elements of the grid, `start..end`.
-    runs: Vec<(u32, u32)>,
-    /// The first run of each block, and the number of runs.
-    first: Vec<u32>,
+    found: Vec<Found>,
     /// Elements in contact.
     count: usize,
-    /// Blocks whose runs are no longer true.
-    changed: Vec<bool>,
-    runs_before: Vec<(u32, u32)>,
-    first_before: Vec<u32>,
     sums: Vec<[f64; MOST_SUMS]>,
     threads: Threads,
+}
+
+/// The runs of a block, as elements `start..end` of the grid.
+#[derive(Default)]
+struct Found {
+    runs: Vec<(u32, u32)>,
+    /// Elements in contact.
+    count: usize,
+    /// Whether the runs are no longer true.
+    changed: bool,
 }
 
 impl Segments {
     /// No contact. Memory for any contact area is reserved, and touched when it is needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
-        let most = grid.my * grid.mx.div_ceil(2);
-        let rows = grid.my.div_ceil(BLOCKS);
+        let rows = grid.my.div_ceil(BLOCKS).max(LEAST / grid.mx).min(grid.my);
         let blocks = grid.my.div_ceil(rows);
-        let (mut runs, mut runs_before) = (Vec::new(), Vec::new());
-        reserve(&mut runs, most, "the contact area")?;
-        reserve(&mut runs_before, most, "the contact area")?;
-        Ok(Segments {
-            mx: grid.mx,
-            block: rows * grid.mx,
-            runs,
-            first: vec![0; blocks + 1],
-            count: 0,
-            changed: vec![true; blocks],
-            runs_before,
-            first_before: vec![0; blocks + 1],
-            sums: vec![[0.0; MOST_SUMS]; blocks],
-            threads: threads.clone(),
-        })
+        let mut found = Vec::new();
+        found.resize_with(blocks, Found::default);
+        for block in &mut found {
+            reserve(&mut block.runs, rows * grid.mx.div_ceil(2), "the contact area")?;
+        }
+        let sums = vec![[0.0; MOST_SUMS]; blocks];
+        Ok(Segments { mx: grid.mx, block: rows * grid.mx, found, count: 0, sums, threads: threads.clone() })
     }
 
     /// Number of elements in contact.
@@ -68,47 +63,40 @@ impl Segments {
 
     /// Says that element `i` enters or leaves.
     pub fn change(&mut self, i: usize) {
-        self.changed[i / self.block] = true;
+        self.found[i / self.block].changed = true;
     }
 
     /// Says that any element may have changed sides.
     pub fn change_all(&mut self) {
-        self.changed.fill(true);
+        self.found.iter_mut().for_each(|block| block.changed = true);
     }
 
     /// Finds the runs of the blocks that changed.
     pub fn find(&mut self, contact: &[bool]) {
-        if !self.changed.contains(&true) {
+        if !self.found.iter().any(|block| block.changed) {
             return;
         }
-        std::mem::swap(&mut self.runs, &mut self.runs_before);
-        std::mem::swap(&mut self.first, &mut self.first_before);
-        self.runs.clear();
-        self.count = 0;
-        for (b, block) in contact.chunks(self.block).enumerate() {
-            let first = self.runs.len();
-            self.first[b] = first as u32;
-            if take(&mut self.changed[b]) {
-                for (iy, row) in block.chunks_exact(self.mx).enumerate() {
-                    find_in_row(row, (b * self.block + iy * self.mx) as u32, &mut self.runs);
+        let (mx, length) = (self.mx, self.block);
+        self.threads.for_each_plain_row(&mut self.found, 1, |b, found| {
+            let Found { runs, count, changed } = &mut found[0];
+            if take(changed) {
+                runs.clear();
+                let elements = &contact[b * length..contact.len().min((b + 1) * length)];
+                for (iy, row) in elements.chunks_exact(mx).enumerate() {
+                    find_in_row(row, (b * length + iy * mx) as u32, runs);
                 }
-            } else {
-                let before = self.first_before[b] as usize..self.first_before[b + 1] as usize;
-                self.runs.extend_from_slice(&self.runs_before[before]);
+                *count = runs.iter().map(|(start, end)| (end - start) as usize).sum();
             }
-            self.count += self.runs[first..].iter().map(|(start, end)| (end - start) as usize).sum::<usize>();
-        }
-        if let Some(last) = self.first.last_mut() {
-            *last = self.runs.len() as u32;
-        }
+        });
+        self.count = self.found.iter().map(|block| block.count).sum();
     }
 
     /// Sums over C: `work(runs, sums)` adds those of a block.
     pub fn sum<const K: usize>(&mut self, work: impl Fn(Block<'_>, &mut Sums<K>) + Sync + Send) -> [f64; K] {
-        let (runs, first, block) = (&self.runs, &self.first, self.block);
+        let (found, block) = (&self.found, self.block);
         self.threads.for_each_plain_row(&mut self.sums, 1, |b, total| {
             let mut sums = Sums([[0.0; LANES]; K]);
-            let block = Block { start: b * block, runs: &runs[first[b] as usize..first[b + 1] as usize] };
+            let block = Block { start: b * block, runs: &found[b].runs };
             work(block, &mut sums);
             sums.total(&mut total[0]);
         });
@@ -121,11 +109,11 @@ impl Segments {
         data: &mut [A],
         work: impl Fn(Block<'_>, &mut [A], &mut Sums<K>) + Sync + Send,
     ) -> [f64; K] {
-        let (runs, first, block) = (&self.runs, &self.first, self.block);
+        let (found, block) = (&self.found, self.block);
         let (data, sums) = ((data, block), (&mut self.sums[..], 1));
         self.threads.for_each_row_pair(data, sums, |b, data, total| {
             let mut sums = Sums([[0.0; LANES]; K]);
-            let block = Block { start: b * block, runs: &runs[first[b] as usize..first[b + 1] as usize] };
+            let block = Block { start: b * block, runs: &found[b].runs };
             work(block, data, &mut sums);
             sums.total(&mut total[0]);
         });
@@ -134,9 +122,8 @@ impl Segments {
 
     /// The runs of the blocks whose first sum of the last pass was not 0.
     pub fn of_blocks_with_sum(&self) -> impl Iterator<Item = Range<usize>> + '_ {
-        let blocks = (0..self.sums.len()).filter(|&b| self.sums[b][0] != 0.0);
-        let runs = blocks.flat_map(|b| &self.runs[self.first[b] as usize..self.first[b + 1] as usize]);
-        runs.map(|&(start, end)| start as usize..end as usize)
+        let blocks = self.found.iter().zip(&self.sums).filter(|(_, sums)| sums[0] != 0.0);
+        blocks.flat_map(|(block, _)| &block.runs).map(|&(start, end)| start as usize..end as usize)
     }
 
     fn total<const K: usize>(&self) -> [f64; K] {
@@ -150,7 +137,7 @@ impl Segments {
 
 impl Drop for Segments {
     fn drop(&mut self) {
-        keep([&mut self.runs, &mut self.runs_before]);
+        self.found.iter_mut().for_each(|block| keep([&mut block.runs]));
     }
 }
 

@@ -49,8 +49,8 @@ pub struct Iteration<T: Real> {
     pub(super) debts: Vec<(usize, f64)>,
     /// With limits.
     pub(super) limits: Beyond,
-    /// Whether an element of a row enters.
-    pub(super) entering: Vec<bool>,
+    /// Elements of each row that enter.
+    pub(super) entering: Vec<u32>,
     pub(super) threads: Threads,
 }
 
@@ -83,7 +83,7 @@ impl<T: Real> Iteration<T> {
             runs: Segments::new(grid, threads)?,
             debts,
             limits: Beyond::default(),
-            entering: vec![false; grid.my],
+            entering: vec![0; grid.my],
             threads: threads.clone(),
         })
     }
@@ -137,13 +137,15 @@ impl<T: Real> Iteration<T> {
 
     /// `u = A p` in the iteration's precision.
     pub fn displace(&mut self, state: &mut State) {
-        for (t, p) in self.t.iter_mut().zip(&state.p) {
-            *t = T::of(*p);
-        }
+        let (mx, p, t) = (state.grid.mx, &state.p, &mut self.t);
+        self.threads.for_each_plain_row(t, mx, |y, t| {
+            t.iter_mut().zip(&p[y * mx..]).for_each(|(t, p)| *t = T::of(*p));
+        });
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-        for (u, q) in state.u.iter_mut().zip(&self.q) {
-            *u = q.to_double();
-        }
+        let q = &self.q;
+        self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
+            u.iter_mut().zip(&q[y * mx..]).for_each(|(u, q)| *u = q.to_double());
+        });
     }
 }
 
