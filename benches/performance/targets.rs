@@ -362,7 +362,11 @@ pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
     }
     if steps {
         let each = f64::from(solves);
-        println!("{solves} steps, each {:.2} iterations, {:.2} products by elements", iterations as f64 / each, work / each);
+        println!(
+            "{solves} steps, each {:.2} iterations, {:.2} products by elements",
+            iterations as f64 / each,
+            work / each
+        );
     }
 }
 
