@@ -86,6 +86,7 @@ pub enum End {
 impl<T: Real> Iteration<T> {
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        self.known.forget();
         if self.preconditioner.is_some() {
             self.limits.forget();
             state.fit_approach();
