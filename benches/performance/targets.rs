@@ -347,16 +347,26 @@ pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
     let next = Options { initial_guess: InitialGuess::Previous, ..options(1) };
     let approach = cold(&case.scene(), &options(1)).1.measures.approach;
     let mut solver = Solver::new(&case.scene(), &next).expect("a solver");
-    let scenes = [1.0, 1.01].map(|factor| case.scene_with(Load::Approach(factor * approach)));
-    for scene in scenes.iter().cycle() {
-        if began.elapsed().as_secs_f64() > seconds {
-            break;
-        }
+    let (mut solves, mut iterations, mut work) = (0, 0, 0.0);
+    while began.elapsed().as_secs_f64() < seconds {
         if steps {
-            solver.solve(scene, &next, None, None).expect("a solvable scene");
+            let climbed = CLIMB - (solves % (2 * CLIMB) - CLIMB).abs();
+            let scene = case.scene_with(Load::Approach(approach * 1.01f64.powi(climbed)));
+            let (_, report) = solver.solve(&scene, &next, None, None).expect("a solvable scene");
+            iterations += report.count.active_set_steps;
+            work += report.count.work_units;
         } else {
             cold(&case.scene(), &options(1));
         }
+        solves += 1;
+    }
+    if steps {
+        let each = f64::from(solves);
+        println!(
+            "{solves} steps, each {:.2} iterations, {:.2} products by elements",
+            iterations as f64 / each,
+            work / each
+        );
     }
 }
 

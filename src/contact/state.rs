@@ -187,23 +187,6 @@ impl State {
         self.at_limit.fill(false);
         self.u_is = Freshness::Exact;
     }
-
-    /// With a prescribed approach: scales p, and u = A p with it, to the least energy `(p, u)/2 + (p, h - approach)`.
-    pub fn scale_to_approach(&mut self) {
-        if let Load::Force(_) = self.load {
-            return;
-        }
-        let (mut work, mut energy) = (0.0, 0.0);
-        for i in (0..self.p.len()).filter(|&i| self.contact[i]) {
-            work -= self.p[i] * self.deformed_distance(i);
-            energy += self.p[i] * self.u[i];
-        }
-        let factor = 1.0 + work / energy;
-        if factor.is_finite() && factor > 0.0 {
-            self.p.iter_mut().for_each(|p| *p *= factor);
-            self.u.iter_mut().for_each(|u| *u *= factor);
-        }
-    }
 }
 
 impl Drop for State {

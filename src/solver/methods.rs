@@ -67,6 +67,7 @@ impl Methods {
         error_ratio: f64,
     ) -> Result<Outcome> {
         self.best.forget();
+        self.projected_cg.begin_anew();
         let has_direct = self.direct.is_some();
         let mut stop = Outcome::Stagnated;
         for (i, &stage) in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct).enumerate() {

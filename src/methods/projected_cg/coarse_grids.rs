@@ -200,7 +200,7 @@ impl CoarseGrids {
         };
         let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance, max_cycles };
         let Coarse { level, state, limits, .. } = &mut self.grids[l];
-        let end = level.run(state, S::within(limits), displacement, &goal, self.finest, monitor)?;
+        let end = level.run(state, S::within(limits), (displacement, None), &goal, self.finest, monitor)?;
         level.take_displacements(state);
         Ok(end)
     }

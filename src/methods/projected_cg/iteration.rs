@@ -86,6 +86,7 @@ pub enum End {
 impl<T: Real> Iteration<T> {
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        self.known.forget();
         if self.preconditioner.is_some() {
             self.limits.forget();
             self.find_contact(state);
@@ -163,11 +164,16 @@ impl<T: Real> Iteration<T> {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
         self.fit_approach(state, &update);
-        self.update_displacements(state, set, &update);
+        // What is owed moves the rim: who enters is seen when it is paid.
+        if self.debts.is_empty() || !self.known.is_there() {
+            self.update_displacements(state, set, &update);
+        }
         self.runs.find(&state.contact);
+        let products = self.restrict_known(state);
+        self.step_along_known(state);
         let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner the first forecast is missing.
-        Search::new(self.preconditioner.as_ref().map(|_| first))
+        Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }
     }
 
     /// One iteration, r being what z holds; none where there is no direction.
@@ -202,6 +208,7 @@ impl<T: Real> Iteration<T> {
         } else {
             self.update_pressures(state, set, alpha, held_back)
         };
+        self.leave_known();
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q, 4.2
@@ -217,18 +224,21 @@ impl<T: Real> Iteration<T> {
         }
         update.factor = match state.load {
             Load::Force(_) => self.carry_force::<S>(state),
-            Load::Approach(_) if update.settled && !limited && !S::FIXED => self.least_energy(state, &update),
+            Load::Approach(_) if update.settled && !limited && !S::FIXED && !self.known.is_there() => {
+                self.least_energy(state, &update)
+            }
             Load::Approach(_) => update.factor,
         };
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
+        self.step_along_known(state);
         Some(Cycle {
             changes: left + entered,
             update: alpha.abs() * (step.tt / count).sqrt(),
             pressure: (step.pp / count).sqrt(),
             residual: f64::INFINITY,
-            products: 1 + u64::from(update.settled),
+            products: 1 + u64::from(update.settled) + std::mem::take(&mut search.products),
         })
     }
 

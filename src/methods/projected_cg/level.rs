@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::inner::{in_either, Inner};
+use super::known::Last;
 use super::scaling::Scaling;
 use super::{Cycle, End, Window};
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -104,7 +105,7 @@ impl Level {
         &mut self,
         state: &mut State,
         set: S,
-        displacement: Freshness,
+        (displacement, last): (Freshness, Option<Last<'_>>),
         goal: &Goal,
         finest: usize,
         monitor: &mut Monitor<'_>,
@@ -112,7 +113,9 @@ impl Level {
         if displacement != Freshness::Exact {
             state.carry_force(set);
         }
-        self.on_window(state, set, displacement, |inner, grid, units, state, set| {
+        let mx = self.grid.mx;
+        self.on_window(state, set, displacement, |inner, window, units, state, set| {
+            let grid = &state.grid.clone();
             let work = grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
                 in_either!(inner, inner => inner.correct(state, set));
@@ -121,13 +124,17 @@ impl Level {
                 in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
+            match last {
+                Some(last) => in_either!(inner, inner => inner.know(state, last, (window, mx), units))?,
+                None => in_either!(inner, inner => inner.forget_known()),
+            }
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
                 monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             };
-            in_either!(inner, inner => inner.run(state, set, goal, after_cycle))
-        })
+            Ok(in_either!(inner, inner => inner.run(state, set, goal, after_cycle)))
+        })?
     }
 
     /// Improves p where u is near A p, without a product; u is not known afterwards.
@@ -144,7 +151,7 @@ impl Level {
         state: &mut State,
         set: S,
         displacement: Freshness,
-        work: impl FnOnce(&mut Inner, &Grid, &Scaling, &mut State, S::Within<'_>) -> R,
+        work: impl FnOnce(&mut Inner, &Window, &Scaling, &mut State, S::Within<'_>) -> R,
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
         let threads = &self.threads.clone();
@@ -160,13 +167,13 @@ impl Level {
             in_either!(inner, inner => inner.reserve_for_limits()?);
         }
         let Some(part) = part else {
-            let result = work(inner, &grid, units, state, S::within(&limits));
+            let result = work(inner, window, units, state, S::within(&limits));
             in_either!(inner, inner => inner.rest());
             self.limits = limits;
             return Ok(result);
         };
         enter::<S>((window, units), state, part, displacement, threads)?;
-        let result = work(inner, &grid, units, part, S::within(&limits));
+        let result = work(inner, window, units, part, S::within(&limits));
         in_either!(inner, inner => inner.rest());
         leave::<S>((window, units), part, state, threads);
         self.limits = limits;

@@ -5,6 +5,7 @@ mod coarse_grids;
 mod exchange;
 mod inner;
 mod iteration;
+mod known;
 mod level;
 mod limits;
 mod passes;

@@ -90,7 +90,7 @@ impl<T: Real> Iteration<T> {
     /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C, but for what is missing; held back by the forecast,
     /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
-        let by_force = matches!(state.load, Load::Force(_));
+        let by_force = matches!(state.load, Load::Force(_)) || self.known.is_there();
         let (mean, beta) = self.conjugate(by_force, tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
         let held = |p: f64, t: T| match forecast {

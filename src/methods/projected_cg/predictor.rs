@@ -5,12 +5,16 @@
 //! `(p, A p)/2 + (p, h - approach)` (Fischer 1998 projects on earlier solutions so); as all u are known, they cost no product.
 //! With a prescribed force s_1 follows from the force, and d carries none.
 
+use super::known::Last;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
 use crate::operator::zeros;
 use crate::scene::Load;
 use crate::threads::Threads;
+
+/// A change whose energy is this part of its own without what is of p is that of rounding.
+const NOISE: f64 = 1e-9;
 
 /// The solution before the last; empty before there is one.
 #[derive(Default)]
@@ -32,53 +36,33 @@ impl Predictor {
         self.is_of_others = true;
     }
 
+    /// The solution from which `state` was moved on.
+    pub fn last(&self) -> Last<'_> {
+        Last { p: &self.p, u: &self.u }
+    }
+
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
     /// iteration truncates it, and owes u the change.
     pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<Freshness> {
-        state.scale_to_approach();
-        let displacement = if std::mem::take(&mut self.is_of_others) { Freshness::Near } else { Freshness::Exact };
+        let is_of_others = std::mem::take(&mut self.is_of_others);
+        let n = state.p.len();
         if self.p.is_empty() {
-            let n = state.p.len();
+            // A change of nothing.
             (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
             self.p.copy_from_slice(&state.p);
             self.u.copy_from_slice(&state.u);
-            return Ok(Freshness::Exact);
         }
-
-        // d = (p_1 - p_0) - share p_1, conjugate to p_1, or without a force of its own
-        let (mut with_last, mut last) = (0.0, 0.0);
-        let by_force = matches!(state.load, Load::Force(_));
-        for i in 0..state.p.len() {
-            let weight = if by_force { 1.0 } else { state.u[i] };
-            with_last += weight * (state.p[i] - self.p[i]);
-            last += weight * state.p[i];
-        }
-        let share = with_last / last;
-        if !share.is_finite() {
-            return Ok(Freshness::Exact);
-        }
-        let (mut work, mut energy) = (0.0, 0.0);
-        for i in 0..state.p.len() {
-            let change = (1.0 - share) * state.p[i] - self.p[i];
-            if change != 0.0 {
-                let displacement = (1.0 - share) * state.u[i] - self.u[i];
-                work -= change * state.deformed_distance(i);
-                energy += change * displacement;
-            }
-        }
-        let step = work / energy;
-        let step = if energy > 0.0 && step.is_finite() { step } else { 0.0 };
-
+        let (now, before) = self.shares(state);
         let mx = state.grid.mx;
-        let move_on = |now: &mut [f64], before: &mut [f64]| {
-            for (now, before) in now.iter_mut().zip(before) {
-                (*now, *before) = (*now + step * ((1.0 - share) * *now - *before), *now);
+        let move_on = |values: &mut [f64], last: &mut [f64]| {
+            for (value, last) in values.iter_mut().zip(last) {
+                (*value, *last) = (now * *value - before * *last, *value);
             }
         };
-        let threads = threads.for_a_pass(state.p.len());
-        threads.for_each_row_pair((&mut state.p, mx), (&mut self.p, mx), |_, now, before| move_on(now, before));
-        threads.for_each_row_pair((&mut state.u, mx), (&mut self.u, mx), |_, now, before| move_on(now, before));
-        let mut displacement = if step == 0.0 { Freshness::Exact } else { displacement };
+        let threads = threads.for_a_pass(n);
+        threads.for_each_row_pair((&mut state.p, mx), (&mut self.p, mx), |_, p, last| move_on(p, last));
+        threads.for_each_row_pair((&mut state.u, mx), (&mut self.u, mx), |_, u, last| move_on(u, last));
+        let mut displacement = if is_of_others && before != 0.0 { Freshness::Near } else { Freshness::Exact };
         for ((p, inside), h) in state.p.iter_mut().zip(&mut state.contact).zip(&state.h) {
             *inside = *p != 0.0;
             if *inside && h.is_infinite() {
@@ -87,6 +71,41 @@ impl Predictor {
             }
         }
         Ok(displacement)
+    }
+
+    /// a and b of the start `a p_1 - b p_0`.
+    fn shares(&self, state: &State) -> (f64, f64) {
+        let by_force = matches!(state.load, Load::Force(_));
+        // (p, u), (p, e), (d, u), (d, A d), (d, e); sums in the place of products with u where a force is prescribed.
+        let [mut pu, mut pe, mut du, mut dv, mut de] = [0.0; 5];
+        for i in 0..state.p.len() {
+            let (p, d) = (state.p[i], state.p[i] - self.p[i]);
+            if p != 0.0 || d != 0.0 {
+                let (u, e) = (state.u[i], state.deformed_distance(i));
+                pu += p * u;
+                pe += p * e;
+                du += d * u;
+                dv += d * (u - self.u[i]);
+                de += d * e;
+            }
+        }
+        let (mut scale, mut share) = (1.0 - pe / pu, du / pu);
+        if by_force {
+            let sum = |p: &[f64]| p.iter().sum::<f64>();
+            (scale, share) = (1.0, 1.0 - sum(&self.p) / sum(&state.p));
+        }
+        if !(scale.is_finite() && scale > 0.0) {
+            scale = 1.0;
+        }
+        // d - share p, conjugate to p, or without a force of its own
+        let work = share * pe - de;
+        let energy = dv - share * (2.0 * du - share * pu);
+        let step = work / energy;
+        if energy > NOISE * dv && step.is_finite() {
+            (scale + step * (1.0 - share), step)
+        } else {
+            (scale, 0.0)
+        }
     }
 }
 

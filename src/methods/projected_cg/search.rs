@@ -16,12 +16,14 @@ pub(super) struct Search {
     /// (t, q); 0 where the next direction is conjugate to none.
     pub(super) tq: f64,
     pub(super) is_first: bool,
+    /// Products that no iteration has counted yet.
+    pub(super) products: u64,
 }
 
 impl Search {
     /// Before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
-        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true }
+        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true, products: 0 }
     }
 
     /// The forecast, unless it was far off: then it holds nobody back.

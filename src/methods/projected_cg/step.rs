@@ -14,6 +14,7 @@ use crate::memory::{release, reserve, rests};
 use crate::methods::{Change, Habits, Step, Task};
 use crate::operator::Precision;
 use crate::progress::Goal;
+use crate::scene::Load;
 use crate::threads::Threads;
 
 /// The iteration aims at this part of the tolerance: unpaid truncations and single precision rounding must still pass the certificate,
@@ -39,6 +40,8 @@ pub struct ProjectedCg {
     predictor: Predictor,
     /// With criterion UPDATE: p before the last step.
     before: Vec<f64>,
+    /// Whether the solve began with a prediction.
+    predicted: bool,
     precision: Precision,
     /// Of the last step: the recursive residual that it ended with, relative.
     recursive: f64,
@@ -53,6 +56,7 @@ impl ProjectedCg {
             coarse: None,
             predictor: Predictor::default(),
             before: Vec::new(),
+            predicted: false,
             precision,
             recursive: 0.0,
         }
@@ -102,9 +106,15 @@ impl ProjectedCg {
         Ok(())
     }
 
+    /// Another solve begins.
+    pub fn begin_anew(&mut self) {
+        self.predicted = false;
+    }
+
     /// A step in time: moves `state` on from the last solution.
     pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<()> {
         state.u_is = self.predictor.predict(state, threads)?;
+        self.predicted = true;
         Ok(())
     }
 
@@ -160,7 +170,9 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let tolerance = if goal.by_update() { goal.tolerance } else { AIM * goal.tolerance };
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
         let inner = Goal { tolerance, max_cycles, ..*goal };
-        let end = self.finest.run(state, *set, was, &inner, problem.grid.len(), monitor)?;
+        let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
+        let last = Some(self.predictor.last()).filter(|_| by_approach && was == Freshness::Exact);
+        let end = self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?;
         self.finest.rest();
         state.u_is = Freshness::Stale;
         let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;

@@ -2,6 +2,7 @@
 
 use std::iter::once;
 
+use super::known::Known;
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
 use crate::contact::State;
@@ -47,6 +48,8 @@ pub struct Iteration<T: Real> {
     pub(super) runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
     pub(super) debts: Vec<(usize, f64)>,
+    /// A direction that costs no product.
+    pub(super) known: Known<T>,
     /// With limits.
     pub(super) limits: Beyond,
     /// Elements of each row that enter.
@@ -82,6 +85,7 @@ impl<T: Real> Iteration<T> {
             z: directions()?,
             runs: Segments::new(grid, threads)?,
             debts,
+            known: Known::default(),
             limits: Beyond::default(),
             entering: vec![0; grid.my],
             threads: threads.clone(),
@@ -132,7 +136,7 @@ impl<T: Real> Iteration<T> {
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
         let directions = 3 * self.operator.elements() * size_of::<T>();
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + directions
+        self.operator.bytes() + preconditioner + self.workspace.bytes() + directions + self.known.bytes()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -170,6 +174,7 @@ fn preconditioner<T: Real>(
 impl<T: Real> Drop for Iteration<T> {
     fn drop(&mut self) {
         keep([&mut self.t, &mut self.q, &mut self.z]);
+        keep([&mut self.known.d, &mut self.known.w]);
         keep([&mut self.debts]);
         keep([&mut self.limits.known]);
     }

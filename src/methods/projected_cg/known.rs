@@ -1,0 +1,184 @@
+//! A direction whose displacement is known: the change of p since the last solution in time.
+//!
+//! Under a prescribed approach the residual has a part that is uniform over C. What removes it is the pressure of a flat punch on C, to
+//! which no few products with M come near, because M knows nothing of the rim. A small change of the load changes p by nearly that
+//! pressure, so the change `d` of the last step, and w = A d, serve for it:
+//!
+//! ```text
+//! t has mean zero over C, as under a prescribed force
+//! gamma = (r, d)/(d, w),  p = p + gamma d,  u = u + gamma w      after each step along t
+//! ```
+//!
+//! Where an element of d is not in C its pressure stays 0, and u is owed the difference.
+
+use super::scaling::Scaling;
+use super::vectors::Iteration;
+use super::Window;
+use crate::contact::State;
+use crate::error::Result;
+use crate::memory::reserve;
+use crate::operator::fft::Real;
+
+/// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
+const CARRIES: f64 = 0.5;
+/// A step along d that changes e by less than this part of the residual waits.
+const WORTHWHILE: f64 = 0.1;
+/// A change of less than this part of the pressures is their rounding.
+const LEAST: f64 = 1e-6;
+
+/// Pressures of an earlier solution and their displacements, on the whole grid, in the scene's units.
+#[derive(Clone, Copy)]
+pub struct Last<'a> {
+    /// p.
+    pub p: &'a [f64],
+    /// u = A p.
+    pub u: &'a [f64],
+}
+
+/// d and w = A d.
+#[derive(Default)]
+pub(super) struct Known<T> {
+    pub(super) d: Vec<T>,
+    pub(super) w: Vec<T>,
+    /// (d, w); 0 while there is no such direction.
+    energy: f64,
+    /// The sum of w^2 over the elements of d.
+    size: f64,
+    /// Elements that left C, which are 0 in d but not in what w is of.
+    outside: Vec<(usize, f64)>,
+}
+
+impl<T> Known<T> {
+    /// There is no such direction.
+    pub(super) fn forget(&mut self) {
+        self.energy = 0.0;
+    }
+
+    /// Whether there is one.
+    pub(super) fn is_there(&self) -> bool {
+        self.energy > 0.0
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        2 * self.d.len() * size_of::<T>()
+    }
+}
+
+impl<T: Real> Known<T> {
+    fn measure(&mut self) {
+        (self.energy, self.size) = (0.0, 0.0);
+        for (d, w) in self.d.iter().zip(&self.w).filter(|(d, _)| **d != T::zero()) {
+            self.energy += d.to_double() * w.to_double();
+            self.size += w.to_double() * w.to_double();
+        }
+    }
+}
+
+impl<T: Real> Iteration<T> {
+    /// Takes the change from the last solution to `state`, the part of a grid of `mx` columns in the window, if it carries force.
+    pub fn know(
+        &mut self,
+        state: &State,
+        last: Last<'_>,
+        (window, mx): (&Window, usize),
+        units: &Scaling,
+    ) -> Result<()> {
+        let Known { d, w, outside, energy, size } = &mut self.known;
+        for values in [&mut *d, &mut *w] {
+            reserve(values, state.p.len(), "the change of the last step")?;
+            values.clear();
+        }
+        outside.clear();
+        (*energy, *size) = (0.0, 0.0);
+        let (mut sum, mut absolute, mut all) = (0.0, 0.0, 0.0);
+        let rows = state.p.chunks_exact(window.x.len()).zip(state.u.chunks_exact(window.x.len()));
+        for ((p, u), y) in rows.zip(window.y.clone()) {
+            let whole = y * mx + window.x.start..y * mx + window.x.end;
+            d.extend(p.iter().zip(&last.p[whole.clone()]).map(|(now, last)| {
+                let change = now - units.pressure() * last;
+                sum += change;
+                absolute += change.abs();
+                all += now.abs();
+                T::of(change)
+            }));
+            w.extend(u.iter().zip(&last.u[whole]).map(|(now, last)| T::of(now - units.length * last)));
+        }
+        if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
+            self.known.measure();
+        }
+        Ok(())
+    }
+
+    /// There is no such direction.
+    pub fn forget_known(&mut self) {
+        self.known.forget();
+    }
+
+    /// d becomes the change on C alone. Returns the products that this takes.
+    pub(super) fn restrict_known(&mut self, state: &State) -> u64 {
+        let Known { d, energy, .. } = &mut self.known;
+        let leaves = |(d, inside): (&T, &bool)| !inside & (*d != T::zero());
+        if *energy <= 0.0 || !d.iter().zip(&state.contact).any(leaves) {
+            return 0;
+        }
+        for ((d, z), inside) in d.iter_mut().zip(&mut self.z).zip(&state.contact) {
+            *z = if *inside { T::zero() } else { std::mem::replace(d, T::zero()) };
+        }
+        self.operator.apply_in_place(&mut self.z, &mut self.workspace);
+        self.known.w.iter_mut().zip(&self.z).for_each(|(w, z)| *w = *w - *z);
+        self.known.measure();
+        1
+    }
+
+    /// Elements that have just left C leave d, too; A of their part of it will be owed.
+    pub(super) fn leave_known(&mut self) {
+        let Known { d, outside, energy, .. } = &mut self.known;
+        if *energy <= 0.0 {
+            return;
+        }
+        for &(i, _) in &self.debts {
+            if d[i] != T::zero() {
+                outside.push((i, d[i].to_double()));
+                d[i] = T::zero();
+            }
+        }
+    }
+
+    /// p and u move along d to the least energy, if that is worth a pass over u.
+    pub(super) fn step_along_known(&mut self, state: &mut State) {
+        if !self.known.is_there() {
+            return;
+        }
+        let Known { d, w, energy, size, outside } = &self.known;
+        let [rd, rr] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
+                sums.add(h.len(), |i| {
+                    let e = h[i] - state.approach + u[i];
+                    [-e * d[i].to_double(), e * e]
+                });
+            }
+        });
+        let gamma = rd / energy;
+        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+            return;
+        }
+        let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
+            for (run, local) in block.runs() {
+                p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
+            }
+        });
+        let mx = state.grid.mx;
+        self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
+            u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());
+        });
+        for &(i, d) in outside {
+            if state.contact[i] {
+                state.p[i] += gamma * d;
+            } else {
+                self.debts.push((i, -gamma * d));
+            }
+        }
+    }
+}
