@@ -9,7 +9,8 @@
 //! 1938 and Mindlin 1949 for balls; Jager 1998 and Ciavarella 1998), and a certificate as any other decides on it. With another nu
 //! the residual is some 5 % of nu, and the coarser grids find a better start for the same work.
 //!
-//! What p leaves of its own conditions goes into the distance, so that it leaves nothing in the slip.
+//! What p leaves of its own conditions goes into the distance, so that it leaves nothing in the slip. What q displaces is a fresh product of the
+//! normal problem's operator.
 
 use std::time::Instant;
 
@@ -34,9 +35,13 @@ const COARSEST: f64 = 0.01;
 /// Iterations at most.
 const MOST: u64 = 60;
 
-/// The pressures of the smaller load, and what they cost.
+/// p is reached but for this part: whichever way q is rounded, it is within its bound.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
+
+/// What the smaller load leaves, and what it cost.
 pub struct Smaller {
-    state: State,
+    /// `p - p*`, within -p and p, in the place of pressures, and what these displace.
+    carried: State,
     along: Vector,
     offset: Vector,
     /// In products of two components: two of one component count as one.
@@ -47,7 +52,8 @@ pub struct Smaller {
 impl Smaller {
     /// The start that they make.
     pub fn start(&self) -> Start<'_> {
-        Start::Superposed(Superposed { smaller: &self.state.p, along: self.along, offset: self.offset })
+        let Smaller { carried: State { p: carried, u: displaced, .. }, along, offset, .. } = self;
+        Start::Superposed(Superposed { carried, displaced, along: *along, offset: *offset })
     }
 }
 
@@ -133,7 +139,14 @@ impl Solver {
         let along = push.direction.map(|t| push.mu * t);
         let slid = if push.by_force { self.state.approach - state.approach } else { 0.0 };
         let offset = along.map(|along| -along * slid);
-        Ok(Some(Smaller { state, along, offset, products, seconds: began.elapsed().as_secs_f64() }))
+        for (carried, p) in state.p.iter_mut().zip(&self.state.p) {
+            let most = p.max(0.0) * (1.0 - ROUNDED);
+            *carried = (p - *carried).clamp(-most, most);
+        }
+        self.problem.displace(&state.p, &mut state.u);
+        products += 0.5 * self.problem.take_products() as f64;
+        let seconds = began.elapsed().as_secs_f64();
+        Ok(Some(Smaller { carried: state, along, offset, products, seconds }))
     }
 
     /// The state of another load, with the distance of which p is the exact solution.
