@@ -69,9 +69,7 @@ impl Level {
     }
 
     fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
-        self.problem.prepare(quadrant, single)?;
-        self.memory = Memory::new(self.problem.grid.len())?;
-        Ok(())
+        self.problem.prepare(quadrant, single)
     }
 
     /// The force, and the creepages that were found, of a step of rolling.
@@ -84,7 +82,7 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>() + self.memory.fields.bytes()
+        self.problem.bytes() + 2 * self.state.q.len() * size_of::<Vector>() + self.memory.bytes()
     }
 }
 

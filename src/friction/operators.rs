@@ -109,6 +109,26 @@ impl Operators {
         self.products += 1;
     }
 
+    /// The same in units of a traction, and of that times [`unit`](Self::unit).
+    pub fn multiply_plain<S: Real>(&mut self, q: &[[S; 2]], u: &mut [[S; 2]]) {
+        match (&mut self.exact, &mut self.fast) {
+            (_, Some((operator, workspace))) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            (Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            _ => unreachable!("there is one of them"),
+        }
+        self.products += 1;
+    }
+
+    /// The unit of the coefficients, a power of two.
+    pub fn unit(&self) -> f64 {
+        unit_of(self.tangential.at(0.0, 0.0)[0])
+    }
+
+    /// Whether directions are multiplied in single precision.
+    pub fn has_fast(&self) -> bool {
+        self.fast.is_some()
+    }
+
     /// Whether [`multiply_fast`](Self::multiply_fast) is as good as [`multiply`](Self::multiply).
     pub fn fast_is_exact(&self) -> bool {
         self.exact.is_none() || self.fast.is_none()
@@ -120,6 +140,15 @@ impl Operators {
         match &mut self.inverse {
             Some((operator, workspace)) => operator.apply(u, unit_of(unit * a0), q, workspace),
             None => q.iter_mut().zip(u).for_each(|(q, u)| *q = [u[0] / a0, u[1] / a0]),
+        }
+    }
+
+    /// The same in units of a traction, and of that times [`unit`](Self::unit).
+    pub fn precondition_plain<S: Real>(&mut self, u: &[[S; 2]], q: &mut [[S; 2]]) {
+        let of_one = S::of(self.unit() / self.a0);
+        match &mut self.inverse {
+            Some((operator, workspace)) => operator.apply_scaled(u, (1.0, 1.0), q, workspace),
+            None => q.iter_mut().zip(u).for_each(|(q, u)| *q = u.map(|u| of_one * u)),
         }
     }
 
