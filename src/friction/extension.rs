@@ -54,7 +54,7 @@ impl<T: Real> Fields<T> {
         let coarse = if is_given { 0 } else { mx * my };
         let rows = zeros(my * mx.div_ceil(2), what)?;
         let (decay, share, values) = (zeros(mx * my, what)?, zeros(coarse, what)?, zeros(coarse, what)?);
-        Ok(Fields { mx, my, threads: threads.suited_to(mx * my), decay, share, values, rows })
+        Ok(Fields { mx, my, threads: threads.for_a_pass(mx * my), decay, share, values, rows })
     }
 }
 

@@ -124,3 +124,33 @@ fn cut<'a, A>(mut rest: &'a mut [A], lengths: impl Iterator<Item = usize> + 'a) 
         piece
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every element of C stands in one block, in order, and its block has its row of the grid.
+    #[test]
+    fn blocks_have_all_elements_and_all_rows() {
+        for (mx, my, inside) in [(70, 50, 3), (1, 9, 2), (3000, 2, 1), (5, 4, 1000)] {
+            let bound: Vec<f64> = (0..mx * my).map(|i| if i % inside == 1 % inside { 1.0 } else { 0.0 }).collect();
+            let mut places = Places::new(&Grid::new(mx, my, 1.0, 1.0).unwrap()).unwrap();
+            // What C was before is forgotten.
+            places.contact_changed(&vec![1.0; mx * my]);
+            places.contact_changed(&bound);
+            let expected: Vec<usize> = (0..mx * my).filter(|&i| bound[i] > 0.0).collect();
+            assert!(places.elements().eq(expected.iter().copied()));
+            assert_eq!(places.count(), expected.len());
+            let (mut on_grid, mut on_c) = (vec![0; mx * my], vec![0; expected.len()]);
+            let blocks = places.parts().zip(places.cut(&mut on_c)).zip(places.cut_grid(&mut on_grid));
+            for ((part, on_c), on_grid) in blocks {
+                assert!(places.of(&part).eq(expected[part.start..part.start + on_c.len()].iter().copied()));
+                part.places.iter().for_each(|place| on_grid[place] += 1);
+                on_c.iter_mut().for_each(|count| *count += 1);
+            }
+            assert!(on_c.iter().all(|count| *count == 1));
+            assert!(on_grid.iter().zip(&bound).all(|(count, g)| f64::from(*count) == *g));
+            assert_eq!(places.cut_grid(&mut on_grid).map(|rows| rows.len()).sum::<usize>(), mx * my);
+        }
+    }
+}

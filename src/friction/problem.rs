@@ -20,7 +20,7 @@ use super::vectors;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{keep, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -99,6 +99,19 @@ impl State {
         self.q.fill([0.0; 2]);
         self.u.fill([0.0; 2]);
         self.is_exact = true;
+    }
+}
+
+impl Drop for State {
+    fn drop(&mut self) {
+        keep([&mut self.q, &mut self.u]);
+    }
+}
+
+impl Drop for Problem {
+    fn drop(&mut self) {
+        keep([&mut self.bound]);
+        keep([&mut self.rigid, &mut self.slip]);
     }
 }
 

@@ -77,24 +77,14 @@ pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal
     }
 }
 
-fn iterate<T: Real>(
-    problem: &mut Problem,
-    state: &mut State,
-    discs: &mut Discs<T>,
-    goal: Goal<'_>,
-) -> Result<Outcome> {
+fn iterate<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut Discs<T>, goal: Goal<'_>) -> Result<Outcome> {
     discs.load(problem, state)?;
     let end = until_it_ends(problem, state, discs, goal);
     discs.give(problem, state);
     Ok(end)
 }
 
-fn until_it_ends<T: Real>(
-    problem: &mut Problem,
-    state: &mut State,
-    discs: &mut Discs<T>,
-    goal: Goal<'_>,
-) -> Outcome {
+fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut Discs<T>, goal: Goal<'_>) -> Outcome {
     let Goal { tolerance, limit, certified, watch } = goal;
     let threads = problem.threads().clone();
     let rigid = discs.scaled(problem.rms_rigid());

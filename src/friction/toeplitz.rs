@@ -22,7 +22,7 @@ use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{collected, zeros};
+use crate::memory::{blank, computed, keep};
 use crate::operator::columns::{for_each_mirrored_block, BLOCK};
 use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
@@ -65,6 +65,21 @@ pub(super) struct Piece<T: Real> {
     pub(super) columns: Vec<Complex<T>>,
     mirrored: Vec<Complex<T>>,
     pub(super) scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Drop for Workspace<T> {
+    fn drop(&mut self) {
+        keep([&mut self.bins]);
+    }
+}
+
+impl<T: Real> Drop for Toeplitz<T> {
+    fn drop(&mut self) {
+        match &mut self.spectrum {
+            Spectrum::Even(waves) => keep([waves]),
+            Spectrum::General(waves) => keep([waves]),
+        }
+    }
 }
 
 /// The power of two next to a value.
@@ -167,10 +182,10 @@ impl<T: Real> Toeplitz<T> {
     pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
         let real = |value: T| S::of(value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|wave| wave.map(real)), SPECTRUM)?),
+            Spectrum::Even(from) => Spectrum::Even(computed(from.iter().map(|wave| wave.map(real)), SPECTRUM)?),
             Spectrum::General(from) => {
                 let complex = |value: Complex<T>| Complex::new(real(value.re), real(value.im));
-                Spectrum::General(collected(from.iter().map(|wave| wave.map(complex)), SPECTRUM)?)
+                Spectrum::General(computed(from.iter().map(|wave| wave.map(complex)), SPECTRUM)?)
             }
         };
         let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
@@ -188,7 +203,8 @@ impl<T: Real> Toeplitz<T> {
             let columns = vec![Complex::default(); BLOCK * py];
             Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
         };
-        Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.pieces()).map(piece).collect() })
+        let bins = blank(self.my * px, Complex::new(T::nan(), T::nan()), WORKSPACE)?;
+        Ok(Workspace { bins, pieces: (0..self.threads.pieces()).map(piece).collect() })
     }
 
     /// Bytes of the spectrum.
