@@ -2,28 +2,27 @@
 
 use super::spectrum::Spectrum;
 use super::toeplitz::{rows_with_traction, Toeplitz, Workspace};
-use super::Vector;
 use crate::operator::columns::for_each_block;
 use crate::operator::fft::{Complex, Real};
 
 impl<T: Real> Toeplitz<T> {
     /// The same of one component alone, where it displaces in its own direction only.
-    pub(super) fn apply_one(
+    pub(super) fn apply_one<S: Real>(
         &self,
         component: usize,
-        q: &[Vector],
-        unit: f64,
-        u: &mut [Vector],
+        q: &[[S; 2]],
+        scales: (f64, f64),
+        u: &mut [[S; 2]],
         workspace: &mut Workspace<T>,
     ) {
         let (nb, length, mx) = (self.real_rows.bins(), self.columns.length(), self.mx);
         let Workspace { bins, pieces } = workspace;
         let bins = &mut bins[..self.my * nb];
         let loaded = rows_with_traction(q, mx);
-        let (first, scale) = (loaded.start, 1.0 / unit);
+        let (first, scale) = (loaded.start, scales.0);
         self.threads.for_each_row(&mut bins[first * nb..loaded.end * nb], nb, pieces, |i, to, piece| {
             let q = &q[(first + i) * mx..(first + i + 1) * mx];
-            piece.row.iter_mut().zip(q).for_each(|(to, q)| *to = T::of(scale * q[component]));
+            piece.row.iter_mut().zip(q).for_each(|(to, q)| *to = T::of(scale * q[component].to_double()));
             piece.row[mx..].fill(T::zero());
             self.real_rows.forward(&piece.row, to, &mut piece.scratch);
         });
@@ -36,12 +35,11 @@ impl<T: Real> Toeplitz<T> {
             self.columns.inverse(columns, &mut piece.scratch);
             block.scatter(0..self.my, length, columns);
         });
-        let scale = unit * self.unit;
         self.threads.for_each_row_pair_with((u, mx), (bins, nb), pieces, |_, u, row, piece| {
             self.real_rows.inverse(row, &mut piece.row, &mut piece.scratch);
             for (u, value) in u.iter_mut().zip(&piece.row) {
-                *u = [0.0; 2];
-                u[component] = scale * value.to_double();
+                *u = [S::zero(); 2];
+                u[component] = S::of(scales.1 * value.to_double());
             }
         });
     }

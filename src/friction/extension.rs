@@ -11,11 +11,10 @@
 //!
 //! On rough surfaces, whose C is many small spots, it saves up to a third of the products (docs/friction.md).
 
-use super::problem::plus;
-use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
+use crate::operator::fft::Real;
 use crate::threads::Threads;
 
 /// Coarser grids: C reaches eight elements far.
@@ -23,42 +22,45 @@ const LEVELS: usize = 3;
 /// How much of the coarse value is left on the next finer grid.
 const DECAY: f64 = 0.7;
 
+/// A value of two components.
+type Pair<T> = [T; 2];
+
 /// E, and its transpose.
 #[derive(Default)]
-pub struct Extension {
+pub struct Extension<T> {
     /// The given grid first; none before it is set up.
-    grids: Vec<Fields>,
+    grids: Vec<Fields<T>>,
 }
 
 /// One grid.
-struct Fields {
+struct Fields<T> {
     mx: usize,
     my: usize,
     /// Those that work on it.
     threads: Threads,
     /// 0 where a value is known: in C, or where a child's is; [`DECAY`] elsewhere.
-    decay: Vec<f64>,
+    decay: Vec<T>,
     /// 1 over the number of known children, 0 where there is none; of the given grid there are no children.
-    share: Vec<f64>,
+    share: Vec<T>,
     /// Coarse values; of the given grid none.
-    values: Vec<Vector>,
+    values: Vec<Pair<T>>,
     /// One row for each row of this grid: the next coarser grid's values between its rows, or this one's summed up along x.
-    rows: Vec<Vector>,
+    rows: Vec<Pair<T>>,
 }
 
-impl Fields {
-    fn new(mx: usize, my: usize, is_given: bool, threads: &Threads) -> Result<Fields> {
+impl<T: Real> Fields<T> {
+    fn new(mx: usize, my: usize, is_given: bool, threads: &Threads) -> Result<Fields<T>> {
         let what = "the continuation of residuals";
         let coarse = if is_given { 0 } else { mx * my };
         let rows = zeros(my * mx.div_ceil(2), what)?;
         let (decay, share, values) = (zeros(mx * my, what)?, zeros(coarse, what)?, zeros(coarse, what)?);
-        Ok(Fields { mx, my, threads: threads.suited_to(mx * my), decay, share, values, rows })
+        Ok(Fields { mx, my, threads: threads.for_a_pass(mx * my), decay, share, values, rows })
     }
 }
 
-impl Extension {
+impl<T: Real> Extension<T> {
     /// For a grid.
-    pub fn new(grid: &Grid, threads: &Threads) -> Result<Extension> {
+    pub fn new(grid: &Grid, threads: &Threads) -> Result<Extension<T>> {
         let (mut mx, mut my) = (grid.mx, grid.my);
         let mut grids = vec![Fields::new(mx, my, true, threads)?];
         for _ in 0..LEVELS {
@@ -68,9 +70,17 @@ impl Extension {
         Ok(Extension { grids })
     }
 
+    /// For a grid, where it is not there yet.
+    pub fn fit(&mut self, grid: &Grid, threads: &Threads) -> Result<()> {
+        if self.grids.is_empty() {
+            *self = Extension::new(grid, threads)?;
+        }
+        Ok(())
+    }
+
     /// C has changed: where `bound` is positive.
     pub fn contact_changed(&mut self, bound: &[f64]) {
-        let decay = |is_known: bool| if is_known { 0.0 } else { DECAY };
+        let decay = |is_known: bool| if is_known { T::zero() } else { T::of(DECAY) };
         let Some(given) = self.grids.first_mut() else { return };
         given.decay.iter_mut().zip(bound).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
         for l in 1..self.grids.len() {
@@ -78,22 +88,22 @@ impl Extension {
             let (mx, fine_mx) = (coarse.mx, fine.mx);
             let shares = coarse.share.chunks_exact_mut(mx).zip(coarse.decay.chunks_exact_mut(mx));
             for ((share, decay_of), rows) in shares.zip(fine.decay.chunks(2 * fine_mx)) {
-                share.fill(0.0);
+                share.fill(T::zero());
                 for row in rows.chunks_exact(fine_mx) {
                     for (count, children) in share.iter_mut().zip(row.chunks(2)) {
-                        *count += children.iter().filter(|decay| **decay == 0.0).count() as f64;
+                        *count += T::of(children.iter().filter(|decay| decay.is_zero()).count() as f64);
                     }
                 }
                 for (share, decay_of) in share.iter_mut().zip(decay_of) {
-                    *decay_of = decay(*share > 0.0);
-                    *share = if *share > 0.0 { 1.0 / *share } else { 0.0 };
+                    *decay_of = decay(*share > T::zero());
+                    *share = if *share > T::zero() { T::one() / *share } else { T::zero() };
                 }
             }
         }
     }
 
     /// E r: fills in what is not known of `r`, which is zero there.
-    pub fn fill(&mut self, r: &mut [Vector]) {
+    pub fn fill(&mut self, r: &mut [Pair<T>]) {
         for l in 1..self.grids.len() {
             let (fine, coarse) = pair(&mut self.grids, l);
             let (mx, share) = (fine.mx, &coarse.share);
@@ -102,7 +112,7 @@ impl Extension {
                 let end = (2 * (iy + 1)).min(fine.my);
                 sum_of_children(&from[2 * iy * mx..end * mx], mx, to);
                 let share = &share[iy * to.len()..(iy + 1) * to.len()];
-                to.iter_mut().zip(share).for_each(|(to, share)| *to = to.map(|sum| share * sum));
+                to.iter_mut().zip(share).for_each(|(to, share)| *to = to.map(|sum| *share * sum));
             });
         }
         for l in (1..self.grids.len()).rev() {
@@ -113,7 +123,7 @@ impl Extension {
                 let [(own, near), (other, far)] = neighbours(iy, coarse.my);
                 let (own, other) = (coarse.row(own), coarse.row(other));
                 for ((between, own), other) in between.iter_mut().zip(own).zip(other) {
-                    *between = plus(own.map(|value| near * value), far, *other);
+                    *between = plus(own.map(|value| T::of(near) * value), T::of(far), *other);
                 }
                 add_between(between, &decay[iy * *mx..(iy + 1) * *mx], to);
             });
@@ -121,7 +131,7 @@ impl Extension {
     }
 
     /// E' z in C; elsewhere z is left as it is.
-    pub fn fold(&mut self, z: &mut [Vector]) {
+    pub fn fold(&mut self, z: &mut [Pair<T>]) {
         for l in 1..self.grids.len() {
             let (fine, coarse) = pair(&mut self.grids, l);
             let Fields { mx, my, decay, values, rows, threads, .. } = fine;
@@ -133,12 +143,12 @@ impl Extension {
             });
             let (rows, coarse_my) = (&*rows, coarse.my);
             threads.for_each_plain_row(&mut coarse.values, width, |k, sums| {
-                sums.fill([0.0; 2]);
+                sums.fill(none());
                 for iy in (2 * k).saturating_sub(1)..(2 * k + 3).min(my) {
                     let weight: f64 =
                         neighbours(iy, coarse_my).iter().filter(|near| near.0 == k).map(|near| near.1).sum();
                     let row = &rows[iy * width..(iy + 1) * width];
-                    sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = plus(*sum, weight, *value));
+                    sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = plus(*sum, T::of(weight), *value));
                 }
             });
         }
@@ -153,7 +163,7 @@ impl Extension {
                 let from = coarse.values[row.clone()].iter().zip(&coarse.share[row]);
                 for ((to, known), (value, share)) in to.chunks_mut(2).zip(known).zip(from) {
                     for (to, decay) in to.iter_mut().zip(known) {
-                        let share = if *decay == 0.0 { *share } else { 0.0 };
+                        let share = if decay.is_zero() { *share } else { T::zero() };
                         *to = plus(*to, share, *value);
                     }
                 }
@@ -162,26 +172,37 @@ impl Extension {
     }
 }
 
+/// `v + a w`.
+#[inline]
+fn plus<T: Real>(v: Pair<T>, a: T, w: Pair<T>) -> Pair<T> {
+    [v[0] + a * w[0], v[1] + a * w[1]]
+}
+
+#[inline]
+fn none<T: Real>() -> Pair<T> {
+    [T::zero(); 2]
+}
+
 /// The grid before l, and l.
-fn pair(grids: &mut [Fields], l: usize) -> (&mut Fields, &mut Fields) {
+fn pair<T>(grids: &mut [Fields<T>], l: usize) -> (&mut Fields<T>, &mut Fields<T>) {
     let (fine, coarse) = grids.split_at_mut(l);
     (&mut fine[l - 1], &mut coarse[0])
 }
 
-impl Fields {
+impl<T: Real> Fields<T> {
     /// A row of the values.
-    fn row(&self, iy: usize) -> &[Vector] {
+    fn row(&self, iy: usize) -> &[Pair<T>] {
         &self.values[iy * self.mx..(iy + 1) * self.mx]
     }
 }
 
 /// The sums of up to two rows, `mx` long, by pairs along x.
-fn sum_of_children(rows: &[Vector], mx: usize, to: &mut [Vector]) {
-    to.fill([0.0; 2]);
+fn sum_of_children<T: Real>(rows: &[Pair<T>], mx: usize, to: &mut [Pair<T>]) {
+    to.fill(none());
     for row in rows.chunks_exact(mx) {
         let pairs = row.chunks_exact(2);
         if let ([last], Some(to)) = (pairs.remainder(), to.last_mut()) {
-            *to = plus(*to, 1.0, *last);
+            *to = plus(*to, T::one(), *last);
         }
         for (to, pair) in to.iter_mut().zip(pairs) {
             *to = [to[0] + (pair[0][0] + pair[1][0]), to[1] + (pair[0][1] + pair[1][1])];
@@ -190,48 +211,49 @@ fn sum_of_children(rows: &[Vector], mx: usize, to: &mut [Vector]) {
 }
 
 /// Adds to a fine row `factor` times the coarse row, interpolated.
-fn add_between(coarse: &[Vector], factor: &[f64], fine: &mut [Vector]) {
+fn add_between<T: Real>(coarse: &[Pair<T>], factor: &[T], fine: &mut [Pair<T>]) {
     let ends = [0, fine.len() - 1];
     for i in ends.into_iter().take(fine.len()) {
         let [(own, near), (other, far)] = neighbours(i, coarse.len());
-        let value = plus(coarse[own].map(|value| near * value), far, coarse[other]);
+        let value = plus(coarse[own].map(|value| T::of(near) * value), T::of(far), coarse[other]);
         fine[i] = plus(fine[i], factor[i], value);
     }
     if fine.len() < 3 {
         return;
     }
     // Between the ends come the right child of k and the left child of k + 1.
+    let (near, far) = (T::of(0.75), T::of(0.25));
     let inner = 1..fine.len() - 1;
     let (to, factor) = (&mut fine[inner.clone()], &factor[inner]);
     for (k, (to, factor)) in to.chunks_mut(2).zip(factor.chunks(2)).enumerate() {
         let (left, right) = (coarse[k], coarse[k + 1]);
-        to[0] = plus(to[0], factor[0], plus(left.map(|value| 0.75 * value), 0.25, right));
+        to[0] = plus(to[0], factor[0], plus(left.map(|value| near * value), far, right));
         if let ([_, to], [_, factor]) = (to, factor) {
-            *to = plus(*to, *factor, plus(right.map(|value| 0.75 * value), 0.25, left));
+            *to = plus(*to, *factor, plus(right.map(|value| near * value), far, left));
         }
     }
 }
 
 /// The transpose of [`add_between`]: `factor` times a fine row, summed up on a coarse one.
-fn sum_between(fine: &[Vector], factor: &[f64], coarse: &mut [Vector]) {
-    coarse.fill([0.0; 2]);
+fn sum_between<T: Real>(fine: &[Pair<T>], factor: &[T], coarse: &mut [Pair<T>]) {
+    coarse.fill(none());
     let ends = [0, fine.len() - 1];
     for i in ends.into_iter().take(fine.len()) {
         for (k, weight) in neighbours(i, coarse.len()) {
-            coarse[k] = plus(coarse[k], weight * factor[i], fine[i]);
+            coarse[k] = plus(coarse[k], T::of(weight) * factor[i], fine[i]);
         }
     }
     if fine.len() < 3 {
         return;
     }
-    let inner = 1..fine.len() - 1;
+    let (near, far, inner) = (T::of(0.75), T::of(0.25), 1..fine.len() - 1);
     let (from, factor) = (&fine[inner.clone()], &factor[inner]);
     for (k, (from, factor)) in from.chunks(2).zip(factor.chunks(2)).enumerate() {
         let value = |i: usize| from[i].map(|value| factor[i] * value);
         let left = value(0);
-        let right = if from.len() == 2 { value(1) } else { [0.0; 2] };
-        coarse[k] = plus(plus(coarse[k], 0.75, left), 0.25, right);
-        coarse[k + 1] = plus(plus(coarse[k + 1], 0.25, left), 0.75, right);
+        let right = if from.len() == 2 { value(1) } else { none() };
+        coarse[k] = plus(plus(coarse[k], near, left), far, right);
+        coarse[k + 1] = plus(plus(coarse[k + 1], far, left), near, right);
     }
 }
 
@@ -244,6 +266,7 @@ pub fn neighbours(fine: usize, coarse: usize) -> [(usize, f64); 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Vector;
     use super::*;
 
     /// `w . E r = E' w . r` for C in spots, on a grid of odd sides and on a row.
@@ -253,7 +276,7 @@ mod tests {
             let value = |i: usize, seed: usize| ((i * 37 + seed) % 101) as f64 / 101.0 - 0.5;
             let bound: Vec<f64> = (0..mx * my).map(|i| if (i * 29 + i / 7) % 5 < 2 { 1.0 } else { 0.0 }).collect();
             let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
-            let mut extension = Extension::new(&grid, &Threads::One).unwrap();
+            let mut extension = Extension::<f64>::new(&grid, &Threads::One).unwrap();
             extension.contact_changed(&bound);
             let r: Vec<Vector> = (0..mx * my).map(|i| [bound[i] * value(i, 3), bound[i] * value(i, 8)]).collect();
             let w: Vec<Vector> = (0..mx * my).map(|i| [value(i, 50), value(i, 77)]).collect();

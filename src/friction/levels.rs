@@ -39,8 +39,8 @@ pub struct Level {
     pub problem: Problem,
     pub state: State,
     pub memory: Memory,
-    /// Where iterations are not prepared yet: the coefficients, and whether directions may be multiplied in single precision.
-    pending: Option<(Quadrant, bool)>,
+    /// Where there are no operators yet: whether directions may be multiplied in single precision.
+    pending: Option<bool>,
 }
 
 impl Level {
@@ -50,25 +50,26 @@ impl Level {
         Ok(Level { problem: Problem::new(grid, operators)?, state, memory, pending: None })
     }
 
-    /// The finest grid alone, for products only before it is [ready to iterate](Level::be_ready).
+    /// The finest grid alone, without operators before it is [ready to iterate](Level::be_ready).
     pub fn alone(tangential: &Tangential, grid: Grid, single: bool, threads: &Threads) -> Result<Level> {
-        let quadrant = Quadrant::new(tangential, &grid, (0.0, 0.0), &threads.suited_to(grid.len()))?;
-        let operators = Operators::new(&quadrant, &grid, None, false, threads)?;
-        Ok(Level { pending: Some((quadrant, single)), ..Level::new(grid, operators)? })
+        let operators = Operators::none(tangential, &grid, threads);
+        Ok(Level { pending: Some(single), ..Level::new(grid, operators)? })
     }
 
-    /// Prepares iterations, if they are not.
+    /// Sets up the operators and prepares iterations, if they are not.
     pub fn be_ready(&mut self) -> Result<()> {
-        match self.pending.take() {
-            Some((quadrant, single)) => self.prepare(&quadrant, single),
-            None => Ok(()),
-        }
+        let Some(single) = self.pending else { return Ok(()) };
+        let Operators { tangential, threads, .. } = &self.problem.operators;
+        let grid = self.problem.grid;
+        let quadrant = Quadrant::new(tangential, &grid, (0.0, 0.0), threads)?;
+        self.problem.operators = Operators::new(&quadrant, &grid, None, false, threads)?;
+        self.prepare(&quadrant, single)?;
+        self.pending = None;
+        Ok(())
     }
 
     fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
-        self.problem.prepare(quadrant, single)?;
-        self.memory = Memory::new(self.problem.grid.len())?;
-        Ok(())
+        self.problem.prepare(quadrant, single)
     }
 
     /// The force, and the creepages that were found, of a step of rolling.
@@ -81,7 +82,7 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.problem.bytes() + 12 * self.state.q.len() * size_of::<Vector>() + self.memory.fields.bytes()
+        self.problem.bytes() + 2 * self.state.q.len() * size_of::<Vector>() + self.memory.bytes()
     }
 }
 

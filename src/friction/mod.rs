@@ -8,7 +8,7 @@
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
 //! | `extension` | residuals continued outside C, for the preconditioner |
-//! | `shift` | projected conjugate gradients on discs, for motions that are given |
+//! | `shift`, `discs`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
@@ -19,6 +19,7 @@ pub mod coefficients;
 mod component;
 pub mod cross;
 pub mod dense;
+mod discs;
 mod extension;
 mod fgmres;
 mod forces;
@@ -27,6 +28,7 @@ mod march;
 mod nested;
 mod newton;
 mod operators;
+mod places;
 mod problem;
 mod quadrant;
 mod request;
@@ -45,7 +47,7 @@ mod toeplitz;
 mod vectors;
 mod window;
 
-pub use certificate::Certificate;
+pub use certificate::{Certificate, ON_THE_CIRCLE};
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use request::{Request, Start, Superposed};

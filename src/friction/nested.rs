@@ -83,7 +83,7 @@ fn one(
         end = if newton {
             newton::solve(problem, state, (&mut memory.tangent, &mut memory.fields), forces, goal)?
         } else {
-            shift::solve(problem, state, memory, goal)
+            shift::solve(problem, state, memory, goal)?
         };
         if end != Outcome::Stagnated {
             break;

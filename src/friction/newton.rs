@@ -61,6 +61,8 @@ pub fn solve(
     goal: Goal<'_>,
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
+    tangent.fit(problem.grid.len())?;
+    problem.continue_residuals()?;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
     let spinning = problem.rms(|i| problem.rigid[i]);

@@ -17,7 +17,7 @@ const WORK: usize = 3;
 pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
-    /// None: single precision serves for all, on a coarser grid.
+    /// None: single precision serves for all, on a coarser grid; or there are none yet.
     exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
     fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
@@ -33,6 +33,22 @@ pub struct Operators {
 }
 
 impl Operators {
+    /// None yet, of a shift: there are no products.
+    pub fn none(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Operators {
+        let [xx, yy, _] = tangential.at(0.0, 0.0);
+        Operators {
+            tangential: tangential.clone(),
+            exact: None,
+            fast: None,
+            inverse: None,
+            rolling: None,
+            self_influence: xx.max(yy),
+            a0: xx.max(yy),
+            threads: threads.suited_to(WORK * grid.len()),
+            products: 0,
+        }
+    }
+
     /// On a grid, with coefficients that reach far enough: products in double precision, or where `single` in that precision only. What
     /// iterations need beside is to be [prepared](Operators::prepare).
     pub fn new(
@@ -42,8 +58,8 @@ impl Operators {
         single: bool,
         threads: &Threads,
     ) -> Result<Operators> {
-        let threads = &threads.suited_to(WORK * grid.len());
-        let tangential = quadrant.tangential();
+        let none = Operators::none(quadrant.tangential(), grid, threads);
+        let (tangential, threads) = (&none.tangential, &none.threads);
         let (exact, fast) = match single {
             true => (None, Some(product(quadrant, grid, rolling, threads)?)),
             false => (Some(product(quadrant, grid, rolling, threads)?), None),
@@ -53,15 +69,11 @@ impl Operators {
         // Between the centres as the march has it.
         let there = rolling.as_ref().map_or([0.0; 2], |(_, march)| march.ahead_of(|x, y| tangential.at(x, y)));
         Ok(Operators {
-            tangential: tangential.clone(),
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
-            inverse: None,
             rolling,
             self_influence: (xx - there[0]).max(yy - there[1]),
-            a0: xx.max(yy),
-            threads: threads.clone(),
-            products: 0,
+            ..none
         })
     }
 
@@ -97,6 +109,26 @@ impl Operators {
         self.products += 1;
     }
 
+    /// The same in units of a traction, and of that times [`unit`](Self::unit).
+    pub fn multiply_plain<S: Real>(&mut self, q: &[[S; 2]], u: &mut [[S; 2]]) {
+        match (&mut self.exact, &mut self.fast) {
+            (_, Some((operator, workspace))) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            (Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            _ => unreachable!("there is one of them"),
+        }
+        self.products += 1;
+    }
+
+    /// The unit of the coefficients, a power of two.
+    pub fn unit(&self) -> f64 {
+        unit_of(self.tangential.at(0.0, 0.0)[0])
+    }
+
+    /// Whether directions are multiplied in single precision.
+    pub fn has_fast(&self) -> bool {
+        self.fast.is_some()
+    }
+
     /// Whether [`multiply_fast`](Self::multiply_fast) is as good as [`multiply`](Self::multiply).
     pub fn fast_is_exact(&self) -> bool {
         self.exact.is_none() || self.fast.is_none()
@@ -108,6 +140,15 @@ impl Operators {
         match &mut self.inverse {
             Some((operator, workspace)) => operator.apply(u, unit_of(unit * a0), q, workspace),
             None => q.iter_mut().zip(u).for_each(|(q, u)| *q = [u[0] / a0, u[1] / a0]),
+        }
+    }
+
+    /// The same in units of a traction, and of that times [`unit`](Self::unit).
+    pub fn precondition_plain<S: Real>(&mut self, u: &[[S; 2]], q: &mut [[S; 2]]) {
+        let of_one = S::of(self.unit() / self.a0);
+        match &mut self.inverse {
+            Some((operator, workspace)) => operator.apply_scaled(u, (1.0, 1.0), q, workspace),
+            None => q.iter_mut().zip(u).for_each(|(q, u)| *q = u.map(|u| of_one * u)),
         }
     }
 

@@ -11,17 +11,16 @@
 //!
 //! It is the minimum of `1/2 q.Aq + w.q` over the discs `|q| <= g`, strictly convex: there is one solution.
 
-use std::ops::Range;
-
 use super::extension::Extension;
 use super::march::Rolling;
 use super::operators::Operators;
+use super::places::Places;
 use super::quadrant::Quadrant;
 use super::vectors;
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{keep, zeros};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -70,12 +69,10 @@ pub struct Problem {
     pub scale: Scale,
     /// A.
     pub operators: Operators,
-    /// Residuals beside C.
-    pub extension: Extension,
-    /// Of each row with elements of C, the run from the first to behind the last of them.
-    runs: Vec<Range<usize>>,
-    /// Elements of C.
-    count: usize,
+    /// Residuals beside C, of Newton's method: there once it is to be [continued](Problem::continue_residuals).
+    pub extension: Option<Extension<f64>>,
+    /// The elements of C.
+    pub places: Places,
     /// rms over C of g.
     rms_bound: f64,
 }
@@ -105,6 +102,19 @@ impl State {
     }
 }
 
+impl Drop for State {
+    fn drop(&mut self) {
+        keep([&mut self.q, &mut self.u]);
+    }
+}
+
+impl Drop for Problem {
+    fn drop(&mut self) {
+        keep([&mut self.bound]);
+        keep([&mut self.rigid, &mut self.slip]);
+    }
+}
+
 impl Problem {
     /// Nothing slides, nothing holds.
     pub fn new(grid: Grid, operators: Operators) -> Result<Problem> {
@@ -117,43 +127,38 @@ impl Problem {
             offset: [0.0; 2],
             ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
-            extension: Extension::default(),
+            extension: None,
             operators,
-            runs: Vec::new(),
-            count: 0,
+            places: Places::new(&grid)?,
             rms_bound: 0.0,
         })
     }
 
     /// Sets up what iterations need beside products.
     pub fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
-        self.operators.prepare(quadrant, &self.grid, single)?;
-        // In steady rolling nothing is continued.
-        if self.operators.rolling.is_none() {
-            self.extension = Extension::new(&self.grid, self.threads())?;
-            self.extension.contact_changed(&self.bound);
+        self.operators.prepare(quadrant, &self.grid, single)
+    }
+
+    /// Sets up what continues residuals beside C, if it is not there. In steady rolling nothing is continued.
+    pub fn continue_residuals(&mut self) -> Result<()> {
+        if self.operators.rolling.is_none() && self.extension.is_none() {
+            let mut extension = Extension::new(&self.grid, self.threads())?;
+            extension.contact_changed(&self.bound);
+            self.extension = Some(extension);
         }
         Ok(())
     }
 
     /// To be called when `bound` has changed.
     pub fn bound_changed(&mut self) {
-        self.extension.contact_changed(&self.bound);
-        let mx = self.grid.mx;
-        self.runs.clear();
-        (self.count, self.rms_bound) = (0, 0.0);
-        for (iy, row) in self.bound.chunks_exact(mx).enumerate() {
-            let Some(first) = row.iter().position(|g| *g > 0.0) else { continue };
-            let last = row.iter().rposition(|g| *g > 0.0).unwrap_or(first);
-            self.runs.push(iy * mx + first..iy * mx + last + 1);
+        if let Some(extension) = &mut self.extension {
+            extension.contact_changed(&self.bound);
         }
-        let largest = self.bound.iter().copied().fold(0.0, f64::max);
-        let mut squares = 0.0;
-        for g in self.bound.iter().filter(|g| **g > 0.0) {
-            self.count += 1;
-            squares += (g / largest) * (g / largest);
-        }
-        self.rms_bound = largest * (squares / self.count.max(1) as f64).sqrt();
+        self.places.contact_changed(&self.bound);
+        let bounds = || self.contact().map(|i| self.bound[i]);
+        let largest = bounds().fold(0.0, f64::max);
+        let squares: f64 = bounds().map(|g| (g / largest) * (g / largest)).sum();
+        self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
     /// Whether its operators are those of a grid and a step.
@@ -163,7 +168,7 @@ impl Problem {
 
     /// The elements of C.
     pub fn contact(&self) -> impl Iterator<Item = usize> + '_ {
-        self.runs.iter().cloned().flatten().filter(|&i| self.bound[i] > 0.0)
+        self.places.elements()
     }
 
     /// Those that work on this grid.
@@ -173,7 +178,7 @@ impl Problem {
 
     /// Elements of C.
     pub fn count(&self) -> usize {
-        self.count
+        self.places.count()
     }
 
     /// rms over C of g.
@@ -192,7 +197,7 @@ impl Problem {
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }, 0.0];
         let [sum, _] = vectors::sum(self.threads(), self.bound.len(), squared);
-        (sum / self.count.max(1) as f64).sqrt()
+        (sum / self.count().max(1) as f64).sqrt()
     }
 
     /// rms over C of w.

@@ -5,7 +5,7 @@
 use super::coefficients::{Entry, Tangential};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::blank;
 use crate::threads::Threads;
 
 /// `Axx, Ayy, Axy` at the offsets `0..cx` by `0..cy`.
@@ -21,7 +21,7 @@ impl Quadrant {
     /// by whole elements for `by` more.
     pub fn new(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
         let (cx, cy) = reach(grid, by);
-        let mut values: Vec<Entry> = zeros(cx * cy, "the tangential influence coefficients")?;
+        let mut values: Vec<Entry> = blank(cx * cy, [f64::NAN; 3], "the tangential influence coefficients")?;
         threads.for_each_plain_row(&mut values, cx, |ky, row| tangential.fill_row(ky, row));
         Ok(Quadrant { tangential: tangential.clone(), cx, cy, values })
     }

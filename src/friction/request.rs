@@ -40,11 +40,13 @@ pub enum Start<'a> {
     Again,
 }
 
-/// Tractions near those of a shift from rest: `q = along (p - p*)`.
+/// Tractions near those of a shift from rest: `q = along (p - p*)`, within their bounds.
 #[derive(Clone, Copy)]
 pub struct Superposed<'a> {
-    /// p*, `[my][mx]`.
-    pub smaller: &'a [f64],
+    /// `p - p*`, `[my][mx]`.
+    pub carried: &'a [f64],
+    /// What pressures `p - p*` displace by a fresh product.
+    pub displaced: &'a [f64],
     /// mu times the direction.
     pub along: Vector,
     /// The shift where forces are given, else 0.

@@ -25,10 +25,13 @@ const DIRECTIONS: usize = 40;
 const MOST_CALLS: usize = 10;
 
 /// Which elements slip in the final state, for [`solve`].
-pub fn predict(problem: &Problem, state: &State, tangent: &mut Tangent) {
+pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> Result<()> {
+    tangent.fit(problem.grid.len())?;
+    problem.continue_residuals()?;
     let slip = problem.rms_slip();
     let rho = if slip > 0.0 { problem.rms_bound() / slip } else { 1.0 / problem.operators.self_influence };
     tangent.predict(problem, state, rho.min(1.0 / problem.operators.self_influence));
+    Ok(())
 }
 
 /// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.

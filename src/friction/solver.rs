@@ -226,7 +226,7 @@ impl Solver {
         let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
         level.be_ready()?;
         let Level { problem, state, memory, .. } = level;
-        sensitivity::predict(problem, state, &mut memory.tangent);
+        sensitivity::predict(problem, state, &mut memory.tangent)?;
         for by in 0..3 {
             let mut change = memory.fields.take(state.q.len())?;
             for (k, i) in window.elements(&self.grid) {

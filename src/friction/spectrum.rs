@@ -11,7 +11,7 @@
 use super::coefficients::Entry;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{blank, keep};
 use crate::operator::fft::{ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
@@ -45,7 +45,8 @@ pub fn general<T: Real>(
 ) -> Result<Spectrum<T>> {
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let (nb, mx, my) = (rows.bins(), grid.mx as i64, grid.my as i64);
-    let mut in_x: Vec<[Complex<f64>; 3]> = zeros((2 * grid.my - 1) * nb, SPECTRUM)?;
+    let nothing = Complex::new(f64::NAN, f64::NAN);
+    let mut in_x = blank((2 * grid.my - 1) * nb, [nothing; 3], SPECTRUM)?;
     let mut scratch = SetUp::for_pieces(threads, &rows, &columns);
     threads.for_each_row(&mut in_x, nb, &mut scratch, |i, out, piece| {
         let ky = i as i64 - (my - 1);
@@ -55,7 +56,7 @@ pub fn general<T: Real>(
         }
         piece.transform_row(&rows, |k, component, bin| out[k][component] = bin);
     });
-    let mut spectrum: Vec<[Complex<T>; 3]> = zeros(nb * py, SPECTRUM)?;
+    let mut spectrum = blank(nb * py, [Complex::new(T::nan(), T::nan()); 3], SPECTRUM)?;
     let scale = 1.0 / (unit * px as f64 * py as f64);
     let rounded = |value: Complex<f64>| Complex::new(T::of(scale * value.re), T::of(scale * value.im));
     threads.for_each_row(&mut spectrum, py, &mut scratch, |kx, out, piece| {
@@ -73,6 +74,7 @@ pub fn general<T: Real>(
             *value = [(xx + yy) * 0.5, half + turned, half - turned].map(rounded);
         }
     });
+    keep([&mut in_x]);
     Ok(Spectrum::General(spectrum))
 }
 
@@ -96,13 +98,13 @@ pub fn even<T: Real>(
         (vec![Complex::default(); px.max(py)], scratch)
     };
     let mut scratch: Vec<_> = (0..threads.count()).map(piece).collect();
-    let mut in_x: Vec<Entry> = zeros(given.1 * nb, SPECTRUM)?;
+    let mut in_x: Vec<Entry> = blank(given.1 * nb, [f64::NAN; 3], SPECTRUM)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {
         let row = &mut row[..px];
         transform_even(&rows, row, given.0, |kx| fill(kx, ky), scratch);
         out.iter_mut().enumerate().for_each(|(k, out)| *out = apart(row, k));
     });
-    let mut spectrum: Vec<[T; 3]> = zeros(nb * half, SPECTRUM)?;
+    let mut spectrum: Vec<[T; 3]> = blank(nb * half, [T::nan(); 3], SPECTRUM)?;
     let scale = 1.0 / (unit * px as f64 * py as f64);
     let is_positive = std::sync::atomic::AtomicBool::new(true);
     threads.for_each_row(&mut spectrum, half, &mut scratch, |kx, out, (column, scratch)| {
@@ -124,6 +126,7 @@ pub fn even<T: Real>(
             *value = [0.5 * (xx + yy), 0.5 * (xx - yy), xy].map(|value| T::of(scale * value));
         }
     });
+    keep([&mut in_x]);
     Ok(is_positive.into_inner().then_some(Spectrum::Even(spectrum)))
 }
 

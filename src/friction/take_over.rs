@@ -81,7 +81,10 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
         let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
-        problem.refresh(state);
+        // What is superposed comes with its displacements.
+        if !matches!(request.start, Start::Superposed(_)) {
+            problem.refresh(state);
+        }
         Ok(mostly)
     }
 
@@ -90,12 +93,12 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
             Start::Before => {}
-            Start::Superposed(Superposed { smaller, along, offset }) => {
+            Start::Superposed(Superposed { carried, displaced, along, offset }) => {
                 let (threads, width) = (problem.threads().clone(), problem.grid.mx);
-                threads.for_each_plain_row(&mut state.q, width, |iy, row| {
-                    for (q, i) in row.iter_mut().zip(window.row(&self.grid, iy)) {
-                        let missing = request.pressure[i].max(0.0) - smaller[i];
-                        *q = along.map(|along| along * missing);
+                threads.for_each_row_pair((&mut state.q, width), (&mut state.u, width), |iy, q, u| {
+                    for ((q, u), i) in q.iter_mut().zip(u).zip(window.row(&self.grid, iy)) {
+                        *q = along.map(|along| along * carried[i]);
+                        *u = along.map(|along| along * displaced[i]);
                     }
                 });
                 problem.offset = offset;

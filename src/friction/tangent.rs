@@ -20,7 +20,7 @@ use crate::error::Result;
 use crate::memory::zeros;
 
 /// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
-const MIXED: f64 = 0.5;
+pub(super) const MIXED: f64 = 0.5;
 
 /// Tractions are near their circles within this part of the radius.
 const NEAR_THE_CIRCLE: f64 = 0.2;
@@ -66,7 +66,7 @@ pub struct Sight {
 
 /// n and D of an element that slips.
 #[inline]
-fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
+pub(super) fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
     let (length, reach) = (square(q).sqrt(), square(tau).sqrt());
     if (length - g).abs() <= NEAR_THE_CIRCLE * g && dot(q, tau) >= ALIGNED * length * reach {
         let n = q.map(|q| q / length);
@@ -76,17 +76,23 @@ fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_r
 }
 
 impl Tangent {
-    /// Memory for n elements.
-    pub fn new(n: usize) -> Result<Tangent> {
+    /// Memory for n elements, where there is none yet.
+    pub fn fit(&mut self, n: usize) -> Result<()> {
         let what = "the stick and slip areas";
-        Ok(Tangent {
-            side: zeros(n, what)?,
-            normal: zeros(n, what)?,
-            curvature: zeros(n, what)?,
-            mixing: zeros(n, what)?,
-            driving: zeros(n, what)?,
-            slip_count: 0,
-        })
+        if self.driving.len() != n {
+            self.normal = zeros(n, what)?;
+            self.curvature = zeros(n, what)?;
+            self.mixing = zeros(n, what)?;
+            self.side = zeros(n, what)?;
+            self.driving = zeros(n, what)?;
+        }
+        Ok(())
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let each = size_of::<Side>() + 2 * size_of::<f64>() + 2 * size_of::<Vector>();
+        self.driving.capacity() * each
     }
 
     /// Predicts from q and its displacements.
@@ -163,13 +169,12 @@ impl Tangent {
         let threads = problem.threads().clone();
         vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
         // The march starts from nothing at each leading edge: what is beside C does not help it.
-        let is_continued = problem.operators.rolling.is_none();
-        if is_continued {
-            problem.extension.fill(mixed);
+        if let Some(extension) = &mut problem.extension {
+            extension.fill(mixed);
         }
         problem.operators.precondition(mixed, unit, z);
-        if is_continued {
-            problem.extension.fold(z);
+        if let Some(extension) = &mut problem.extension {
+            extension.fold(z);
         }
         // The own inverse, where something slips.
         let own = |i: usize| match self.side[i] {

@@ -22,7 +22,7 @@ use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{collected, zeros};
+use crate::memory::{blank, computed, keep};
 use crate::operator::columns::{for_each_mirrored_block, BLOCK};
 use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
@@ -65,6 +65,21 @@ pub(super) struct Piece<T: Real> {
     pub(super) columns: Vec<Complex<T>>,
     mirrored: Vec<Complex<T>>,
     pub(super) scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Drop for Workspace<T> {
+    fn drop(&mut self) {
+        keep([&mut self.bins]);
+    }
+}
+
+impl<T: Real> Drop for Toeplitz<T> {
+    fn drop(&mut self) {
+        match &mut self.spectrum {
+            Spectrum::Even(waves) => keep([waves]),
+            Spectrum::General(waves) => keep([waves]),
+        }
+    }
 }
 
 /// The power of two next to a value.
@@ -167,10 +182,10 @@ impl<T: Real> Toeplitz<T> {
     pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
         let real = |value: T| S::of(value.to_double());
         let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => Spectrum::Even(collected(from.iter().map(|wave| wave.map(real)), SPECTRUM)?),
+            Spectrum::Even(from) => Spectrum::Even(computed(from.iter().map(|wave| wave.map(real)), SPECTRUM)?),
             Spectrum::General(from) => {
                 let complex = |value: Complex<T>| Complex::new(real(value.re), real(value.im));
-                Spectrum::General(collected(from.iter().map(|wave| wave.map(complex)), SPECTRUM)?)
+                Spectrum::General(computed(from.iter().map(|wave| wave.map(complex)), SPECTRUM)?)
             }
         };
         let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
@@ -188,7 +203,8 @@ impl<T: Real> Toeplitz<T> {
             let columns = vec![Complex::default(); BLOCK * py];
             Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
         };
-        Ok(Workspace { bins: zeros(self.my * px, WORKSPACE)?, pieces: (0..self.threads.count()).map(piece).collect() })
+        let bins = blank(self.my * px, Complex::new(T::nan(), T::nan()), WORKSPACE)?;
+        Ok(Workspace { bins, pieces: (0..self.threads.count()).map(piece).collect() })
     }
 
     /// Bytes of the spectrum.
@@ -201,18 +217,29 @@ impl<T: Real> Toeplitz<T> {
 
     /// `u = A q`. Values of q are computed with in units of `unit`, a power of two.
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], workspace: &mut Workspace<T>) {
+        self.apply_scaled(q, (1.0 / unit, unit * self.unit), u, workspace);
+    }
+
+    /// `u = A q` of fields in any precision, q times the first of the scales, and u times the second and in the unit of the coefficients.
+    pub fn apply_scaled<S: Real>(
+        &self,
+        q: &[[S; 2]],
+        scales: (f64, f64),
+        u: &mut [[S; 2]],
+        workspace: &mut Workspace<T>,
+    ) {
         let n = self.mx * self.my;
         assert!(q.len() == n && u.len() == n);
         if self.is_uncoupled {
-            let is_zero = |component: usize| q.iter().all(|q| q[component] == 0.0);
+            let is_zero = |component: usize| q.iter().all(|q| q[component].is_zero());
             if let Some(other) = [1, 0].into_iter().find(|&component| is_zero(component)) {
-                return self.apply_one(1 - other, q, unit, u, workspace);
+                return self.apply_one(1 - other, q, scales, u, workspace);
             }
         }
         let (px, length) = (self.rows.length(), self.columns.length());
         let Workspace { bins, pieces } = workspace;
         let loaded = rows_with_traction(q, self.mx);
-        self.forward(q, 1.0 / unit, &loaded, bins, pieces);
+        self.forward(q, scales.0, &loaded, bins, pieces);
         for_each_mirrored_block(bins, px, &self.threads, pieces, |block, piece| {
             let count = block.columns() * length;
             let (columns, mirrored) = (&mut piece.columns[..count], &mut piece.mirrored[..count]);
@@ -225,12 +252,12 @@ impl<T: Real> Toeplitz<T> {
             self.columns.inverse(mirrored, &mut piece.scratch);
             block.scatter(0..self.my, length, columns, mirrored);
         });
-        self.back(unit * self.unit, u, bins, pieces);
+        self.back(scales.1, u, bins, pieces);
     }
 
-    fn forward(
+    fn forward<S: Real>(
         &self,
-        q: &[Vector],
+        q: &[[S; 2]],
         scale: f64,
         loaded: &Range<usize>,
         bins: &mut [Complex<T>],
@@ -241,19 +268,19 @@ impl<T: Real> Toeplitz<T> {
         self.threads.for_each_row(rows, px, pieces, |i, row, piece| {
             let q = &q[(first + i) * mx..(first + i + 1) * mx];
             for (to, q) in row.iter_mut().zip(q) {
-                *to = Complex::new(T::of(scale * q[0]), T::of(scale * q[1]));
+                *to = Complex::new(T::of(scale * q[0].to_double()), T::of(scale * q[1].to_double()));
             }
             row[mx..].fill(Complex::default());
             self.rows.forward(row, &mut piece.scratch);
         });
     }
 
-    fn back(&self, scale: f64, u: &mut [Vector], bins: &mut [Complex<T>], pieces: &mut [Piece<T>]) {
+    fn back<S: Real>(&self, scale: f64, u: &mut [[S; 2]], bins: &mut [Complex<T>], pieces: &mut [Piece<T>]) {
         let px = self.rows.length();
         self.threads.for_each_row_pair_with((u, self.mx), (bins, px), pieces, |_, u, row, piece| {
             self.rows.inverse(row, &mut piece.scratch);
             for (u, value) in u.iter_mut().zip(row) {
-                *u = [scale * value.re.to_double(), scale * value.im.to_double()];
+                *u = [S::of(scale * value.re.to_double()), S::of(scale * value.im.to_double())];
             }
         });
     }
@@ -291,8 +318,8 @@ impl<T: Real> Toeplitz<T> {
 }
 
 /// The run of rows outside of which q is zero.
-pub(super) fn rows_with_traction(q: &[Vector], mx: usize) -> Range<usize> {
-    let loaded = |row: &[Vector]| row.iter().any(|q| *q != [0.0; 2]);
+pub(super) fn rows_with_traction<S: Real>(q: &[[S; 2]], mx: usize) -> Range<usize> {
+    let loaded = |row: &[[S; 2]]| row.iter().any(|q| *q != [S::zero(); 2]);
     let Some(first) = q.chunks_exact(mx).position(loaded) else { return 0..0 };
     let last = q.chunks_exact(mx).rposition(loaded).unwrap_or(first);
     first..last + 1

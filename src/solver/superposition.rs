@@ -9,7 +9,8 @@
 //! 1938 and Mindlin 1949 for balls; Jager 1998 and Ciavarella 1998), and a certificate as any other decides on it. With another nu
 //! the residual is some 5 % of nu, and the coarser grids find a better start for the same work.
 //!
-//! What p leaves of its own conditions goes into the distance, so that it leaves nothing in the slip.
+//! What p leaves of its own conditions goes into the distance, so that it leaves nothing in the slip. What q displaces is a fresh product of the
+//! normal problem's operator.
 
 use std::time::Instant;
 
@@ -18,7 +19,7 @@ use super::{Outcome, Solver};
 use crate::contact::{lowest, NonNegative, State};
 use crate::effects::{Coefficient, Motion, Prescribed, Previous};
 use crate::error::{Error, Result};
-use crate::friction::{Compliance, Start, Superposed, Vector};
+use crate::friction::{Compliance, Start, Superposed, Vector, ON_THE_CIRCLE};
 use crate::grid::Grid;
 use crate::memory::blank;
 use crate::methods::{Step, Task};
@@ -29,14 +30,22 @@ use crate::scene::Load;
 const LEAST: f64 = 0.01;
 /// The residual of the smaller load is relative to its displacements, which are this part of its depth or less.
 const DISPLACED: f64 = 0.8;
+/// Where the shift's residual is above the tolerance all the same, the smaller load goes on to such a part of it.
+const MARGIN: f64 = 0.5;
 /// And at most so large: a coarse solution tells nothing.
 const COARSEST: f64 = 0.01;
 /// Iterations at most.
 const MOST: u64 = 60;
 
-/// The pressures of the smaller load, and what they cost.
+/// p is reached but for this part: whichever way q is rounded, it is within its bound.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
+
+/// What the smaller load leaves, and what it cost.
 pub struct Smaller {
-    state: State,
+    /// `p - p*`, within -p and p.
+    carried: Vec<f64>,
+    /// What these pressures displace.
+    displaced: Vec<f64>,
     along: Vector,
     offset: Vector,
     /// In products of two components: two of one component count as one.
@@ -47,7 +56,8 @@ pub struct Smaller {
 impl Smaller {
     /// The start that they make.
     pub fn start(&self) -> Start<'_> {
-        Start::Superposed(Superposed { smaller: &self.state.p, along: self.along, offset: self.offset })
+        let Smaller { carried, displaced, along, offset, .. } = self;
+        Start::Superposed(Superposed { carried, displaced, along: *along, offset: *offset })
     }
 }
 
@@ -119,21 +129,53 @@ impl Solver {
             return Ok(None);
         }
         let mut state = self.without_residual(load)?;
-        let mut products = 0.0;
-        if sunk < depth {
-            let tolerance = turn.options.tolerance * sunk / (DISPLACED * (depth - sunk));
-            products = match self.solve_smaller(&mut state, tolerance.min(COARSEST), monitor) {
-                // By round-off; the coarser grids of the tangential problem start it then.
-                Err(Error::NotPositiveDefinite(_)) => return Ok(None),
-                work => 0.5 * work?,
-            };
-        } else {
-            state.unload();
+        let what = "the tractions of a smaller load";
+        let n = state.p.len();
+        let (mut carried, mut displaced) = (blank(n, f64::NAN, what)?, blank(n, f64::NAN, what)?);
+        let (mut products, mut slid) = (0.0, push.less);
+        let mut tolerance = (turn.options.tolerance * sunk / (DISPLACED * (depth - sunk))).min(COARSEST);
+        for begun in [false, true] {
+            if sunk < depth {
+                products += match self.solve_smaller((&mut state, begun), tolerance, monitor) {
+                    // By round-off; the coarser grids of the tangential problem start it then.
+                    Err(Error::NotPositiveDefinite(_)) => return Ok(None),
+                    work => 0.5 * work?,
+                };
+            } else {
+                state.unload();
+            }
+            if push.by_force {
+                slid = self.state.approach - state.approach;
+            }
+            let residual = self.carry(&state.p, slid, &mut carried, &mut displaced);
+            products += 0.5 * self.problem.take_products() as f64;
+            if residual < turn.options.tolerance || sunk >= depth || monitor.is_cancelled() {
+                break;
+            }
+            tolerance *= MARGIN * (turn.options.tolerance / residual).min(1.0);
         }
         let along = push.direction.map(|t| push.mu * t);
-        let slid = if push.by_force { self.state.approach - state.approach } else { 0.0 };
-        let offset = along.map(|along| -along * slid);
-        Ok(Some(Smaller { state, along, offset, products, seconds: began.elapsed().as_secs_f64() }))
+        let offset = along.map(|along| if push.by_force { -along * slid } else { 0.0 });
+        let seconds = began.elapsed().as_secs_f64();
+        Ok(Some(Smaller { carried, displaced, along, offset, products, seconds }))
+    }
+
+    /// `p - p*` and its displacements; the residual of a shift of mu `slid` by them, as the certificate has it.
+    fn carry(&mut self, smaller: &[f64], slid: f64, carried: &mut [f64], displaced: &mut [f64]) -> f64 {
+        for ((carried, p), smaller) in carried.iter_mut().zip(&self.state.p).zip(smaller) {
+            let most = p.max(0.0) * (1.0 - ROUNDED);
+            *carried = (p - smaller).clamp(-most, most);
+        }
+        self.problem.displace(carried, displaced);
+        let (mut left, mut squares, mut count) = (0.0, 0.0, 0.0);
+        for ((p, carried), u) in self.state.p.iter().zip(&*carried).zip(&*displaced).filter(|((p, _), _)| **p > 0.0) {
+            let (slip, slips) = (u - slid, carried.abs() >= ON_THE_CIRCLE * p);
+            if !(slips && slip * carried < 0.0) {
+                left += slip * slip;
+            }
+            (squares, count) = (squares + u * u, count + 1.0);
+        }
+        (left / count).sqrt() / f64::max((squares / count).sqrt(), slid)
     }
 
     /// The state of another load, with the distance of which p is the exact solution.
@@ -151,7 +193,12 @@ impl Solver {
     }
 
     /// Solves the smaller load, which nobody certifies: the certificate of the tractions does. Returns the products that it took.
-    fn solve_smaller(&mut self, state: &mut State, tolerance: f64, monitor: &mut Monitor<'_>) -> Result<f64> {
+    fn solve_smaller(
+        &mut self,
+        (state, begun): (&mut State, bool),
+        tolerance: f64,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<f64> {
         let finest = self.problem.grid;
         let mut tell = |progress: &Progress| {
             let grid = Grid { mx: progress.mx, my: progress.my, ..finest };
@@ -161,7 +208,11 @@ impl Solver {
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: MOST };
         let mut task = Task { problem: &mut self.problem, state, set: NonNegative, goal, monitor: &mut own };
         let method = &mut self.methods.projected_cg;
-        method.start(&mut task)?;
+        match begun {
+            // Its displacements are those of sums of directions in single precision.
+            true => task.problem.refresh(task.state, NonNegative),
+            false => method.start(&mut task)?,
+        }
         method.step(&mut task)?;
         task.count_products();
         Ok(own.count.work_units)

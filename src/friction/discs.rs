@@ -1,0 +1,377 @@
+//! The fields of projected gradients on discs, on C alone, and the passes over them.
+//!
+//! Tractions are in units of the smaller one of the bounds and what the rigid slip asks for, displacements in that times the unit of the coefficients: directions,
+//! in single precision T, stay within its range. What adds up, q and u, is in double precision.
+
+use super::certificate::rest;
+use super::extension::Extension;
+use super::places::Places;
+use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
+use super::shift::Steps;
+use super::tangent::{normal_and_curvature, MIXED};
+use super::toeplitz::unit_of;
+use super::vectors::over;
+use super::Vector;
+use crate::error::Result;
+use crate::memory::{keep, unwritten};
+use crate::operator::fft::Real;
+use crate::threads::Threads;
+
+/// A value of two components.
+type Pair<T> = [T; 2];
+
+/// What memory is for.
+const FIELDS: &str = "the iteration on discs";
+
+/// The fields of one solve.
+#[derive(Default)]
+pub struct Discs<T: Real> {
+    /// g and w.
+    bound: Vec<f64>,
+    slip: Vec<Vector>,
+    q: Vec<Vector>,
+    u: Vec<Vector>,
+    /// n, 0 where C sticks; D; `P(-s)`.
+    normal: Vec<Vector>,
+    curvature: Vec<T>,
+    driving: Vec<Pair<T>>,
+    way: Way<T>,
+    /// On the grid: what is multiplied, and what that gives.
+    given: Vec<Pair<T>>,
+    answer: Vec<Pair<T>>,
+    extension: Extension<T>,
+    units: Units,
+}
+
+/// The way of a step.
+#[derive(Default)]
+struct Way<T> {
+    /// z; t, its chord, and `A` of the chord and the debt.
+    z: Vec<Pair<T>>,
+    direction: Vec<Pair<T>>,
+    chord: Vec<Pair<T>>,
+    product: Vec<Pair<T>>,
+    debt: Vec<Pair<T>>,
+}
+
+/// Units, and what is in them.
+#[derive(Clone, Copy, Default)]
+struct Units {
+    traction: f64,
+    displacement: f64,
+    /// The influence of an element on itself.
+    a0: f64,
+    /// Of the natural map.
+    rho: f64,
+}
+
+/// What a pass saw: the squares of what is left of the slip and of u, and of a step the debts and the ways that elements went.
+#[derive(Clone, Copy)]
+pub struct Sums {
+    pub rest: f64,
+    pub displaced: f64,
+    pub owed: f64,
+    pub gone: f64,
+}
+
+impl<T: Real> Discs<T> {
+    /// Takes a state over.
+    pub fn load(&mut self, problem: &Problem, state: &State) -> Result<()> {
+        let (n, all) = (problem.count(), problem.grid.len());
+        let (zero, nothing) = ([f64::NAN; 2], [T::nan(); 2]);
+        unwritten(&mut self.bound, n, f64::NAN, FIELDS)?;
+        unwritten(&mut self.curvature, n, T::nan(), FIELDS)?;
+        for field in [&mut self.slip, &mut self.q, &mut self.u, &mut self.normal] {
+            unwritten(field, n, zero, FIELDS)?;
+        }
+        let Way { z, direction, chord, product, debt } = &mut self.way;
+        for field in [&mut self.driving, z, direction, chord, product, debt] {
+            unwritten(field, n, nothing, FIELDS)?;
+        }
+        for field in [&mut self.given, &mut self.answer] {
+            unwritten(field, all, nothing, FIELDS)?;
+        }
+        self.extension.fit(&problem.grid, problem.threads())?;
+        self.extension.contact_changed(&problem.bound);
+        let (a0, bound, slip) = (problem.operators.self_influence, problem.rms_bound(), problem.rms_slip());
+        let cap = 0.3 / (a0 * (n.max(1) as f64).sqrt());
+        let rho = if slip > 0.0 { cap.min(bound / slip) } else { cap };
+        let (traction, unit) = (unit_of(bound.min(slip / a0)), problem.operators.unit());
+        self.units = Units { traction, displacement: traction * unit, a0: a0 / unit, rho: rho * unit };
+        let by = 1.0 / self.units.displacement;
+        let places = &problem.places;
+        let blocks = places.parts().zip(places.cut(&mut self.bound)).zip(places.cut(&mut self.slip));
+        over(problem.threads(), blocks, |_, ((part, bound), slip)| {
+            for ((i, g), w) in problem.places.of(part).zip(bound.iter_mut()).zip(slip.iter_mut()) {
+                *g = problem.bound[i] / traction;
+                *w = add(problem.slip[i], problem.offset).map(|w| by * w);
+            }
+            []
+        });
+        for field in [&mut self.way.direction, &mut self.way.chord, &mut self.way.product] {
+            field.fill([T::zero(); 2]);
+        }
+        self.take(problem, state);
+        Ok(())
+    }
+
+    /// q and u of a state; nothing is owed.
+    pub fn take(&mut self, problem: &Problem, state: &State) {
+        let Units { traction, displacement, .. } = self.units;
+        let (places, to_q, to_u) = (&problem.places, 1.0 / traction, 1.0 / displacement);
+        let states = places.cut(&mut self.q).zip(places.cut(&mut self.u));
+        let blocks = places.parts().zip(states).zip(places.cut(&mut self.way.debt));
+        over(problem.threads(), blocks, |_, ((part, (q, u)), debt)| {
+            for ((i, q), u) in places.of(part).zip(q.iter_mut()).zip(u.iter_mut()) {
+                *q = state.q[i].map(|q| to_q * q);
+                *u = state.u[i].map(|u| to_u * u);
+            }
+            debt.fill([T::zero(); 2]);
+            []
+        });
+    }
+
+    /// q and u for a state.
+    pub fn give(&self, problem: &Problem, state: &mut State) {
+        let Units { traction, displacement, .. } = self.units;
+        let places = &problem.places;
+        let blocks = places.parts().zip(places.cut_grid(&mut state.q).zip(places.cut_grid(&mut state.u)));
+        over(problem.threads(), blocks, |_, (part, (to_q, to_u))| {
+            for (k, i) in (part.start..).zip(part.places.iter()) {
+                to_q[i] = self.q[k].map(|q| traction * q);
+                to_u[i] = self.u[k].map(|u| displacement * u);
+            }
+            []
+        });
+    }
+
+    /// A length in the unit of displacements.
+    pub fn scaled(&self, length: f64) -> f64 {
+        length / self.units.displacement
+    }
+
+    /// Predicts what slips; what the preconditioner is given is made ready.
+    pub fn predict(&mut self, places: &Places, threads: &Threads) -> Sums {
+        let Discs { bound, slip, q, u, normal, curvature, driving, given, units, .. } = self;
+        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(driving));
+        let blocks = places.parts().zip(predicted).zip(places.cut_grid(given));
+        let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), driving)), given)| {
+            let mut sums = [0.0; 2];
+            given.fill([T::zero(); 2]);
+            for (j, place) in part.places.iter().enumerate() {
+                let k = part.start + j;
+                let seen = units.look(q[k], u[k], slip[k], bound[k]);
+                (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
+                given[place] = seen.driving.map(|r| T::of(units.mixing(seen.curvature) * r));
+                sums = [sums[0] + seen.rest, sums[1] + square(u[k])];
+            }
+            sums
+        });
+        Sums { rest, displaced, owed: 0.0, gone: 0.0 }
+    }
+
+    /// z, the preconditioned driving: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
+    pub fn precondition(&mut self, problem: &mut Problem) -> f64 {
+        self.extension.fill(&mut self.given);
+        problem.operators.precondition_plain(&self.given, &mut self.answer);
+        self.extension.fold(&mut self.answer);
+        let Discs { normal, curvature, driving, way, answer, units, .. } = self;
+        let Way { z, direction, product, .. } = way;
+        let places = &problem.places;
+        let [along] = over(problem.threads(), places.parts().zip(places.cut(z)), |_, (part, z)| {
+            let mut along = 0.0;
+            for ((k, place), z) in (part.start..).zip(places.of(part)).zip(z.iter_mut()) {
+                let bend = curvature[k].to_double();
+                let mixing = units.mixing(bend);
+                let v = double(answer[place]).map(|v| mixing * v);
+                let own = (1.0 - mixing) / (bend + units.a0);
+                let new = plus(project(normal[k], v), own, double(driving[k]));
+                along += dot(new, plus(double(product[k]), bend, double(direction[k])));
+                *z = new.map(T::of);
+            }
+            [along]
+        });
+        along
+    }
+
+    /// The direction t, its chord at the length f, and what is multiplied: the chord with the debt.
+    pub fn choose_direction(&mut self, problem: &Problem, (beta, f): (f64, f64)) {
+        let Discs { bound, q, normal, way, given, .. } = self;
+        let Way { z, direction, chord, debt, .. } = way;
+        let (places, inverse) = (&problem.places, 1.0 / f);
+        let blocks = places.parts().zip(places.cut(direction).zip(places.cut(chord))).zip(places.cut_grid(given));
+        over(problem.threads(), blocks, |_, ((part, (direction, chord)), given)| {
+            given.fill([T::zero(); 2]);
+            for (j, place) in part.places.iter().enumerate() {
+                let k = part.start + j;
+                let t = project(normal[k], plus(double(z[k]), beta, double(direction[j])));
+                let moved = moved(normal[k], bound[k], q[k], t, f);
+                let along = [inverse * (moved[0] - q[k][0]), inverse * (moved[1] - q[k][1])];
+                given[place] = plus(along, inverse, double(debt[k])).map(T::of);
+                (direction[j], chord[j]) = (t.map(T::of), along.map(T::of));
+            }
+            []
+        });
+    }
+
+    /// Multiplies; returns `t.(A + D) t` and `t` times the driving, of the chord where C sticks.
+    pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
+        problem.operators.multiply_plain(&self.given, &mut self.answer);
+        let Discs { normal, curvature, driving, way, answer, .. } = self;
+        let Way { direction, chord, product, .. } = way;
+        let places = &problem.places;
+        over(problem.threads(), places.parts().zip(places.cut(product)), |_, (part, product)| {
+            let mut sums = [0.0; 2];
+            for ((k, place), product) in (part.start..).zip(places.of(part)).zip(product.iter_mut()) {
+                *product = answer[place];
+                let along = double(if slips(normal[k]) { direction[k] } else { chord[k] });
+                let bend = curvature[k].to_double();
+                sums[0] += dot(along, double(*product)) + bend * square(along);
+                sums[1] += dot(double(driving[k]), along);
+            }
+            sums
+        })
+    }
+
+    /// Goes so far, of what the chord was taken for, and predicts what slips there.
+    pub fn go(&mut self, places: &Places, threads: &Threads, length: f64, steps: &Steps) -> Sums {
+        let Discs { bound, slip, q, u, normal, curvature, driving, way, given, units, .. } = self;
+        let Way { direction, chord, product, debt, .. } = way;
+        let left = 1.0 - length / steps.held_back;
+        let states = places.cut(q).zip(places.cut(u)).zip(places.cut(direction).zip(places.cut(debt)));
+        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(driving));
+        let blocks = places.parts().zip(states).zip(predicted).zip(places.cut_grid(given));
+        let work = |_: usize, block: &mut _| {
+            let (((part, ((q, u), (direction, debt))), ((normal, curvature), driving)), given): &mut Block<'_, T> =
+                block;
+            let mut sums = [0.0; 4];
+            given.fill([T::zero(); 2]);
+            for (j, place) in part.places.iter().enumerate() {
+                let k = part.start + j;
+                let (g, n) = (bound[k], normal[j]);
+                let straight = plus(q[j], length, double(chord[k]));
+                let new = match slips(n) {
+                    true => moved(n, g, q[j], double(direction[j]), length),
+                    false => onto_disc(straight, g),
+                };
+                let owed = plus([new[0] - straight[0], new[1] - straight[1]], left, double(debt[j]));
+                debt[j] = owed.map(T::of);
+                sums[2] += square(owed).sqrt();
+                sums[3] += square([new[0] - q[j][0], new[1] - q[j][1]]).sqrt();
+                u[j] = plus(u[j], length, double(product[k]));
+                if !slips(n) {
+                    direction[j] = chord[k];
+                }
+                q[j] = new;
+                let seen = units.look(new, u[j], slip[k], g);
+                (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
+                given[place] = seen.driving.map(|r| T::of(units.mixing(seen.curvature) * r));
+                (sums[0], sums[1]) = (sums[0] + seen.rest, sums[1] + square(u[j]));
+            }
+            sums
+        };
+        let [rest, displaced, owed, gone] = over(threads, blocks, work);
+        Sums { rest, displaced, owed, gone }
+    }
+
+    /// Multiplies the debt: nothing is owed any more.
+    pub fn pay(&mut self, problem: &mut Problem) {
+        let (places, threads) = (&problem.places, problem.operators.threads.clone());
+        let Discs { u, way: Way { debt, .. }, given, answer, .. } = self;
+        let blocks = places.parts().zip(places.cut(debt)).zip(places.cut_grid(given));
+        over(&threads, blocks, |_, ((part, debt), given)| {
+            given.fill([T::zero(); 2]);
+            for (place, debt) in part.places.iter().zip(debt.iter_mut()) {
+                given[place] = std::mem::replace(debt, [T::zero(); 2]);
+            }
+            []
+        });
+        problem.operators.multiply_plain(given, answer);
+        over(&threads, places.parts().zip(places.cut(u)), |_, (part, u)| {
+            for (i, u) in places.of(part).zip(u.iter_mut()) {
+                *u = add(*u, double(answer[i]));
+            }
+            []
+        });
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let in_double = size_of::<f64>() + 4 * size_of::<Vector>();
+        self.bound.capacity() * in_double
+            + (13 * self.curvature.capacity() + 2 * 2 * self.given.capacity()) * size_of::<T>()
+    }
+}
+
+/// Of one block what moves, its prediction, and its part of what is multiplied.
+type Block<'a, T> = (
+    ((super::places::Part<'a>, States<'a, T>), ((&'a mut [Vector], &'a mut [T]), &'a mut [Pair<T>])),
+    &'a mut [Pair<T>],
+);
+type States<'a, T> = ((&'a mut [Vector], &'a mut [Vector]), (&'a mut [Pair<T>], &'a mut [Pair<T>]));
+
+impl<T: Real> Drop for Discs<T> {
+    fn drop(&mut self) {
+        let Discs { bound, slip, q, u, normal, curvature, driving, given, answer, .. } = self;
+        let Way { z, direction, chord, product, debt } = &mut self.way;
+        keep([bound]);
+        keep([curvature]);
+        keep([slip, q, u, normal]);
+        keep([driving, given, answer, z, direction, chord, product, debt]);
+    }
+}
+
+/// What the natural map says of an element: see [`Tangent`](super::tangent::Tangent).
+struct Seen {
+    normal: Vector,
+    curvature: f64,
+    driving: Vector,
+    rest: f64,
+}
+
+impl Units {
+    #[inline]
+    fn look(&self, q: Vector, u: Vector, w: Vector, g: f64) -> Seen {
+        let s = add(w, u);
+        let (tau, rest) = (plus(q, -self.rho, s), rest(s, q, g));
+        if !(square(tau) > g * g) {
+            return Seen { normal: [0.0; 2], curvature: 0.0, driving: [-s[0], -s[1]], rest };
+        }
+        let (normal, curvature) = normal_and_curvature((q, s), g, tau, 1.0 / self.rho);
+        Seen { normal, curvature, driving: plus([-s[0], -s[1]], dot(s, normal), normal), rest }
+    }
+
+    /// E of the preconditioner.
+    #[inline]
+    fn mixing(&self, curvature: f64) -> f64 {
+        1.0 / (1.0 + MIXED * curvature / self.a0)
+    }
+}
+
+/// Whether an element with this normal slips.
+#[inline]
+fn slips(n: Vector) -> bool {
+    n != [0.0; 2]
+}
+
+#[inline]
+fn double<T: Real>(v: Pair<T>) -> Vector {
+    v.map(T::to_double)
+}
+
+/// P v.
+#[inline]
+fn project(n: Vector, v: Vector) -> Vector {
+    plus(v, -dot(v, n), n)
+}
+
+/// Where an element goes from q by `a t`.
+#[inline]
+fn moved(n: Vector, g: f64, q: Vector, t: Vector, a: f64) -> Vector {
+    if !slips(n) {
+        return onto_disc(plus(q, a, t), g);
+    }
+    let to = [g * n[0] + a * t[0], g * n[1] + a * t[1]];
+    let factor = g / square(to).sqrt();
+    [to[0] * factor, to[1] * factor]
+}
