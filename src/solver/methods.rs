@@ -114,14 +114,17 @@ impl Methods {
             return Ok(None);
         }
         let violation = survey.violation(set);
-        admit(state, set);
         let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
         if on_coarser_grids && !(violation <= WORTHLESS) {
+            admit(state, set);
             return Ok(Some(true));
         }
         // With limits it is not known what grows with the load.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
+            // It finds the contact area by itself.
             self.projected_cg.predict(state, &task.problem.threads)?;
+        } else if survey.violation > 0.0 {
+            admit(state, set);
         }
         Ok(Some(false))
     }

@@ -96,12 +96,25 @@ fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>
 
 /// Pressures that are admissible, on elements of C that have a surface.
 fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
-    for i in 0..state.p.len() {
-        state.contact[i] &= state.h[i].is_finite();
-        let p = if state.contact[i] { set.project(i, state.p[i]) } else { 0.0 };
-        if p != state.p[i] {
-            state.p[i] = p;
-            state.u_is = Freshness::Stale;
+    for start in (0..state.p.len()).step_by(state.grid.mx) {
+        // Few rows have anything to clean, and this the compiler can vectorise.
+        let row = start..start + state.grid.mx;
+        let (p, h, contact) = (&state.p[row.clone()], &state.h[row.clone()], &state.contact[row.clone()]);
+        let elements = p.iter().zip(h).zip(contact).zip(row.clone());
+        let unclean = |some, (((p, h), &inside), i): (((&f64, &f64), &bool), usize)| {
+            let to = if inside { set.project(i, *p) } else { 0.0 };
+            some | (to != *p) | (inside & !h.is_finite())
+        };
+        if !elements.fold(false, unclean) {
+            continue;
+        }
+        for i in row {
+            state.contact[i] &= state.h[i].is_finite();
+            let p = if state.contact[i] { set.project(i, state.p[i]) } else { 0.0 };
+            if p != state.p[i] {
+                state.p[i] = p;
+                state.u_is = Freshness::Stale;
+            }
         }
     }
     state.project(set);

@@ -13,6 +13,8 @@ use crate::operator::zeros;
 use crate::scene::Load;
 use crate::threads::Threads;
 
+/// Parts of each sum: an addition does not wait for the one before.
+const LANES: usize = 4;
 /// A change whose energy is this part of its own without what is of p is that of rounding.
 const NOISE: f64 = 1e-9;
 
@@ -76,19 +78,26 @@ impl Predictor {
     /// a and b of the start `a p_1 - b p_0`.
     fn shares(&self, state: &State) -> (f64, f64) {
         let by_force = matches!(state.load, Load::Force(_));
-        // (p, u), (p, e), (d, u), (d, A d), (d, e); sums in the place of products with u where a force is prescribed.
-        let [mut pu, mut pe, mut du, mut dv, mut de] = [0.0; 5];
-        for i in 0..state.p.len() {
-            let (p, d) = (state.p[i], state.p[i] - self.p[i]);
-            if p != 0.0 || d != 0.0 {
-                let (u, e) = (state.u[i], state.deformed_distance(i));
-                pu += p * u;
-                pe += p * e;
-                du += d * u;
-                dv += d * (u - self.u[i]);
-                de += d * e;
+        // (p, u), (p, e), (d, u), (d, A d), (d, e); without branches but for rows: h may be infinite where nothing presses.
+        let mut sums = [[0.0; LANES]; 5];
+        let rows = self.p.chunks_exact(state.grid.mx).zip(self.u.chunks_exact(state.grid.mx)).enumerate();
+        for (y, (p_0, u_0)) in rows {
+            let row = y * state.grid.mx..(y + 1) * state.grid.mx;
+            let (p, u, h) = (&state.p[row.clone()], &state.u[row.clone()], &state.h[row]);
+            if p.iter().zip(p_0).fold(true, |none, (p, p_0)| none & (*p == 0.0) & (*p_0 == 0.0)) {
+                continue;
             }
+            let mut add = |i: usize, lane: usize| {
+                let (d, v) = (p[i] - p_0[i], u[i] - u_0[i]);
+                let e = if (p[i] != 0.0) | (d != 0.0) { h[i] - state.approach + u[i] } else { 0.0 };
+                let terms = [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e];
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| sum[lane] += term);
+            };
+            let whole = p.len() - p.len() % LANES;
+            (0..whole).step_by(LANES).for_each(|i| (0..LANES).for_each(|lane| add(i + lane, lane)));
+            (whole..p.len()).for_each(|i| add(i, i - whole));
         }
+        let [pu, pe, du, dv, de] = sums.map(|lanes| lanes.iter().sum::<f64>());
         let (mut scale, mut share) = (1.0 - pe / pu, du / pu);
         if by_force {
             let sum = |p: &[f64]| p.iter().sum::<f64>();
