@@ -11,7 +11,8 @@
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
-//! With a prescribed force z and t have mean zero over C, and p is scaled to carry the force after a truncation.
+//! With a prescribed force z and t have mean zero over C, and p is scaled to carry the force after a truncation. In a step in time by approach
+//! they have, too, and p moves along the last step's change (module `known`).
 //!
 //! *Truncation without a product.* After step 4.1 u lacks `A d`, d being what the truncated elements gained. A product of its own
 //! would repair that, and costs as much as half an iteration. Two things avoid it. All eigenvalues of M A on C are at least 1 and few
@@ -224,9 +225,7 @@ impl<T: Real> Iteration<T> {
         }
         update.factor = match state.load {
             Load::Force(_) => self.carry_force::<S>(state),
-            Load::Approach(_) if update.settled && !limited && !S::FIXED && !self.known.is_there() => {
-                self.least_energy(state, &update)
-            }
+            Load::Approach(_) if update.settled && !limited && !S::FIXED => self.least_energy(state, &update),
             Load::Approach(_) => update.factor,
         };
         self.fit_approach(state, &update);

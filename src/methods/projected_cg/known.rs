@@ -9,7 +9,8 @@
 //! gamma = (r, d)/(d, w),  p = p + gamma d,  u = u + gamma w      after each step along t
 //! ```
 //!
-//! Where an element of d is not in C its pressure stays 0, and u is owed the difference.
+//! Elements that are not in C at the start are taken out of d, and by one product out of w. Of those that leave later the pressure stays 0, and u
+//! is owed the difference.
 
 use super::scaling::Scaling;
 use super::vectors::Iteration;
@@ -76,21 +77,23 @@ impl<T: Real> Known<T> {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Takes the change from the last solution to `state`, the part of a grid of `mx` columns in the window, if it carries force.
+    /// Takes the change from the last solution, if there is one, to `state`, the part of a grid of `mx` columns in the window; none if it
+    /// carries no force.
     pub fn know(
         &mut self,
         state: &State,
-        last: Last<'_>,
+        last: Option<Last<'_>>,
         (window, mx): (&Window, usize),
         units: &Scaling,
     ) -> Result<()> {
-        let Known { d, w, outside, energy, size } = &mut self.known;
+        self.known.forget();
+        let Some(last) = last else { return Ok(()) };
+        let Known { d, w, outside, .. } = &mut self.known;
         for values in [&mut *d, &mut *w] {
             reserve(values, state.p.len(), "the change of the last step")?;
             values.clear();
         }
         outside.clear();
-        (*energy, *size) = (0.0, 0.0);
         let (mut sum, mut absolute, mut all) = (0.0, 0.0, 0.0);
         let rows = state.p.chunks_exact(window.x.len()).zip(state.u.chunks_exact(window.x.len()));
         for ((p, u), y) in rows.zip(window.y.clone()) {
@@ -108,11 +111,6 @@ impl<T: Real> Iteration<T> {
             self.known.measure();
         }
         Ok(())
-    }
-
-    /// There is no such direction.
-    pub fn forget_known(&mut self) {
-        self.known.forget();
     }
 
     /// d becomes the change on C alone. Returns the products that this takes.

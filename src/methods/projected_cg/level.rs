@@ -124,10 +124,7 @@ impl Level {
                 in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
-            match last {
-                Some(last) => in_either!(inner, inner => inner.know(state, last, (window, mx), units))?,
-                None => in_either!(inner, inner => inner.forget_known()),
-            }
+            in_either!(inner, inner => inner.know(state, last, (window, mx), units))?;
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
