@@ -3,12 +3,11 @@
 //! Tractions are in units of the smaller one of the bounds and what the rigid slip asks for, displacements in that times the unit of the coefficients: directions,
 //! in single precision T, stay within its range. What adds up, q and u, is in double precision.
 
-use super::certificate::rest;
+use super::disc::{double, moved, project, slips, Pair, Units};
 use super::extension::Extension;
 use super::places::Places;
 use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
 use super::shift::Steps;
-use super::tangent::{normal_and_curvature, MIXED};
 use super::toeplitz::unit_of;
 use super::vectors::over;
 use super::Vector;
@@ -16,9 +15,6 @@ use crate::error::Result;
 use crate::memory::{keep, unwritten};
 use crate::operator::fft::Real;
 use crate::threads::Threads;
-
-/// A value of two components.
-type Pair<T> = [T; 2];
 
 /// What memory is for.
 const FIELDS: &str = "the iteration on discs";
@@ -52,17 +48,6 @@ struct Way<T> {
     chord: Vec<Pair<T>>,
     product: Vec<Pair<T>>,
     debt: Vec<Pair<T>>,
-}
-
-/// Units, and what is in them.
-#[derive(Clone, Copy, Default)]
-struct Units {
-    traction: f64,
-    displacement: f64,
-    /// The influence of an element on itself.
-    a0: f64,
-    /// Of the natural map.
-    rho: f64,
 }
 
 /// What a pass saw: the squares of what is left of the slip and of u, and of a step the debts and the ways that elements went.
@@ -319,59 +304,4 @@ impl<T: Real> Drop for Discs<T> {
         keep([slip, q, u, normal]);
         keep([driving, given, answer, z, direction, chord, product, debt]);
     }
-}
-
-/// What the natural map says of an element: see [`Tangent`](super::tangent::Tangent).
-struct Seen {
-    normal: Vector,
-    curvature: f64,
-    driving: Vector,
-    rest: f64,
-}
-
-impl Units {
-    #[inline]
-    fn look(&self, q: Vector, u: Vector, w: Vector, g: f64) -> Seen {
-        let s = add(w, u);
-        let (tau, rest) = (plus(q, -self.rho, s), rest(s, q, g));
-        if !(square(tau) > g * g) {
-            return Seen { normal: [0.0; 2], curvature: 0.0, driving: [-s[0], -s[1]], rest };
-        }
-        let (normal, curvature) = normal_and_curvature((q, s), g, tau, 1.0 / self.rho);
-        Seen { normal, curvature, driving: plus([-s[0], -s[1]], dot(s, normal), normal), rest }
-    }
-
-    /// E of the preconditioner.
-    #[inline]
-    fn mixing(&self, curvature: f64) -> f64 {
-        1.0 / (1.0 + MIXED * curvature / self.a0)
-    }
-}
-
-/// Whether an element with this normal slips.
-#[inline]
-fn slips(n: Vector) -> bool {
-    n != [0.0; 2]
-}
-
-#[inline]
-fn double<T: Real>(v: Pair<T>) -> Vector {
-    v.map(T::to_double)
-}
-
-/// P v.
-#[inline]
-fn project(n: Vector, v: Vector) -> Vector {
-    plus(v, -dot(v, n), n)
-}
-
-/// Where an element goes from q by `a t`.
-#[inline]
-fn moved(n: Vector, g: f64, q: Vector, t: Vector, a: f64) -> Vector {
-    if !slips(n) {
-        return onto_disc(plus(q, a, t), g);
-    }
-    let to = [g * n[0] + a * t[0], g * n[1] + a * t[1]];
-    let factor = g / square(to).sqrt();
-    [to[0] * factor, to[1] * factor]
 }
