@@ -87,7 +87,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let blocks = places.parts().zip(places.cut(&mut self.bound)).zip(places.cut(&mut self.slip));
         over(problem.threads(), blocks, |_, ((part, bound), slip)| {
-            for ((i, g), w) in problem.places.of(part).zip(bound.iter_mut()).zip(slip.iter_mut()) {
+            for ((i, g), w) in part.on_grid().zip(bound.iter_mut()).zip(slip.iter_mut()) {
                 *g = problem.bound[i] / traction;
                 *w = add(problem.slip[i], problem.offset).map(|w| by * w);
             }
@@ -107,7 +107,7 @@ impl<T: Real> Discs<T> {
         let states = places.cut(&mut self.q).zip(places.cut(&mut self.u));
         let blocks = places.parts().zip(states).zip(places.cut(&mut self.way.debt));
         over(problem.threads(), blocks, |_, ((part, (q, u)), debt)| {
-            for ((i, q), u) in places.of(part).zip(q.iter_mut()).zip(u.iter_mut()) {
+            for ((i, q), u) in part.on_grid().zip(q.iter_mut()).zip(u.iter_mut()) {
                 *q = state.q[i].map(|q| to_q * q);
                 *u = state.u[i].map(|u| to_u * u);
             }
@@ -122,7 +122,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let blocks = places.parts().zip(places.cut_grid(&mut state.q).zip(places.cut_grid(&mut state.u)));
         over(problem.threads(), blocks, |_, (part, (to_q, to_u))| {
-            for (k, i) in (part.start..).zip(part.places.iter()) {
+            for (k, i) in (part.start..).zip(part.in_rows()) {
                 to_q[i] = self.q[k].map(|q| traction * q);
                 to_u[i] = self.u[k].map(|u| displacement * u);
             }
@@ -143,7 +143,7 @@ impl<T: Real> Discs<T> {
         let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), driving)), given)| {
             let mut sums = [0.0; 2];
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let seen = units.look(q[k], u[k], slip[k], bound[k]);
                 (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
@@ -165,7 +165,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let [along] = over(problem.threads(), places.parts().zip(places.cut(z)), |_, (part, z)| {
             let mut along = 0.0;
-            for ((k, place), z) in (part.start..).zip(places.of(part)).zip(z.iter_mut()) {
+            for ((k, place), z) in (part.start..).zip(part.on_grid()).zip(z.iter_mut()) {
                 let bend = curvature[k].to_double();
                 let mixing = units.mixing(bend);
                 let v = double(answer[place]).map(|v| mixing * v);
@@ -187,7 +187,7 @@ impl<T: Real> Discs<T> {
         let blocks = places.parts().zip(places.cut(direction).zip(places.cut(chord))).zip(places.cut_grid(given));
         over(problem.threads(), blocks, |_, ((part, (direction, chord)), given)| {
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let t = project(normal[k], plus(double(z[k]), beta, double(direction[j])));
                 let moved = moved(normal[k], bound[k], q[k], t, f);
@@ -207,7 +207,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         over(problem.threads(), places.parts().zip(places.cut(product)), |_, (part, product)| {
             let mut sums = [0.0; 2];
-            for ((k, place), product) in (part.start..).zip(places.of(part)).zip(product.iter_mut()) {
+            for ((k, place), product) in (part.start..).zip(part.on_grid()).zip(product.iter_mut()) {
                 *product = answer[place];
                 let along = double(if slips(normal[k]) { direction[k] } else { chord[k] });
                 let bend = curvature[k].to_double();
@@ -231,7 +231,7 @@ impl<T: Real> Discs<T> {
                 block;
             let mut sums = [0.0; 4];
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let (g, n) = (bound[k], normal[j]);
                 let straight = plus(q[j], length, double(chord[k]));
@@ -266,14 +266,14 @@ impl<T: Real> Discs<T> {
         let blocks = places.parts().zip(places.cut(debt)).zip(places.cut_grid(given));
         over(&threads, blocks, |_, ((part, debt), given)| {
             given.fill([T::zero(); 2]);
-            for (place, debt) in part.places.iter().zip(debt.iter_mut()) {
+            for (place, debt) in part.in_rows().zip(debt.iter_mut()) {
                 given[place] = std::mem::replace(debt, [T::zero(); 2]);
             }
             []
         });
         problem.operators.multiply_plain(given, answer);
         over(&threads, places.parts().zip(places.cut(u)), |_, (part, u)| {
-            for (i, u) in places.of(part).zip(u.iter_mut()) {
+            for (i, u) in part.on_grid().zip(u.iter_mut()) {
                 *u = add(*u, double(answer[i]));
             }
             []
