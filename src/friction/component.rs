@@ -1,7 +1,8 @@
 //! Products of one component alone, where a traction in one direction displaces in that direction only: by real transforms, half of the work.
 
 use super::spectrum::Spectrum;
-use super::toeplitz::{rows_with_traction, Toeplitz, Workspace};
+use super::toeplitz::{rows_with_traction, Toeplitz};
+use super::workspace::Workspace;
 use crate::operator::columns::for_each_block;
 use crate::operator::fft::{Complex, Real};
 

@@ -3,12 +3,11 @@
 //! Tractions are in units of the smaller one of the bounds and what the rigid slip asks for, displacements in that times the unit of the coefficients: directions,
 //! in single precision T, stay within its range. What adds up, q and u, is in double precision.
 
-use super::certificate::rest;
+use super::disc::{double, moved, project, slips, Pair, Units};
 use super::extension::Extension;
 use super::places::Places;
 use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
 use super::shift::Steps;
-use super::tangent::{normal_and_curvature, MIXED};
 use super::toeplitz::unit_of;
 use super::vectors::over;
 use super::Vector;
@@ -16,9 +15,6 @@ use crate::error::Result;
 use crate::memory::{keep, unwritten};
 use crate::operator::fft::Real;
 use crate::threads::Threads;
-
-/// A value of two components.
-type Pair<T> = [T; 2];
 
 /// What memory is for.
 const FIELDS: &str = "the iteration on discs";
@@ -52,17 +48,6 @@ struct Way<T> {
     chord: Vec<Pair<T>>,
     product: Vec<Pair<T>>,
     debt: Vec<Pair<T>>,
-}
-
-/// Units, and what is in them.
-#[derive(Clone, Copy, Default)]
-struct Units {
-    traction: f64,
-    displacement: f64,
-    /// The influence of an element on itself.
-    a0: f64,
-    /// Of the natural map.
-    rho: f64,
 }
 
 /// What a pass saw: the squares of what is left of the slip and of u, and of a step the debts and the ways that elements went.
@@ -102,7 +87,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let blocks = places.parts().zip(places.cut(&mut self.bound)).zip(places.cut(&mut self.slip));
         over(problem.threads(), blocks, |_, ((part, bound), slip)| {
-            for ((i, g), w) in problem.places.of(part).zip(bound.iter_mut()).zip(slip.iter_mut()) {
+            for ((i, g), w) in part.on_grid().zip(bound.iter_mut()).zip(slip.iter_mut()) {
                 *g = problem.bound[i] / traction;
                 *w = add(problem.slip[i], problem.offset).map(|w| by * w);
             }
@@ -122,7 +107,7 @@ impl<T: Real> Discs<T> {
         let states = places.cut(&mut self.q).zip(places.cut(&mut self.u));
         let blocks = places.parts().zip(states).zip(places.cut(&mut self.way.debt));
         over(problem.threads(), blocks, |_, ((part, (q, u)), debt)| {
-            for ((i, q), u) in places.of(part).zip(q.iter_mut()).zip(u.iter_mut()) {
+            for ((i, q), u) in part.on_grid().zip(q.iter_mut()).zip(u.iter_mut()) {
                 *q = state.q[i].map(|q| to_q * q);
                 *u = state.u[i].map(|u| to_u * u);
             }
@@ -137,7 +122,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let blocks = places.parts().zip(places.cut_grid(&mut state.q).zip(places.cut_grid(&mut state.u)));
         over(problem.threads(), blocks, |_, (part, (to_q, to_u))| {
-            for (k, i) in (part.start..).zip(part.places.iter()) {
+            for (k, i) in (part.start..).zip(part.in_rows()) {
                 to_q[i] = self.q[k].map(|q| traction * q);
                 to_u[i] = self.u[k].map(|u| displacement * u);
             }
@@ -158,7 +143,7 @@ impl<T: Real> Discs<T> {
         let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), driving)), given)| {
             let mut sums = [0.0; 2];
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let seen = units.look(q[k], u[k], slip[k], bound[k]);
                 (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
@@ -180,7 +165,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         let [along] = over(problem.threads(), places.parts().zip(places.cut(z)), |_, (part, z)| {
             let mut along = 0.0;
-            for ((k, place), z) in (part.start..).zip(places.of(part)).zip(z.iter_mut()) {
+            for ((k, place), z) in (part.start..).zip(part.on_grid()).zip(z.iter_mut()) {
                 let bend = curvature[k].to_double();
                 let mixing = units.mixing(bend);
                 let v = double(answer[place]).map(|v| mixing * v);
@@ -202,7 +187,7 @@ impl<T: Real> Discs<T> {
         let blocks = places.parts().zip(places.cut(direction).zip(places.cut(chord))).zip(places.cut_grid(given));
         over(problem.threads(), blocks, |_, ((part, (direction, chord)), given)| {
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let t = project(normal[k], plus(double(z[k]), beta, double(direction[j])));
                 let moved = moved(normal[k], bound[k], q[k], t, f);
@@ -222,7 +207,7 @@ impl<T: Real> Discs<T> {
         let places = &problem.places;
         over(problem.threads(), places.parts().zip(places.cut(product)), |_, (part, product)| {
             let mut sums = [0.0; 2];
-            for ((k, place), product) in (part.start..).zip(places.of(part)).zip(product.iter_mut()) {
+            for ((k, place), product) in (part.start..).zip(part.on_grid()).zip(product.iter_mut()) {
                 *product = answer[place];
                 let along = double(if slips(normal[k]) { direction[k] } else { chord[k] });
                 let bend = curvature[k].to_double();
@@ -246,7 +231,7 @@ impl<T: Real> Discs<T> {
                 block;
             let mut sums = [0.0; 4];
             given.fill([T::zero(); 2]);
-            for (j, place) in part.places.iter().enumerate() {
+            for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let (g, n) = (bound[k], normal[j]);
                 let straight = plus(q[j], length, double(chord[k]));
@@ -281,14 +266,14 @@ impl<T: Real> Discs<T> {
         let blocks = places.parts().zip(places.cut(debt)).zip(places.cut_grid(given));
         over(&threads, blocks, |_, ((part, debt), given)| {
             given.fill([T::zero(); 2]);
-            for (place, debt) in part.places.iter().zip(debt.iter_mut()) {
+            for (place, debt) in part.in_rows().zip(debt.iter_mut()) {
                 given[place] = std::mem::replace(debt, [T::zero(); 2]);
             }
             []
         });
         problem.operators.multiply_plain(given, answer);
         over(&threads, places.parts().zip(places.cut(u)), |_, (part, u)| {
-            for (i, u) in places.of(part).zip(u.iter_mut()) {
+            for (i, u) in part.on_grid().zip(u.iter_mut()) {
                 *u = add(*u, double(answer[i]));
             }
             []
@@ -319,59 +304,4 @@ impl<T: Real> Drop for Discs<T> {
         keep([slip, q, u, normal]);
         keep([driving, given, answer, z, direction, chord, product, debt]);
     }
-}
-
-/// What the natural map says of an element: see [`Tangent`](super::tangent::Tangent).
-struct Seen {
-    normal: Vector,
-    curvature: f64,
-    driving: Vector,
-    rest: f64,
-}
-
-impl Units {
-    #[inline]
-    fn look(&self, q: Vector, u: Vector, w: Vector, g: f64) -> Seen {
-        let s = add(w, u);
-        let (tau, rest) = (plus(q, -self.rho, s), rest(s, q, g));
-        if !(square(tau) > g * g) {
-            return Seen { normal: [0.0; 2], curvature: 0.0, driving: [-s[0], -s[1]], rest };
-        }
-        let (normal, curvature) = normal_and_curvature((q, s), g, tau, 1.0 / self.rho);
-        Seen { normal, curvature, driving: plus([-s[0], -s[1]], dot(s, normal), normal), rest }
-    }
-
-    /// E of the preconditioner.
-    #[inline]
-    fn mixing(&self, curvature: f64) -> f64 {
-        1.0 / (1.0 + MIXED * curvature / self.a0)
-    }
-}
-
-/// Whether an element with this normal slips.
-#[inline]
-fn slips(n: Vector) -> bool {
-    n != [0.0; 2]
-}
-
-#[inline]
-fn double<T: Real>(v: Pair<T>) -> Vector {
-    v.map(T::to_double)
-}
-
-/// P v.
-#[inline]
-fn project(n: Vector, v: Vector) -> Vector {
-    plus(v, -dot(v, n), n)
-}
-
-/// Where an element goes from q by `a t`.
-#[inline]
-fn moved(n: Vector, g: f64, q: Vector, t: Vector, a: f64) -> Vector {
-    if !slips(n) {
-        return onto_disc(plus(q, a, t), g);
-    }
-    let to = [g * n[0] + a * t[0], g * n[1] + a * t[1]];
-    let factor = g / square(to).sqrt();
-    [to[0] * factor, to[1] * factor]
 }

@@ -3,12 +3,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`coefficients`], `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
-//! | [`Toeplitz`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
 //! | `extension` | residuals continued outside C, for the preconditioner |
-//! | `shift`, `discs`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
+//! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
@@ -19,6 +19,7 @@ pub mod coefficients;
 mod component;
 pub mod cross;
 pub mod dense;
+mod disc;
 mod discs;
 mod extension;
 mod fgmres;
@@ -46,6 +47,7 @@ mod tangent;
 mod toeplitz;
 mod vectors;
 mod window;
+mod workspace;
 
 pub use certificate::{Certificate, ON_THE_CIRCLE};
 pub use coefficients::{Compliance, Tangential};
@@ -53,7 +55,8 @@ pub use cross::{Coupling, CrossTables, Source};
 pub use request::{Request, Start, Superposed};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;
-pub use toeplitz::{Toeplitz, Workspace};
+pub use toeplitz::Toeplitz;
+pub use workspace::Workspace;
 
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];

@@ -30,20 +30,21 @@ struct Block {
 pub struct Part<'a> {
     /// The first element.
     pub start: usize,
-    /// Places from the first row of the block on.
-    pub places: Local<'a>,
-}
-
-/// Places of a block's elements in its part of the grid.
-pub struct Local<'a> {
     elements: &'a [u32],
+    /// The first place of its rows.
     first: usize,
 }
 
-impl Local<'_> {
-    /// In the order of the elements.
-    pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        self.elements.iter().map(|&i| i as usize - self.first)
+impl<'a> Part<'a> {
+    /// Places on the grid, in the order of the elements.
+    pub fn on_grid(&self) -> impl Iterator<Item = usize> + 'a {
+        self.elements.iter().map(|&i| i as usize)
+    }
+
+    /// The same within the rows of the block.
+    pub fn in_rows(&self) -> impl Iterator<Item = usize> + 'a {
+        let first = self.first;
+        self.on_grid().map(move |i| i - first)
     }
 }
 
@@ -89,13 +90,8 @@ impl Places {
     pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
         self.blocks.iter().map(|block| {
             let elements = &self.elements[block.range()];
-            Part { start: block.places.0, places: Local { elements, first: block.rows.0 * self.mx } }
+            Part { start: block.places.0, elements, first: block.rows.0 * self.mx }
         })
-    }
-
-    /// Places on the grid of a block's elements.
-    pub fn of<'a>(&'a self, part: &Part<'a>) -> impl Iterator<Item = usize> + 'a {
-        part.places.elements.iter().map(|&i| i as usize)
     }
 
     /// A field on C by blocks.
@@ -144,8 +140,8 @@ mod tests {
             let (mut on_grid, mut on_c) = (vec![0; mx * my], vec![0; expected.len()]);
             let blocks = places.parts().zip(places.cut(&mut on_c)).zip(places.cut_grid(&mut on_grid));
             for ((part, on_c), on_grid) in blocks {
-                assert!(places.of(&part).eq(expected[part.start..part.start + on_c.len()].iter().copied()));
-                part.places.iter().for_each(|place| on_grid[place] += 1);
+                assert!(part.on_grid().eq(expected[part.start..part.start + on_c.len()].iter().copied()));
+                part.in_rows().for_each(|place| on_grid[place] += 1);
                 on_c.iter_mut().for_each(|count| *count += 1);
             }
             assert!(on_c.iter().all(|count| *count == 1));

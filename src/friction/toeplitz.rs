@@ -19,11 +19,12 @@ use std::ops::Range;
 use super::coefficients::{Entry, Tangential};
 use super::quadrant::Quadrant;
 use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
+use super::workspace::{Piece, Workspace};
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{blank, computed, keep};
-use crate::operator::columns::{for_each_mirrored_block, BLOCK};
+use crate::memory::{computed, keep};
+use crate::operator::columns::for_each_mirrored_block;
 use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
@@ -31,14 +32,11 @@ use crate::threads::Threads;
 /// Displacements at the centres.
 const HERE: (f64, f64) = (0.0, 0.0);
 
-/// What memory is for.
-const WORKSPACE: &str = "the workspace of tangential products";
-
 /// The operator of one grid.
 pub struct Toeplitz<T: Real> {
     pub(super) mx: usize,
     pub(super) my: usize,
-    rows: ColumnTransform<T>,
+    pub(super) rows: ColumnTransform<T>,
     /// Of one component alone.
     pub(super) real_rows: RowTransform<T>,
     pub(super) columns: ColumnTransform<T>,
@@ -48,29 +46,6 @@ pub struct Toeplitz<T: Real> {
     pub(super) threads: Threads,
     /// Coefficients are kept in this unit, a power of two: single precision has a small range.
     pub(super) unit: f64,
-}
-
-/// Memory of products.
-#[derive(Default)]
-pub struct Workspace<T: Real> {
-    /// `[my][px]`.
-    pub(super) bins: Vec<Complex<T>>,
-    pub(super) pieces: Vec<Piece<T>>,
-}
-
-/// That of one piece of the work.
-#[derive(Default)]
-pub(super) struct Piece<T: Real> {
-    pub(super) row: Vec<T>,
-    pub(super) columns: Vec<Complex<T>>,
-    mirrored: Vec<Complex<T>>,
-    pub(super) scratch: Vec<Complex<T>>,
-}
-
-impl<T: Real> Drop for Workspace<T> {
-    fn drop(&mut self) {
-        keep([&mut self.bins]);
-    }
 }
 
 impl<T: Real> Drop for Toeplitz<T> {
@@ -191,20 +166,6 @@ impl<T: Real> Toeplitz<T> {
         let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
         let periods = (self.rows.length(), self.columns.length());
         Ok(Toeplitz::with(&grid, periods, (spectrum, self.is_uncoupled), self.unit, &self.threads))
-    }
-
-    /// Memory for products by this operator.
-    pub fn workspace(&self) -> Result<Workspace<T>> {
-        let (px, py) = (self.rows.length(), self.columns.length());
-        let piece = |_| {
-            let mut scratch = self.rows.scratch();
-            self.real_rows.fit(&mut scratch);
-            self.columns.fit(&mut scratch);
-            let columns = vec![Complex::default(); BLOCK * py];
-            Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
-        };
-        let bins = blank(self.my * px, Complex::new(T::nan(), T::nan()), WORKSPACE)?;
-        Ok(Workspace { bins, pieces: (0..self.threads.count()).map(piece).collect() })
     }
 
     /// Bytes of the spectrum.

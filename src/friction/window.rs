@@ -1,6 +1,7 @@
 //! The box around C, on which the operators are, and products between the centres of its elements.
 
-use super::toeplitz::{Toeplitz, Workspace};
+use super::toeplitz::Toeplitz;
+use super::workspace::Workspace;
 use super::Tangential;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;

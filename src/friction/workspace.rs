@@ -1,0 +1,49 @@
+//! Memory of products of two components.
+
+use super::toeplitz::Toeplitz;
+use crate::error::Result;
+use crate::memory::{blank, keep};
+use crate::operator::columns::BLOCK;
+use crate::operator::fft::{Complex, Real};
+
+/// What memory is for.
+const WORKSPACE: &str = "the workspace of tangential products";
+
+/// Memory of products.
+#[derive(Default)]
+pub struct Workspace<T: Real> {
+    /// `[my][px]`.
+    pub(super) bins: Vec<Complex<T>>,
+    pub(super) pieces: Vec<Piece<T>>,
+}
+
+/// That of one piece of the work.
+#[derive(Default)]
+pub(super) struct Piece<T: Real> {
+    pub(super) row: Vec<T>,
+    pub(super) columns: Vec<Complex<T>>,
+    pub(super) mirrored: Vec<Complex<T>>,
+    pub(super) scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Drop for Workspace<T> {
+    fn drop(&mut self) {
+        keep([&mut self.bins]);
+    }
+}
+
+impl<T: Real> Toeplitz<T> {
+    /// Memory for products by this operator.
+    pub fn workspace(&self) -> Result<Workspace<T>> {
+        let (px, py) = (self.rows.length(), self.columns.length());
+        let piece = |_| {
+            let mut scratch = self.rows.scratch();
+            self.real_rows.fit(&mut scratch);
+            self.columns.fit(&mut scratch);
+            let columns = vec![Complex::default(); BLOCK * py];
+            Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
+        };
+        let bins = blank(self.my * px, Complex::new(T::nan(), T::nan()), WORKSPACE)?;
+        Ok(Workspace { bins, pieces: (0..self.threads.count()).map(piece).collect() })
+    }
+}
