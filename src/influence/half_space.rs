@@ -18,7 +18,7 @@
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::Kernel;
 use crate::error::Result;
@@ -43,8 +43,13 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
 /// Coefficients nearer than the series reaches are kept if there are no more than this, of one quadrant.
 const MOST_KEPT: usize = 1024;
 
+/// Offsets in each direction of which all coefficients are kept, once a grid of so many elements asks for them: to compute them takes
+/// as long as a product or more, and operators of the grid, of its windows and coarser grids, preconditioners and the next solver need
+/// the same ones.
+const QUADRANTS: [usize; 6] = [8, 16, 24, 32, 48, 64];
+
 /// Coefficients of the half-space for one element size.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct HalfSpace {
     pub(super) dx: f64,
     pub(super) dy: f64,
@@ -53,15 +58,20 @@ pub struct HalfSpace {
     shape: Arc<Shape>,
 }
 
-/// What depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large.
-#[derive(Clone, Debug, PartialEq)]
+/// What depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large. Here they
+/// are integrals of 1/rho over an element, relative to its length in x.
+#[derive(Debug)]
 struct Shape {
+    /// Of the element that it was computed for.
+    dx: f64,
+    dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
     series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
-    /// The integral of 1/rho, over dx, at least at all offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row. Empty if
-    /// there are too many.
+    /// At least those at all offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row. Empty if there are too many.
     near: Vec<f64>,
     near_x: usize,
+    /// All of the [`QUADRANTS`], row by row, that were asked for.
+    quadrants: [OnceLock<Vec<f64>>; QUADRANTS.len()],
 }
 
 /// A shape that was computed, and of which element.
@@ -89,13 +99,94 @@ impl Shape {
         // Of a needle of an element there are more than can be counted.
         let count = |d: f64| ((reach / d) as usize).saturating_add(2);
         let (near_x, near_y) = (count(dx), count(dy));
-        let series = multipole_series(dx, dy);
-        if near_x.saturating_mul(near_y) > MOST_KEPT {
-            return Shape { series, near: Vec::new(), near_x: 0 };
-        }
+        let few = near_x.saturating_mul(near_y) <= MOST_KEPT;
+        let (near_x, near_y) = if few { (near_x, near_y) } else { (0, 0) };
         let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
         let near = offsets.map(|(kx, ky)| near_integral(kx, ky, dx, dy) / dx).collect();
-        Shape { series, near, near_x }
+        Shape { dx, dy, series: multipole_series(dx, dy), near, near_x, quadrants: Default::default() }
+    }
+
+    /// Those at the offsets `(..end, ky)`, if they are kept.
+    fn kept(&self, end: usize, ky: usize) -> Option<&[f64]> {
+        let large_enough = || QUADRANTS.iter().zip(&self.quadrants).filter(|(size, _)| **size >= end.max(ky + 1));
+        let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
+        let (size, quadrant) = known.or_else(|| {
+            let (size, quadrant) = large_enough().next()?;
+            Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
+        })?;
+        Some(&quadrant[ky * size..][..end])
+    }
+
+    fn quadrant(&self, size: usize) -> Vec<f64> {
+        let mut quadrant = vec![0.0; size * size];
+        quadrant.chunks_exact_mut(size).enumerate().for_each(|(ky, row)| self.fill_row(0, ky, row));
+        quadrant
+    }
+
+    /// Those at the offsets `(kx.., ky)`.
+    fn fill_row(&self, kx: usize, ky: usize, out: &mut [f64]) {
+        let y = ky as f64 * self.dy;
+        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
+        // The distance grows along the row: one segment after the other, each with its own number of terms.
+        let first_beyond = |half_diagonals: f64| {
+            let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
+            let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx as i64 } else { 0 };
+            k.clamp(0, out.len() as i64) as usize
+        };
+        let starts = SERIES.map(|(distance, _)| first_beyond(distance));
+        let (near, far) = out.split_at_mut(starts[0]);
+        for (value, kx) in near.iter_mut().zip(kx..) {
+            *value = self.near(kx, ky);
+        }
+        let [s8, s6, s4, s2] = starts;
+        let (far8, rest) = far.split_at_mut(s6 - s8);
+        let (far6, rest) = rest.split_at_mut(s4 - s6);
+        let (far4, far2) = rest.split_at_mut(s2 - s4);
+        let arch = pulp::Arch::new();
+        let at = |s: usize| (kx + s) as f64;
+        arch.dispatch(Far::<8> { shape: self, kx: at(s8), y, out: far8 });
+        arch.dispatch(Far::<6> { shape: self, kx: at(s6), y, out: far6 });
+        arch.dispatch(Far::<4> { shape: self, kx: at(s4), y, out: far4 });
+        arch.dispatch(Far::<2> { shape: self, kx: at(s2), y, out: far2 });
+    }
+
+    /// The one at an offset nearer than the series reaches.
+    fn near(&self, kx: usize, ky: usize) -> f64 {
+        let kept = if kx < self.near_x { self.near.get(ky * self.near_x + kx) } else { None };
+        kept.copied().unwrap_or_else(|| near_integral(kx as f64, ky as f64, self.dx, self.dy) / self.dx)
+    }
+}
+
+/// A part of a row by the series with terms `k <= K`. Compiled for the vectors of this machine; no bit depends on them.
+struct Far<'a, const K: usize> {
+    shape: &'a Shape,
+    kx: f64,
+    y: f64,
+    out: &'a mut [f64],
+}
+
+impl<const K: usize> pulp::NullaryFnOnce for Far<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Far { shape: Shape { dx, dy, series, .. }, kx, y, out } = self;
+        let half_diagonal2 = 0.25 * (dx * dx + dy * dy);
+        for (k, value) in out.iter_mut().enumerate() {
+            let x = (kx + k as f64) * dx;
+            let r2 = x * x + y * y;
+            let inverse_r2 = 1.0 / r2;
+            let (t, z) = (x * x * inverse_r2, half_diagonal2 * inverse_r2);
+            let mut sum = 0.0;
+            for term in (0..=K).rev() {
+                let mut q = series[term][term];
+                for j in (0..term).rev() {
+                    q = q * t + series[term][j];
+                }
+                sum = sum * z + q;
+            }
+            *value = dy * sum * inverse_r2.sqrt();
+        }
     }
 }
 
@@ -111,32 +202,12 @@ impl HalfSpace {
         let shape = if same_shape { self.shape.clone() } else { Shape::of(dx, dy) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
+}
 
-    fn fill_series<const K: usize>(&self, kx: f64, y: f64, out: &mut [f64]) {
-        let (scale, series) = (self.compliance * self.dx * self.dy, &self.shape.series);
-        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
-        for (k, value) in out.iter_mut().enumerate() {
-            let x = (kx + k as f64) * self.dx;
-            let r2 = x * x + y * y;
-            let inverse_r2 = 1.0 / r2;
-            let (t, z) = (x * x * inverse_r2, half_diagonal2 * inverse_r2);
-            let mut sum = 0.0;
-            for term in (0..=K).rev() {
-                let mut q = series[term][term];
-                for j in (0..term).rev() {
-                    q = q * t + series[term][j];
-                }
-                sum = sum * z + q;
-            }
-            *value = scale * sum * inverse_r2.sqrt();
-        }
-    }
-
-    /// The integral of 1/rho at an offset nearer than the series reaches.
-    fn near(&self, kx: usize, ky: usize) -> f64 {
-        let Shape { near, near_x, .. } = &*self.shape;
-        let kept = if kx < *near_x { near.get(ky * near_x + kx) } else { None };
-        kept.map_or_else(|| near_integral(kx as f64, ky as f64, self.dx, self.dy), |kept| kept * self.dx)
+/// The shape follows from the element.
+impl PartialEq for HalfSpace {
+    fn eq(&self, other: &HalfSpace) -> bool {
+        (self.dx, self.dy, self.compliance) == (other.dx, other.dy, other.compliance)
     }
 }
 
@@ -149,28 +220,13 @@ impl Kernel for HalfSpace {
 
     fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         debug_assert!(kx >= 0);
-        let y = ky.unsigned_abs() as f64 * self.dy;
-        let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
-        // The distance grows along the row: one segment after the other, each with its own number of terms.
-        let first_beyond = |half_diagonals: f64| {
-            let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
-            let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx } else { 0 };
-            k.clamp(0, out.len() as i64) as usize
-        };
-        let starts = SERIES.map(|(distance, _)| first_beyond(distance));
-        let (near, far) = out.split_at_mut(starts[0]);
-        for (k, value) in near.iter_mut().enumerate() {
-            *value = self.compliance * self.near(kx as usize + k, ky.unsigned_abs() as usize);
+        let (kx, ky, scale) = (kx as usize, ky.unsigned_abs() as usize, self.compliance * self.dx);
+        if let Some(kept) = self.shape.kept(kx + out.len(), ky) {
+            out.iter_mut().zip(&kept[kx..]).for_each(|(value, kept)| *value = scale * kept);
+            return;
         }
-        let [s8, s6, s4, s2] = starts;
-        let (far8, rest) = far.split_at_mut(s6 - s8);
-        let (far6, rest) = rest.split_at_mut(s4 - s6);
-        let (far4, far2) = rest.split_at_mut(s2 - s4);
-        let at = |s: usize| (kx + s as i64) as f64;
-        self.fill_series::<8>(at(s8), y, far8);
-        self.fill_series::<6>(at(s6), y, far6);
-        self.fill_series::<4>(at(s4), y, far4);
-        self.fill_series::<2>(at(s2), y, far2);
+        self.shape.fill_row(kx, ky, out);
+        out.iter_mut().for_each(|value| *value *= scale);
     }
 
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {

@@ -18,19 +18,21 @@ use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::blank;
 use crate::methods::{Change, Habits, Step, Task};
-use crate::operator::zeros;
 use crate::scene::Load;
 
 /// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
 const MOST_IN_CONTACT: usize = 64;
 const LARGEST_GRID: usize = 32 * 32;
 
-/// Coefficients, and memory for as many elements as there have been so far.
+/// Coefficients, and memory for as many elements as there may be.
 pub struct Direct {
     grid: Grid,
-    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest.
+    influence: Coefficients,
+    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest, once they are needed.
     table: Vec<f64>,
+    is_filled: bool,
     elements: Vec<usize>,
     /// The same as runs in rows: the first element of each, and how many they are.
     runs: Vec<(usize, usize)>,
@@ -47,16 +49,12 @@ impl Direct {
         if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);
         }
-        let width = 2 * grid.mx - 1;
-        let mut table = zeros(grid.my * width, "influence coefficients")?;
-        for (row, ky) in table.chunks_exact_mut(width).zip(0..) {
-            influence.fill_row(0, ky, &mut row[grid.mx - 1..]);
-            (1..grid.mx).for_each(|kx| row[grid.mx - 1 - kx] = row[grid.mx - 1 + kx]);
-        }
         let scratch = factor::cholesky_in_place_scratch::<f64>(MOST_IN_CONTACT, Par::Seq, Default::default());
         Ok(Some(Direct {
             grid: *grid,
-            table,
+            influence: influence.clone(),
+            table: blank(grid.my * (2 * grid.mx - 1), f64::NAN, "influence coefficients")?,
+            is_filled: false,
             elements: Vec::with_capacity(MOST_IN_CONTACT + 1),
             runs: Vec::with_capacity(MOST_IN_CONTACT + 1),
             matrix: Vec::with_capacity(MOST_IN_CONTACT * MOST_IN_CONTACT),
@@ -70,8 +68,20 @@ impl Direct {
         (self.table.len() + self.matrix.capacity()) * size_of::<f64>()
     }
 
+    fn fill_table(&mut self) {
+        let mx = self.grid.mx;
+        for (row, ky) in self.table.chunks_exact_mut(2 * mx - 1).zip(0..) {
+            self.influence.fill_row(0, ky, &mut row[mx - 1..]);
+            (1..mx).for_each(|kx| row[mx - 1 - kx] = row[mx - 1 + kx]);
+        }
+        self.is_filled = true;
+    }
+
     /// The matrix of the elements, column by column: of each run a piece of a row of the table.
     fn fill_matrix(&mut self) {
+        if !self.is_filled {
+            self.fill_table();
+        }
         let Direct { grid: Grid { mx, .. }, table, elements, runs, matrix, .. } = self;
         runs.clear();
         for &i in &*elements {

@@ -9,35 +9,49 @@ use crate::threads::Threads;
 /// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + Sync + Send, to: &mut [f64]) {
     let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
-    collect(fine, coarse, to, &Threads::One, add, |(sum, count)| sum / count);
+    collect(fine, coarse, to, add, |(sum, count)| sum / count);
 }
 
 /// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has. Distances above
 /// `highest` count as that.
 pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64], threads: &Threads) {
-    let add = |(sum, count): (f64, f64), child: usize| match h[child] {
+    let add = |(sum, count): (f64, f64), h: &f64| match *h {
         f64::INFINITY => (sum, count),
         h => (sum + h.min(highest), count + 1.0),
     };
-    collect(fine, coarse, to, threads, add, |(sum, count)| if count > 0.0 { sum / count } else { f64::INFINITY });
+    let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { f64::INFINITY };
+    let columns = if coarse.mx < fine.mx { 2 } else { 1 };
+    threads.for_a_pass(fine.len()).for_each_plain_row(to, coarse.mx, |y, row| {
+        let mut rows = children(fine.my, coarse.my, y).map(|y| h[y * fine.mx..][..fine.mx].chunks(columns));
+        let (Some(first), second) = (rows.next(), rows.next()) else { return };
+        match second {
+            Some(second) => row.iter_mut().zip(first.zip(second)).for_each(|(to, children)| {
+                *to = mean(match children {
+                    // Mostly: this the compiler unrolls.
+                    ([a, b], [c, d]) => [a, b, c, d].into_iter().fold((0.0, 0.0), add),
+                    (first, second) => first.iter().chain(second).fold((0.0, 0.0), add),
+                });
+            }),
+            None => row.iter_mut().zip(first).for_each(|(to, first)| *to = mean(first.iter().fold((0.0, 0.0), add))),
+        }
+    });
 }
 
 /// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
 pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
     let add = |(inside, count): (usize, usize), child: usize| (inside + usize::from(contact[child]), count + 1);
-    collect(fine, coarse, to, &Threads::One, add, |(inside, count)| 2 * inside >= count);
+    collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
 }
 
 /// Every coarse element gets what `result` makes of what `add` has collected from its children.
-fn collect<A: Default, B: Send>(
+fn collect<A: Default, B>(
     fine: &Grid,
     coarse: &Grid,
     to: &mut [B],
-    threads: &Threads,
-    add: impl Fn(A, usize) -> A + Sync + Send,
-    result: impl Fn(A) -> B + Sync + Send,
+    add: impl Fn(A, usize) -> A,
+    result: impl Fn(A) -> B,
 ) {
-    threads.for_a_pass(fine.len()).for_each_plain_row(to, coarse.mx, |y, row| {
+    for (y, row) in to.chunks_exact_mut(coarse.mx).enumerate() {
         for (x, to) in row.iter_mut().enumerate() {
             let mut all = A::default();
             for y in children(fine.my, coarse.my, y) {
@@ -47,7 +61,7 @@ fn collect<A: Default, B: Send>(
             }
             *to = result(all);
         }
-    });
+    }
 }
 
 /// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
