@@ -170,7 +170,9 @@ impl<const K: usize> pulp::NullaryFnOnce for Far<'_, K> {
 
     #[inline(always)]
     fn call(self) {
-        let Far { shape: Shape { dx, dy, series, .. }, kx, y, out } = self;
+        let Far { shape, kx, y, out } = self;
+        // Copies, of which the compiler knows that writing to `out` does not change them.
+        let (dx, dy, series) = (shape.dx, shape.dy, shape.series);
         let half_diagonal2 = 0.25 * (dx * dx + dy * dy);
         for (k, value) in out.iter_mut().enumerate() {
             let x = (kx + k as f64) * dx;

@@ -3,6 +3,7 @@
 //! Plans are kept per thread and precision, so that a second operator of the same size costs no planning.
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 pub use rustfft::num_complex::Complex;
@@ -13,7 +14,7 @@ use rustfft::{Fft, FftNum, FftPlanner};
 /// `f32` or `f64`.
 pub trait Real: FftNum + Float + FromPrimitive + ToPrimitive + Default + std::iter::Sum + std::ops::AddAssign {
     #[doc(hidden)]
-    fn with_planner<R>(use_it: impl FnOnce(&mut FftPlanner<Self>) -> R) -> R;
+    fn with_plans<R>(use_it: impl FnOnce(&mut Plans<Self>) -> R) -> R;
 
     /// The nearest value of this precision.
     fn of(value: f64) -> Self {
@@ -26,20 +27,34 @@ pub trait Real: FftNum + Float + FromPrimitive + ToPrimitive + Default + std::it
     }
 }
 
+/// What a thread has planned.
+#[doc(hidden)]
+pub struct Plans<T: Real> {
+    planner: FftPlanner<T>,
+    /// Of transforms of real rows, by their length.
+    twiddles: HashMap<usize, Arc<[Complex<T>]>>,
+}
+
 macro_rules! real {
-    ($t:ty, $planner:ident) => {
+    ($t:ty, $plans:ident) => {
         thread_local! {
-            static $planner: RefCell<FftPlanner<$t>> = RefCell::new(FftPlanner::new());
+            static $plans: RefCell<Plans<$t>> =
+                RefCell::new(Plans { planner: FftPlanner::new(), twiddles: HashMap::new() });
         }
         impl Real for $t {
-            fn with_planner<R>(use_it: impl FnOnce(&mut FftPlanner<$t>) -> R) -> R {
-                $planner.with_borrow_mut(use_it)
+            fn with_plans<R>(use_it: impl FnOnce(&mut Plans<$t>) -> R) -> R {
+                $plans.with_borrow_mut(use_it)
             }
         }
     };
 }
-real!(f64, PLANNER_F64);
-real!(f32, PLANNER_F32);
+real!(f64, PLANS_F64);
+real!(f32, PLANS_F32);
+
+/// The twiddles of real rows of length `n`, computed once.
+pub(super) fn twiddles<T: Real>(n: usize, compute: impl FnOnce() -> Vec<Complex<T>>) -> Arc<[Complex<T>]> {
+    T::with_plans(|plans| plans.twiddles.entry(n).or_insert_with(|| compute().into()).clone())
+}
 
 /// Work of a transform of length `2^a 3^b 5^c` relative to one of a power of two: measured, in single precision, where it
 /// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives.
@@ -79,9 +94,9 @@ pub struct ColumnTransform<T: Real> {
 impl<T: Real> ColumnTransform<T> {
     /// Plans for columns of length `n`.
     pub fn new(n: usize) -> ColumnTransform<T> {
-        T::with_planner(|planner| ColumnTransform {
-            forward: planner.plan_fft_forward(n),
-            inverse: planner.plan_fft_inverse(n),
+        T::with_plans(|plans| ColumnTransform {
+            forward: plans.planner.plan_fft_forward(n),
+            inverse: plans.planner.plan_fft_inverse(n),
         })
     }
 
@@ -106,11 +121,6 @@ impl<T: Real> ColumnTransform<T> {
     pub fn scratch_length(&self) -> usize {
         let length = |fft: &dyn Fft<T>| fft.get_inplace_scratch_len().max(fft.get_outofplace_scratch_len());
         length(&*self.forward).max(length(&*self.inverse))
-    }
-
-    /// Length of the scratch that transforms to another place need: mostly none.
-    pub fn scratch_to(&self) -> usize {
-        self.forward.get_outofplace_scratch_len().max(self.inverse.get_outofplace_scratch_len())
     }
 
     /// Transforms one column to another place; it is overwritten.

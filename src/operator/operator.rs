@@ -214,8 +214,8 @@ impl<T: Real> Operator<T> {
         if self.diagonal.is_empty() {
             return self.rows.back(p, product);
         }
-        self.rows.back_with(p, product, |iy, p, row| {
-            for ((p, value), d) in p.iter_mut().zip(row).zip(&self.diagonal[iy * self.rows.mx..]) {
+        self.rows.back_with(p, product, |first, p, values| {
+            for ((p, value), d) in p.iter_mut().zip(values).zip(&self.diagonal[first..]) {
                 *p = *value + *d * *p;
             }
         });
@@ -227,9 +227,8 @@ impl<T: Real> Operator<T> {
         if self.diagonal.is_empty() {
             return self.rows.back(u, product);
         }
-        self.rows.back_with(u, product, |iy, u, row| {
-            let first = iy * self.rows.mx;
-            for (((u, value), d), p) in u.iter_mut().zip(row).zip(&self.diagonal[first..]).zip(&p[first..]) {
+        self.rows.back_with(u, product, |first, u, values| {
+            for (((u, value), d), p) in u.iter_mut().zip(values).zip(&self.diagonal[first..]).zip(&p[first..]) {
                 *u = *value + *d * *p;
             }
         });

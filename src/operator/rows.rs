@@ -36,32 +36,35 @@ impl<T: Real> Rows<T> {
     /// Transforms the rows that hold pressures; returns which.
     pub fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
         let loaded = rows_with_pressure(p, self.mx);
-        let nb = self.transform.bins();
+        let (nb, together) = (self.transform.bins(), self.transform.at_a_time());
         let bins = &mut product.bins[loaded.start * nb..loaded.end * nb];
         let first = loaded.start;
-        self.threads.for_each_row(bins, nb, &mut product.pieces, |i, row_bins, piece| {
-            let row = &p[(first + i) * self.mx..(first + i + 1) * self.mx];
-            self.transform.forward(row, row_bins, &mut piece.scratch);
+        self.threads.for_each_row(bins, together * nb, &mut product.pieces, |i, bins, piece| {
+            let rows = &p[(first + i * together) * self.mx..][..bins.len() / nb * self.mx];
+            self.transform.forward_together(rows, self.mx, bins, &mut piece.scratch);
         });
         loaded
     }
 
     /// Transforms all rows back to u.
     pub fn back(&self, u: &mut [T], product: &mut Product<T>) {
-        self.back_by(u, product, |_, u, row_bins, piece| self.transform.inverse(row_bins, u, &mut piece.scratch));
+        self.back_by(u, product, |_, u, bins, piece| {
+            self.transform.inverse_together(bins, u, self.mx, &mut piece.scratch);
+        });
     }
 
-    /// Transforms all rows back; `write(iy, row of u, values)` takes each of them.
+    /// Transforms all rows back; `write(first element, values of u, values)` takes some of them.
     pub fn back_with(
         &self,
         u: &mut [T],
         product: &mut Product<T>,
         write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
     ) {
-        self.back_by(u, product, |iy, u, row_bins, piece| {
-            let row = &mut piece.row[..self.mx];
-            self.transform.inverse(row_bins, row, &mut piece.scratch);
-            write(iy, u, row);
+        let together = self.transform.at_a_time();
+        self.back_by(u, product, |i, u, bins, piece| {
+            let rows = &mut piece.row[..u.len()];
+            self.transform.inverse_together(bins, rows, self.mx, &mut piece.scratch);
+            write(i * together * self.mx, u, rows);
         });
     }
 
@@ -72,8 +75,9 @@ impl<T: Real> Rows<T> {
         work: impl Fn(usize, &mut [T], &mut [Complex<T>], &mut Piece<T>) + Sync + Send,
     ) {
         let Product { bins, pieces } = product;
-        let nb = self.transform.bins();
-        self.threads.for_each_row_pair_with((u, self.mx), (&mut bins[..self.my * nb], nb), pieces, work);
+        let (nb, together) = (self.transform.bins(), self.transform.at_a_time());
+        let bins = &mut bins[..self.my * nb];
+        self.threads.for_each_row_pair_with((u, together * self.mx), (bins, together * nb), pieces, work);
     }
 }
 

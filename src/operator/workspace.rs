@@ -75,13 +75,13 @@ impl<T: Real> Operator<T> {
         self.rows.my * self.rows.transform.bins()
     }
 
-    /// Values of a row, or sums of a column.
+    /// Values of rows, or sums of a column.
     fn row_room(&self) -> usize {
         let sums = match &self.columns {
             Columns::Convolution(_) => 0,
             Columns::PerRow(_) => 2 * self.rows.my,
         };
-        self.rows.mx.max(sums)
+        (self.rows.transform.at_a_time() * self.rows.mx).max(sums)
     }
 
     /// Values of a block of columns.

@@ -149,3 +149,25 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
         }
     }
 }
+
+/// Coefficients of small grids are kept, others are not: an element's are the same, to the last bit, whoever asks, and on a grid of
+/// elements twice as large they are twice as large.
+#[test]
+fn coefficients_that_are_kept_are_those_that_are_computed() {
+    for (dx, dy) in [(1.0, 1.0), (0.3, 0.7), (2.0, 0.01)] {
+        let half_space = HalfSpace::new(dx, dy, 1.7);
+        let coarse = half_space.for_element(2.0 * dx, 2.0 * dy);
+        for ky in [0, 1, 7, 8, 20, 63] {
+            let (mut computed, mut kept) = ([0.0; 65], [0.0; 64]);
+            half_space.fill_row(0, ky, &mut computed);
+            for columns in [8, 30, 64] {
+                half_space.fill_row(0, ky, &mut kept[..columns]);
+                assert_eq!(kept[..columns], computed[..columns], "{dx} x {dy}, row {ky}, {columns} columns");
+                half_space.fill_row(3, ky, &mut kept[..columns - 3]);
+                assert_eq!(kept[..columns - 3], computed[3..columns], "{dx} x {dy}, row {ky}, from column 3");
+                coarse.fill_row(0, ky, &mut kept[..columns]);
+                assert!(kept[..columns].iter().zip(&computed).all(|(kept, computed)| *kept == 2.0 * computed));
+            }
+        }
+    }
+}
