@@ -123,6 +123,11 @@ impl<T: Real> ColumnTransform<T> {
         length(&*self.forward).max(length(&*self.inverse))
     }
 
+    /// That of transforms to another place.
+    pub fn scratch_to(&self) -> usize {
+        self.forward.get_outofplace_scratch_len().max(self.inverse.get_outofplace_scratch_len())
+    }
+
     /// Transforms one column to another place; it is overwritten.
     pub fn forward_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.forward.process_outofplace_with_scratch(column, to, scratch);

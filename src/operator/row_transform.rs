@@ -70,7 +70,9 @@ impl<T: Real> RowTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
-        let length = self.at_a_time() * self.complex.length() + self.complex.scratch_length();
+        let to_another_place = self.n % 2 == 0 && self.at_a_time() == 1;
+        let of_complex = if to_another_place { self.complex.scratch_to() } else { self.complex.scratch_length() };
+        let length = self.at_a_time() * self.complex.length() + of_complex;
         scratch.resize(scratch.len().max(length), Complex::default());
     }
 
