@@ -1,7 +1,7 @@
 """Friction beside aspher: a shift from rest, at an equal residual that is checked here.
 
-`build/peers/bin/python benches/peers/friction.py [--quick | --report]` after `make bench-peers`, or with the packages of
-`requirements.txt`. --quick: up to 128; --report: only writes again what build/friction_peers.json holds. Prints the table, writes it
+`build/peers/bin/python benches/peers/friction.py [--largest 256 | --report]` after `make bench-peers`, or with the packages of
+`requirements.txt`. --largest: up to that size (512); --report: only writes again what build/friction_peers.json holds. Prints the table, writes it
 into docs/performance_peers.md, and draws docs/performance_friction.png.
 
 Both have two like bodies, the same h, the same load and one thread. Each goes down the same tolerances, aspher with one for
@@ -250,7 +250,8 @@ def main():
     if "--report" not in arguments:
         os.makedirs(os.path.dirname(RESULTS), exist_ok=True)
         measured = []
-        for size in (64, 128) if "--quick" in arguments else (64, 128, 256, 512):
+        largest = int(arguments[arguments.index("--largest") + 1]) if "--largest" in arguments else 512
+        for size in (size for size in (64, 128, 256, 512) if size <= largest):
             for surface, poisson_ratio, given, part in SCENES:
                 if surface == "ball" or size >= 128:
                     measured.append(measure(surface, poisson_ratio, given, part, size))
