@@ -185,9 +185,7 @@ impl<T: Real> Iteration<T> {
         self.direct(state, search.tq, held_back);
         held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);
-        for &(i, d) in &self.debts {
-            self.t[i] += T::of(d / forecast);
-        }
+        self.owe(forecast);
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
@@ -251,6 +249,13 @@ impl<T: Real> Iteration<T> {
             return search.forecast.unwrap_or(1.0);
         }
         alpha
+    }
+
+    /// The direction has what is owed, too: t + d/alpha'.
+    fn owe(&mut self, forecast: f64) {
+        for &(i, d) in &self.debts {
+            self.t[i] += T::of(d / forecast);
+        }
     }
 
     /// What alpha leaves of the debts, which are no part of the direction.

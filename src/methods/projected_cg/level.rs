@@ -115,7 +115,7 @@ impl Level {
         }
         let mx = self.grid.mx;
         self.on_window(state, set, displacement, |inner, window, units, state, set| {
-            let grid = &state.grid.clone();
+            let grid = state.grid;
             let work = grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
                 in_either!(inner, inner => inner.correct(state, set));
@@ -128,7 +128,7 @@ impl Level {
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
-                monitor.cycle_done(grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
+                monitor.cycle_done(&grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             };
             Ok(in_either!(inner, inner => inner.run(state, set, goal, after_cycle)))
         })?

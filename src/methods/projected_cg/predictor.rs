@@ -6,6 +6,7 @@
 //! With a prescribed force s_1 follows from the force, and d carries none.
 
 use super::known::Last;
+use super::segments::Sums;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
@@ -13,8 +14,6 @@ use crate::operator::zeros;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Parts of each sum: an addition does not wait for the one before.
-const LANES: usize = 4;
 /// A change whose energy is this part of its own without what is of p is that of rounding.
 const NOISE: f64 = 1e-9;
 
@@ -79,7 +78,7 @@ impl Predictor {
     fn shares(&self, state: &State) -> (f64, f64) {
         let by_force = matches!(state.load, Load::Force(_));
         // (p, u), (p, e), (d, u), (d, A d), (d, e); without branches but for rows: h may be infinite where nothing presses.
-        let mut sums = [[0.0; LANES]; 5];
+        let mut sums = Sums::<5>::new();
         let rows = self.p.chunks_exact(state.grid.mx).zip(self.u.chunks_exact(state.grid.mx)).enumerate();
         for (y, (p_0, u_0)) in rows {
             let row = y * state.grid.mx..(y + 1) * state.grid.mx;
@@ -87,17 +86,13 @@ impl Predictor {
             if p.iter().zip(p_0).fold(true, |none, (p, p_0)| none & (*p == 0.0) & (*p_0 == 0.0)) {
                 continue;
             }
-            let mut add = |i: usize, lane: usize| {
+            sums.add(p.len(), |i| {
                 let (d, v) = (p[i] - p_0[i], u[i] - u_0[i]);
                 let e = if (p[i] != 0.0) | (d != 0.0) { h[i] - state.approach + u[i] } else { 0.0 };
-                let terms = [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e];
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| sum[lane] += term);
-            };
-            let whole = p.len() - p.len() % LANES;
-            (0..whole).step_by(LANES).for_each(|i| (0..LANES).for_each(|lane| add(i + lane, lane)));
-            (whole..p.len()).for_each(|i| add(i, i - whole));
+                [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e]
+            });
         }
-        let [pu, pe, du, dv, de] = sums.map(|lanes| lanes.iter().sum::<f64>());
+        let [pu, pe, du, dv, de] = sums.values();
         let (mut scale, mut share) = (1.0 - pe / pu, du / pu);
         if by_force {
             let sum = |p: &[f64]| p.iter().sum::<f64>();

@@ -95,7 +95,7 @@ impl Segments {
     pub fn sum<const K: usize>(&mut self, work: impl Fn(Block<'_>, &mut Sums<K>) + Sync + Send) -> [f64; K] {
         let (found, block) = (&self.found, self.block);
         self.threads.for_each_plain_row(&mut self.sums, 1, |b, total| {
-            let mut sums = Sums([[0.0; LANES]; K]);
+            let mut sums = Sums::new();
             let block = Block { start: b * block, runs: &found[b].runs };
             work(block, &mut sums);
             sums.total(&mut total[0]);
@@ -112,7 +112,7 @@ impl Segments {
         let (found, block) = (&self.found, self.block);
         let (data, sums) = ((data, block), (&mut self.sums[..], 1));
         self.threads.for_each_row_pair(data, sums, |b, data, total| {
-            let mut sums = Sums([[0.0; LANES]; K]);
+            let mut sums = Sums::new();
             let block = Block { start: b * block, runs: &found[b].runs };
             work(block, data, &mut sums);
             sums.total(&mut total[0]);
@@ -175,10 +175,15 @@ impl Block<'_> {
     }
 }
 
-/// Sums over elements of a block.
+/// Sums over elements, in lanes.
 pub struct Sums<const K: usize>([[f64; LANES]; K]);
 
 impl<const K: usize> Sums<K> {
+    /// Nothing yet.
+    pub fn new() -> Sums<K> {
+        Sums([[0.0; LANES]; K])
+    }
+
     /// Adds `terms(0), .. terms(n - 1)`.
     #[inline(always)]
     pub fn add(&mut self, n: usize, mut terms: impl FnMut(usize) -> [f64; K]) {
@@ -198,9 +203,12 @@ impl<const K: usize> Sums<K> {
         }
     }
 
+    /// What they are.
+    pub fn values(&self) -> [f64; K] {
+        self.0.map(|lanes| lanes.iter().sum())
+    }
+
     fn total(&self, total: &mut [f64; MOST_SUMS]) {
-        for (total, lanes) in total.iter_mut().zip(&self.0) {
-            *total = lanes.iter().sum();
-        }
+        total[..K].copy_from_slice(&self.values());
     }
 }
