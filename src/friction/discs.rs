@@ -3,14 +3,15 @@
 //! Tractions are in units of the smaller one of the bounds and what the rigid slip asks for, displacements in that times the unit of the coefficients: directions,
 //! in single precision T, stay within its range. What adds up, q and u, is in double precision.
 
-use super::disc::{double, moved, project, slips, Pair, Units};
+use super::disc::{double, moved, slips, Units};
 use super::extension::Extension;
 use super::places::Places;
 use super::problem::{add, dot, onto_disc, plus, square, Problem, State};
 use super::shift::Steps;
+use super::tangent::{project, rho_of};
 use super::toeplitz::unit_of;
 use super::vectors::over;
-use super::Vector;
+use super::{Pair, Vector};
 use crate::error::Result;
 use crate::memory::{keep, unwritten};
 use crate::operator::fft::Real;
@@ -80,7 +81,7 @@ impl<T: Real> Discs<T> {
         self.extension.contact_changed(&problem.bound);
         let (a0, bound, slip) = (problem.operators.self_influence, problem.rms_bound(), problem.rms_slip());
         let cap = 0.3 / (a0 * (n.max(1) as f64).sqrt());
-        let rho = if slip > 0.0 { cap.min(bound / slip) } else { cap };
+        let rho = rho_of((bound, slip), cap);
         let (traction, unit) = (unit_of(bound.min(slip / a0)), problem.operators.unit());
         self.units = Units { traction, displacement: traction * unit, a0: a0 / unit, rho: rho * unit };
         let by = 1.0 / self.units.displacement;

@@ -11,6 +11,7 @@
 //!
 //! On rough surfaces, whose C is many small spots, it saves up to a third of the products (docs/friction.md).
 
+use super::Pair;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
@@ -21,9 +22,6 @@ use crate::threads::Threads;
 const LEVELS: usize = 3;
 /// How much of the coarse value is left on the next finer grid.
 const DECAY: f64 = 0.7;
-
-/// A value of two components.
-type Pair<T> = [T; 2];
 
 /// E, and its transpose.
 #[derive(Default)]

@@ -49,7 +49,8 @@ mod vectors;
 mod window;
 mod workspace;
 
-pub use certificate::{Certificate, ON_THE_CIRCLE};
+pub(crate) use certificate::rest;
+pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use request::{Request, Start, Superposed};
@@ -60,3 +61,6 @@ pub use workspace::Workspace;
 
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];
+
+/// The same in either precision.
+type Pair<T> = [T; 2];

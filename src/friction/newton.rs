@@ -17,7 +17,7 @@ use super::forces::Forces;
 use super::problem::{square, Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
-use super::tangent::{Sight, Tangent};
+use super::tangent::{rho_of, Sight, Tangent};
 use super::vectors::Fields;
 use super::Vector;
 use crate::error::{Error, Result};
@@ -69,8 +69,7 @@ pub fn solve(
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
-        let slip = problem.rms_slip();
-        let rho = factor * if slip > 0.0 { cap.min(problem.rms_bound() / slip) } else { cap };
+        let rho = factor * rho_of((problem.rms_bound(), problem.rms_slip()), cap);
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst =

@@ -10,7 +10,7 @@
 //! The move is not straight, so a step is held back: its chord at the length f that the step before had is taken as the direction and
 //! multiplied, and what a step of another length leaves of it is a debt, which the next product pays, or a product of its own where
 //! the debt is large.
-
+//!
 //! Fields are those of the elements of C ([`Discs`]).
 
 use super::certificate::relative;

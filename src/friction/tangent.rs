@@ -20,7 +20,7 @@ use crate::error::Result;
 use crate::memory::zeros;
 
 /// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
-pub(super) const MIXED: f64 = 0.5;
+const MIXED: f64 = 0.5;
 
 /// Tractions are near their circles within this part of the radius.
 const NEAR_THE_CIRCLE: f64 = 0.2;
@@ -64,9 +64,51 @@ pub struct Sight {
     pub excess: f64,
 }
 
+/// What the natural map says of an element of C: see [`Tangent`]; n is 0 where it sticks.
+pub(super) struct Seen {
+    pub side: Side,
+    pub normal: Vector,
+    pub curvature: f64,
+    pub driving: Vector,
+    /// The square of what is left of the slip.
+    pub rest: f64,
+}
+
+/// An element of bound g, q and s.
+#[inline]
+pub(super) fn look((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Seen {
+    let (tau, against, rest) = (plus(q, -rho, s), [-s[0], -s[1]], rest(s, q, g));
+    if !(square(tau) > g * g) {
+        return Seen { side: Side::Stick, normal: [0.0; 2], curvature: 0.0, driving: against, rest };
+    }
+    let (normal, curvature) = normal_and_curvature((q, s), g, tau, inverse_rho);
+    Seen { side: Side::Slip, normal, curvature, driving: plus(against, dot(s, normal), normal), rest }
+}
+
+/// rho of the natural map, at most `most`: by it the slip, as rms over C, moves tractions as far as their bounds.
+pub(super) fn rho_of((bound, slip): (f64, f64), most: f64) -> f64 {
+    if slip > 0.0 {
+        most.min(bound / slip)
+    } else {
+        most
+    }
+}
+
+/// E of the preconditioner: 1 where C sticks. `a0` is the influence of an element on itself.
+#[inline]
+pub(super) fn mixing(curvature: f64, a0: f64) -> f64 {
+    1.0 / (1.0 + MIXED * curvature / a0)
+}
+
+/// P v, with the normal n; n = 0: v.
+#[inline]
+pub(super) fn project(n: Vector, v: Vector) -> Vector {
+    plus(v, -dot(v, n), n)
+}
+
 /// n and D of an element that slips.
 #[inline]
-pub(super) fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
+fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
     let (length, reach) = (square(q).sqrt(), square(tau).sqrt());
     if (length - g).abs() <= NEAR_THE_CIRCLE * g && dot(q, tau) >= ALIGNED * length * reach {
         let n = q.map(|q| q / length);
@@ -98,13 +140,13 @@ impl Tangent {
     /// Predicts from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Sight {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
-        let Tangent { side, normal, curvature, mixing, driving, .. } = self;
+        let Tangent { side, normal, curvature, mixing: mixings, driving, .. } = self;
         let (sides, normals) = (side.chunks_mut(BLOCK), normal.chunks_mut(BLOCK));
         let (curvatures, mixings, drivings) =
-            (curvature.chunks_mut(BLOCK), mixing.chunks_mut(BLOCK), driving.chunks_mut(BLOCK));
+            (curvature.chunks_mut(BLOCK), mixings.chunks_mut(BLOCK), driving.chunks_mut(BLOCK));
         let blocks = sides.zip(normals).zip(curvatures.zip(mixings)).zip(drivings);
         let sums =
-            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixing)), driving)| {
+            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixings)), driving)| {
                 let [mut squares, mut excess, mut slips, mut rigid, mut displaced] = [0.0; 5];
                 for k in 0..side.len() {
                     let i = start + k;
@@ -117,22 +159,16 @@ impl Tangent {
                         continue;
                     }
                     let (q, s) = (state.q[i], problem.slip_at(i, u));
-                    squares += rest(s, q, g);
                     if square(q) > g * g {
                         excess += (square(q).sqrt() - g).powi(2);
                     }
                     rigid += square(add(problem.rigid[i], problem.offset));
                     displaced += square(u[i]);
-                    let tau = plus(q, -rho, s);
-                    (side[k], driving[k]) = (Side::Stick, [-s[0], -s[1]]);
-                    (curvature[k], mixing[k]) = (0.0, 1.0);
-                    if square(tau) > g * g {
-                        slips += 1.0;
-                        let (n, bend) = normal_and_curvature((q, s), g, tau, inverse_rho);
-                        (side[k], normal[k], curvature[k]) = (Side::Slip, n, bend);
-                        mixing[k] = 1.0 / (1.0 + MIXED * curvature[k] / a0);
-                        driving[k] = plus([-s[0], -s[1]], dot(s, n), n);
-                    }
+                    let seen = look((q, s), g, (rho, inverse_rho));
+                    squares += seen.rest;
+                    slips += f64::from(u8::from(seen.side == Side::Slip));
+                    (side[k], normal[k], driving[k]) = (seen.side, seen.normal, seen.driving);
+                    (curvature[k], mixings[k]) = (seen.curvature, mixing(seen.curvature, a0));
                 }
                 [squares, excess, slips, rigid, displaced]
             });
@@ -146,18 +182,9 @@ impl Tangent {
     #[inline]
     pub fn project_inside(&self, i: usize, v: Vector) -> Vector {
         match self.side[i] {
-            Side::Slip => plus(v, -dot(v, self.normal[i]), self.normal[i]),
+            Side::Slip => project(self.normal[i], v),
             Side::Stick => v,
             Side::Outside => [0.0; 2],
-        }
-    }
-
-    /// P v at element i of C.
-    #[inline]
-    pub fn project(&self, i: usize, v: Vector) -> Vector {
-        match self.side[i] {
-            Side::Slip => plus(v, -dot(v, self.normal[i]), self.normal[i]),
-            _ => v,
         }
     }
 

@@ -19,7 +19,7 @@ use super::{Outcome, Solver};
 use crate::contact::{lowest, NonNegative, State};
 use crate::effects::{Coefficient, Motion, Prescribed, Previous};
 use crate::error::{Error, Result};
-use crate::friction::{Compliance, Start, Superposed, Vector, ON_THE_CIRCLE};
+use crate::friction::{rest, Compliance, Start, Superposed, Vector};
 use crate::grid::Grid;
 use crate::memory::blank;
 use crate::methods::{Step, Task};
@@ -169,10 +169,7 @@ impl Solver {
         self.problem.displace(carried, displaced);
         let (mut left, mut squares, mut count) = (0.0, 0.0, 0.0);
         for ((p, carried), u) in self.state.p.iter().zip(&*carried).zip(&*displaced).filter(|((p, _), _)| **p > 0.0) {
-            let (slip, slips) = (u - slid, carried.abs() >= ON_THE_CIRCLE * p);
-            if !(slips && slip * carried < 0.0) {
-                left += slip * slip;
-            }
+            left += rest([u - slid, 0.0], [*carried, 0.0], *p);
             (squares, count) = (squares + u * u, count + 1.0);
         }
         (left / count).sqrt() / f64::max((squares / count).sqrt(), slid)
