@@ -9,7 +9,7 @@
 //! *At rest.* The arrays of one solve are not all needed at the same time. A large one that nobody needs for a while [rests](rest): its
 //! room stays reserved, so that it [wakes](wake) without an error, and the system has its pages.
 
-use std::any::Any;
+use std::any::{Any, TypeId};
 use std::collections::VecDeque;
 use std::mem::{replace, take};
 use std::sync::Mutex;
@@ -29,6 +29,9 @@ const RESTS: usize = 1 << 26;
 /// A `Vec` of some type, and what it held last.
 struct Kept {
     bytes: usize,
+    /// Its type, and for how many values it has room.
+    kind: TypeId,
+    room: usize,
     values: Box<dyn Any + Send>,
 }
 
@@ -101,9 +104,9 @@ fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
         return None;
     }
     let mut shelf = SHELF.try_lock().ok()?;
-    let capacity = |kept: &Kept| kept.values.downcast_ref::<Vec<A>>().map(Vec::capacity);
-    let fits = |(i, kept): (usize, &Kept)| Some((capacity(kept).filter(|room| (n..=2 * n).contains(room))?, i));
-    let (_, i) = shelf.blocks.iter().enumerate().filter_map(fits).min()?;
+    let fits = |kept: &Kept| kept.kind == TypeId::of::<Vec<A>>() && (n..=2 * n).contains(&kept.room);
+    let fitting = shelf.blocks.iter().enumerate().filter(|(_, kept)| fits(kept));
+    let (_, i) = fitting.map(|(i, kept)| (kept.room, i)).min()?;
     let kept = shelf.blocks.remove(i)?;
     shelf.bytes -= kept.bytes;
     drop(shelf);
@@ -168,7 +171,8 @@ fn keep_one<A: Copy + Send + 'static>(values: Vec<A>) {
     }
     let Ok(mut shelf) = SHELF.try_lock() else { return };
     shelf.bytes += bytes;
-    shelf.blocks.push_back(Kept { bytes, values: Box::new(values) });
+    let (kind, room) = (TypeId::of::<Vec<A>>(), values.capacity());
+    shelf.blocks.push_back(Kept { bytes, kind, room, values: Box::new(values) });
     while shelf.bytes > MOST_KEPT {
         let Some(oldest) = shelf.blocks.pop_front() else { return };
         shelf.bytes -= oldest.bytes;

@@ -14,7 +14,7 @@
 use super::Pair;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{blank, keep};
 use crate::operator::fft::Real;
 use crate::threads::Threads;
 
@@ -25,13 +25,13 @@ const DECAY: f64 = 0.7;
 
 /// E, and its transpose.
 #[derive(Default)]
-pub struct Extension<T> {
+pub struct Extension<T: Real> {
     /// The given grid first; none before it is set up.
     grids: Vec<Fields<T>>,
 }
 
 /// One grid.
-struct Fields<T> {
+struct Fields<T: Real> {
     mx: usize,
     my: usize,
     /// Those that work on it.
@@ -48,11 +48,19 @@ struct Fields<T> {
 
 impl<T: Real> Fields<T> {
     fn new(mx: usize, my: usize, is_given: bool, threads: &Threads) -> Result<Fields<T>> {
-        let what = "the continuation of residuals";
+        let (what, nothing) = ("the continuation of residuals", [T::nan(); 2]);
         let coarse = if is_given { 0 } else { mx * my };
-        let rows = zeros(my * mx.div_ceil(2), what)?;
-        let (decay, share, values) = (zeros(mx * my, what)?, zeros(coarse, what)?, zeros(coarse, what)?);
-        Ok(Fields { mx, my, threads: threads.for_a_pass(mx * my), decay, share, values, rows })
+        let rows = blank(my * mx.div_ceil(2), nothing, what)?;
+        let (decay, share) = (blank(mx * my, T::nan(), what)?, blank(coarse, T::nan(), what)?);
+        let values = blank(coarse, nothing, what)?;
+        Ok(Fields { mx, my, threads: threads.suited_to(mx * my), decay, share, values, rows })
+    }
+}
+
+impl<T: Real> Drop for Fields<T> {
+    fn drop(&mut self) {
+        keep([&mut self.decay, &mut self.share]);
+        keep([&mut self.values, &mut self.rows]);
     }
 }
 
@@ -80,14 +88,18 @@ impl<T: Real> Extension<T> {
     pub fn contact_changed(&mut self, bound: &[f64]) {
         let decay = |is_known: bool| if is_known { T::zero() } else { T::of(DECAY) };
         let Some(given) = self.grids.first_mut() else { return };
-        given.decay.iter_mut().zip(bound).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
+        let mx = given.mx;
+        given.threads.for_each_plain_row(&mut given.decay, mx, |iy, row| {
+            row.iter_mut().zip(&bound[iy * mx..]).for_each(|(decay_of, g)| *decay_of = decay(*g > 0.0));
+        });
         for l in 1..self.grids.len() {
             let (fine, coarse) = pair(&mut self.grids, l);
             let (mx, fine_mx) = (coarse.mx, fine.mx);
-            let shares = coarse.share.chunks_exact_mut(mx).zip(coarse.decay.chunks_exact_mut(mx));
-            for ((share, decay_of), rows) in shares.zip(fine.decay.chunks(2 * fine_mx)) {
+            let (share, decays) = ((&mut coarse.share[..], mx), (&mut coarse.decay[..], mx));
+            fine.threads.for_each_row_pair(share, decays, |iy, share, decay_of| {
                 share.fill(T::zero());
-                for row in rows.chunks_exact(fine_mx) {
+                let end = (2 * (iy + 1)).min(fine.my);
+                for row in fine.decay[2 * iy * fine_mx..end * fine_mx].chunks_exact(fine_mx) {
                     for (count, children) in share.iter_mut().zip(row.chunks(2)) {
                         *count += T::of(children.iter().filter(|decay| decay.is_zero()).count() as f64);
                     }
@@ -96,7 +108,7 @@ impl<T: Real> Extension<T> {
                     *decay_of = decay(*share > T::zero());
                     *share = if *share > T::zero() { T::one() / *share } else { T::zero() };
                 }
-            }
+            });
         }
     }
 
@@ -182,7 +194,7 @@ fn none<T: Real>() -> Pair<T> {
 }
 
 /// The grid before l, and l.
-fn pair<T>(grids: &mut [Fields<T>], l: usize) -> (&mut Fields<T>, &mut Fields<T>) {
+fn pair<T: Real>(grids: &mut [Fields<T>], l: usize) -> (&mut Fields<T>, &mut Fields<T>) {
     let (fine, coarse) = grids.split_at_mut(l);
     (&mut fine[l - 1], &mut coarse[0])
 }
@@ -263,31 +275,5 @@ pub fn neighbours(fine: usize, coarse: usize) -> [(usize, f64); 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::Vector;
-    use super::*;
-
-    /// `w . E r = E' w . r` for C in spots, on a grid of odd sides and on a row.
-    #[test]
-    fn folding_is_the_transpose_of_filling() {
-        for (mx, my) in [(21, 13), (17, 1), (16, 10), (2, 3), (1, 24)] {
-            let value = |i: usize, seed: usize| ((i * 37 + seed) % 101) as f64 / 101.0 - 0.5;
-            let bound: Vec<f64> = (0..mx * my).map(|i| if (i * 29 + i / 7) % 5 < 2 { 1.0 } else { 0.0 }).collect();
-            let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
-            let mut extension = Extension::<f64>::new(&grid, &Threads::One).unwrap();
-            extension.contact_changed(&bound);
-            let r: Vec<Vector> = (0..mx * my).map(|i| [bound[i] * value(i, 3), bound[i] * value(i, 8)]).collect();
-            let w: Vec<Vector> = (0..mx * my).map(|i| [value(i, 50), value(i, 77)]).collect();
-            let (mut filled, mut folded) = (r.clone(), w.clone());
-            extension.fill(&mut filled);
-            extension.fold(&mut folded);
-            let dot =
-                |a: &[Vector], b: &[Vector]| -> f64 { a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum() };
-            let (by_filling, by_folding) = (dot(&w, &filled), dot(&folded, &r));
-            // Sums of some 600 products below 1/4, in another order.
-            assert!((by_filling - by_folding).abs() <= 1e-13, "{mx} x {my}: {by_filling} {by_folding}");
-            assert!((0..mx * my).all(|i| bound[i] == 0.0 || filled[i] == r[i]), "what is known changed");
-            assert!((0..mx * my).any(|i| bound[i] == 0.0 && filled[i] != [0.0; 2]), "nothing was filled in");
-        }
-    }
-}
+#[path = "../../tests/unit/extension.rs"]
+mod tests;

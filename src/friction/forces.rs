@@ -76,7 +76,7 @@ pub fn sum_of(problem: &Problem, field: &[Vector]) -> Vector {
 
 /// The sum of g.
 pub fn sum_of_bounds(problem: &Problem) -> f64 {
-    vectors::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i], 0.0])[0]
+    vectors::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i]])[0]
 }
 
 /// The sum of two fields.

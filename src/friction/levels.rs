@@ -44,7 +44,7 @@ pub struct Level {
 }
 
 impl Level {
-    /// Nothing slides. Iterations are to be [prepared](Level::prepare).
+    /// Iterations are to be [prepared](Level::prepare).
     fn new(grid: Grid, operators: Operators) -> Result<Level> {
         let (state, memory) = (State::new(grid.len())?, Memory::default());
         Ok(Level { problem: Problem::new(grid, operators)?, state, memory, pending: None })
@@ -141,7 +141,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
     let longer = step_ratio(problem, fine);
     let all = children(&from, &to);
     let turned = fine.ahead.map(|w| AHEAD * longer * (longer - 1.0) * w);
-    for i in 0..to.len() {
+    let element = |i: usize| {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
             bound += fine.bound[child];
@@ -150,15 +150,20 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
             count += 1;
         }
         let share = longer / f64::from(count.max(1));
-        problem.bound[i] = bound / all as f64;
         let of_spin = f64::from(count.min(1));
-        problem.slip[i] = plus([share * slip[0], share * slip[1]], of_spin, turned);
-        problem.rigid[i] = plus([share * rigid[0], share * rigid[1]], of_spin, turned);
-    }
+        let of_all = |w: Vector| plus(w.map(|w| share * w), of_spin, turned);
+        (bound / all as f64, of_all(slip), of_all(rigid))
+    };
+    let rows = problem.bound.chunks_mut(to.mx).zip(problem.slip.chunks_mut(to.mx)).zip(problem.rigid.chunks_mut(to.mx));
+    problem.operators.threads.for_each(&mut rows.collect::<Vec<_>>(), |iy, ((bound, slip), rigid)| {
+        for ix in 0..to.mx {
+            (bound[ix], slip[ix], rigid[ix]) = element(iy * to.mx + ix);
+        }
+    });
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
     problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();
-    state.unload();
+    state.unload(problem.threads());
 }
 
 /// How much longer a step of steady rolling is on a coarse grid.

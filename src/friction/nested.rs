@@ -72,7 +72,7 @@ fn one(
     let mut end = Outcome::Stagnated;
     // Nothing moves, and nothing did.
     if problem.rms_slip() == 0.0 && !forces.any() {
-        state.unload();
+        state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }
     let only_newton = forces.any() || problem.operators.rolling.is_some();

@@ -76,7 +76,7 @@ pub fn solve(
             largest([sight.residual, if certified { sight.excess } else { sight.excess / COARSE_EXCESS }, missing]);
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
-            state.unload();
+            state.unload(problem.threads());
             return Ok(Outcome::Stagnated);
         }
         if worst < tolerance && (state.is_exact || !certified) {

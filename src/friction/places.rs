@@ -19,7 +19,10 @@ pub struct Places {
     mx: usize,
 }
 
-/// Some rows of the grid, with [`BLOCK`] elements of C or a row more.
+/// A grid has so many blocks, where they are not too small then.
+const BLOCKS: usize = 64;
+
+/// Some rows of the grid, with up to [`BLOCK`] elements of C or a row more.
 #[derive(Clone, Copy)]
 struct Block {
     places: (usize, usize),
@@ -64,12 +67,13 @@ impl Places {
         elements.clear();
         blocks.clear();
         let rows = bound.len() / *mx;
+        let least = (bound.len() / BLOCKS).clamp(BLOCK / 4, BLOCK);
         let mut begun = Block { places: (0, 0), rows: (0, 0) };
         for (iy, row) in bound.chunks_exact(*mx).enumerate() {
             let inside = row.iter().enumerate().filter(|(_, g)| **g > 0.0);
             elements.extend(inside.map(|(ix, _)| (iy * *mx + ix) as u32));
             (begun.places.1, begun.rows.1) = (elements.len(), iy + 1);
-            if begun.places.1 - begun.places.0 >= BLOCK || iy + 1 == rows {
+            if begun.places.1 - begun.places.0 >= least || iy + 1 == rows {
                 blocks.push(begun);
                 begun = Block { places: (elements.len(), elements.len()), rows: (iy + 1, iy + 1) };
             }

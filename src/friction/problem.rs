@@ -16,14 +16,13 @@ use super::march::Rolling;
 use super::operators::Operators;
 use super::places::Places;
 use super::quadrant::Quadrant;
-use super::vectors;
+use super::vectors::{self, BLOCK};
 use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{keep, zeros};
+use crate::memory::{blank, keep};
 use crate::threads::Threads;
 
-/// What memory is for.
 const FIELDS: &str = "tangential fields";
 
 /// A product in single precision leaves a residual far below this.
@@ -89,16 +88,20 @@ pub struct State {
 }
 
 impl State {
-    /// q = 0.
+    /// To be [unloaded](State::unload) first.
     pub fn new(n: usize) -> Result<State> {
-        Ok(State { q: zeros(n, FIELDS)?, u: zeros(n, FIELDS)?, is_exact: true })
+        let field = || blank(n, [f64::NAN; 2], FIELDS);
+        Ok(State { q: field()?, u: field()?, is_exact: false })
     }
 
     /// q = 0.
-    pub fn unload(&mut self) {
-        self.q.fill([0.0; 2]);
-        self.u.fill([0.0; 2]);
-        self.is_exact = true;
+    pub fn unload(&mut self, threads: &Threads) {
+        let State { q, u, is_exact } = self;
+        threads.for_each_row_pair((q, BLOCK), (u, BLOCK), |_, q, u| {
+            q.fill([0.0; 2]);
+            u.fill([0.0; 2]);
+        });
+        *is_exact = true;
     }
 }
 
@@ -116,14 +119,14 @@ impl Drop for Problem {
 }
 
 impl Problem {
-    /// Nothing slides, nothing holds.
+    /// Without bounds and slips yet.
     pub fn new(grid: Grid, operators: Operators) -> Result<Problem> {
         let n = grid.len();
         Ok(Problem {
             grid,
-            bound: zeros(n, FIELDS)?,
-            rigid: zeros(n, FIELDS)?,
-            slip: zeros(n, FIELDS)?,
+            bound: blank(n, f64::NAN, FIELDS)?,
+            rigid: blank(n, [f64::NAN; 2], FIELDS)?,
+            slip: blank(n, [f64::NAN; 2], FIELDS)?,
             offset: [0.0; 2],
             ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
@@ -155,9 +158,10 @@ impl Problem {
             extension.contact_changed(&self.bound);
         }
         self.places.contact_changed(&self.bound);
-        let bounds = || self.contact().map(|i| self.bound[i]);
-        let largest = bounds().fold(0.0, f64::max);
-        let squares: f64 = bounds().map(|g| (g / largest) * (g / largest)).sum();
+        let (threads, bound) = (self.threads(), &self.bound);
+        let largest = vectors::largest(threads, bound.len(), |i| bound[i]);
+        // Without friction 0/0: nothing.
+        let [squares] = vectors::sum(threads, bound.len(), |i| [(bound[i] / largest).max(0.0).powi(2)]);
         self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
@@ -195,8 +199,8 @@ impl Problem {
 
     /// rms over C of a field.
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
-        let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }, 0.0];
-        let [sum, _] = vectors::sum(self.threads(), self.bound.len(), squared);
+        let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
+        let [sum] = vectors::sum(self.threads(), self.bound.len(), squared);
         (sum / self.count().max(1) as f64).sqrt()
     }
 

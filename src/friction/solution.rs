@@ -4,6 +4,7 @@ use super::certificate::Certificate;
 use super::problem::dot;
 use super::Vector;
 use crate::grid::Grid;
+use crate::threads::Threads;
 
 /// What an element does: see [`Solution::adhesion`].
 pub const EXTERIOR: i32 = 0;
@@ -69,15 +70,24 @@ impl Default for Report {
     }
 }
 
-/// The force of tractions, and their moment about `centre`, a place from the middle of the grid.
-pub fn resultant(grid: &Grid, centre: Vector, tractions: impl Iterator<Item = (usize, Vector)>) -> (Vector, f64) {
+/// The force of tractions, and their moment about `centre`, a place from the middle of the grid. `row(iy)` gives those of a row, each with
+/// its column.
+pub fn resultant<I: Iterator<Item = (usize, Vector)>>(
+    grid: &Grid,
+    threads: &Threads,
+    centre: Vector,
+    row: impl Fn(usize) -> I + Sync + Send,
+) -> (Vector, f64) {
     let (Grid { mx, my, dx, dy }, area) = (*grid, grid.element_area());
-    let (mut force, mut moment) = ([0.0; 2], 0.0);
-    for (i, q) in tractions.filter(|(_, q)| *q != [0.0; 2]) {
-        let x = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];
-        let y = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
-        force = [force[0] + area * q[0], force[1] + area * q[1]];
-        moment += area * dot([-y, x], q);
-    }
-    (force, moment)
+    let mut sums = vec![[0.0; 3]; my];
+    threads.for_each_plain_row(&mut sums, 1, |iy, sum| {
+        let y = (iy as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
+        for (ix, q) in row(iy) {
+            let x = (ix as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];
+            let terms = [q[0], q[1], dot([-y, x], q)];
+            sum[0] = [0, 1, 2].map(|k| sum[0][k] + area * terms[k]);
+        }
+    });
+    let [x, y, moment] = sums.iter().fold([0.0; 3], |all, sum| [0, 1, 2].map(|k| all[k] + sum[k]));
+    ([x, y], moment)
 }

@@ -5,17 +5,19 @@ use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
 use super::nested::{self, Work, COARSE, COUNTS};
+use super::problem::Problem;
 use super::request::{Request, Start};
 use super::sensitivity;
 use super::shift::Memory;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::take_over::before;
+use super::vectors;
 use super::window::{Displaced, Window};
 use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{blank, keep};
 use crate::progress::Outcome;
 use crate::threads::Threads;
 
@@ -51,6 +53,14 @@ struct Near {
     is_solution: bool,
     is_worth_something: bool,
     products: f64,
+}
+
+impl Drop for Solver {
+    fn drop(&mut self) {
+        let Solution { traction, slip, adhesion } = &mut self.solution;
+        keep([traction, slip, &mut self.before]);
+        keep([adhesion]);
+    }
 }
 
 impl Solver {
@@ -116,7 +126,7 @@ impl Solver {
             friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(friction, kept, i) == [0.0; 2]);
         let rolling = (friction.motion == Motion::SteadyRolling)
             .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
-        let window = Window::around(&self.grid, |i| {
+        let window = Window::around(&self.grid, &self.threads.for_a_pass(self.grid.len()), |i| {
             pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
         });
         let mut end = Outcome::Converged;
@@ -141,7 +151,9 @@ impl Solver {
                 let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
                 end = self.iterate(request, forces, (nested, had_slip), watch, &mut report)?;
             }
-            report.carried = self.levels[0].problem.bound.iter().sum::<f64>() * self.grid.element_area();
+            let Problem { bound, operators, .. } = &self.levels[0].problem;
+            let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
+            report.carried = carried * self.grid.element_area();
         }
         self.write(friction, pressure, window, &mut report);
         if friction.sensitivities {
@@ -157,8 +169,8 @@ impl Solver {
     fn make_room(&mut self) -> Result<()> {
         if self.solution.traction.is_empty() {
             let n = self.grid.len();
-            self.solution =
-                Solution { traction: zeros(n, FIELDS)?, slip: zeros(n, FIELDS)?, adhesion: zeros(n, FIELDS)? };
+            let field = || blank(n, [f64::NAN; 2], FIELDS);
+            self.solution = Solution { traction: field()?, slip: field()?, adhesion: blank(n, EXTERIOR, FIELDS)? };
         }
         Ok(())
     }
@@ -234,8 +246,8 @@ impl Solver {
             }
             let Memory { tangent, fields, .. } = memory;
             sensitivity::solve(problem, tangent, fields, &mut change)?;
-            let changes = window.elements(&self.grid).map(|(k, i)| (i, change[k]));
-            let (force, moment) = resultant(&self.grid, friction.spin_centre, changes);
+            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
+            let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
             for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
                 row[by] = value;
             }
@@ -253,13 +265,8 @@ impl Solver {
         if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
             offset = problem.offset;
             self.offset = offset;
-            let width = problem.grid.mx;
-            // Of element i, the elements in contact of its row of the window, and where these are there.
-            let touching = |iy: usize| {
-                let rows = (window.y.0..window.y.1).contains(&iy).then(|| iy - window.y.0);
-                let places = rows.into_iter().flat_map(|row| (row * width..).zip(window.row(&grid, row)));
-                places.filter(|(_, i)| pressure[*i] > 0.0).map(move |(k, i)| (k, i - iy * grid.mx))
-            };
+            // The elements in contact of a row.
+            let touching = |iy: usize| window.columns(iy).filter(move |(_, ix)| pressure[iy * grid.mx + ix] > 0.0);
             threads.for_each_row_pair((traction, grid.mx), (slip, grid.mx), |iy, traction, slip| {
                 traction.fill([0.0; 2]);
                 slip.fill([0.0; 2]);
@@ -272,9 +279,10 @@ impl Solver {
                 }
             });
             // Without friction all slips.
-            let without = |k: &usize| !(problem.bound[*k] > 0.0);
-            let all = (window.y.0..window.y.1).flat_map(|iy| touching(iy).map(|(k, _)| k));
-            report.certificate.slip_count += all.filter(without).count();
+            let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
+            let mut slipping = vec![0; grid.my];
+            threads.for_each(&mut slipping, |iy, count| *count = without(iy));
+            report.certificate.slip_count += slipping.iter().sum::<usize>();
         } else {
             traction.fill([0.0; 2]);
             slip.fill([0.0; 2]);
@@ -286,7 +294,7 @@ impl Solver {
                 Prescribed::Force(_) => offset[k] / distance,
             };
         }
-        let tractions = traction.iter().copied().enumerate();
-        (report.force, report.moment) = resultant(&self.grid, friction.spin_centre, tractions);
+        let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
+        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions);
     }
 }

@@ -71,8 +71,8 @@ fn to_the_circle(tangent: &Tangent, bound: &[f64], state: &State, i: usize) -> V
 
 /// x0, as a root of a sum of squares.
 fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> f64 {
-    let squared = |i: usize| [square(to_the_circle(tangent, &problem.bound, state, i)), 0.0];
-    let [sum, _] = vectors::sum(problem.threads(), problem.bound.len(), squared);
+    let squared = |i: usize| [square(to_the_circle(tangent, &problem.bound, state, i))];
+    let [sum] = vectors::sum(problem.threads(), problem.bound.len(), squared);
     sum.sqrt()
 }
 

@@ -43,7 +43,7 @@ impl Solver {
         let (grid, kept) = (&self.grid, &self.before);
         let Level { problem, state, .. } = &mut self.levels[0];
         let (threads, width) = (problem.threads().clone(), problem.grid.mx);
-        state.unload();
+        state.unload(&threads);
         threads.for_each_row_pair((&mut problem.bound, width), (&mut problem.rigid, width), |iy, bounds, rigid| {
             let places = window.row(grid, iy);
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {

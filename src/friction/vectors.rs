@@ -103,13 +103,23 @@ pub fn fill(threads: &Threads, to: &mut [Vector], f: impl Fn(usize) -> Vector + 
     });
 }
 
-/// The sum of f over n elements.
-pub fn sum(threads: &Threads, n: usize, f: impl Fn(usize) -> Vector + Sync + Send) -> Vector {
-    let mut sums = vec![[0.0; 2]; n.div_ceil(BLOCK)];
+/// The sums of f over n elements.
+pub fn sum<const K: usize>(threads: &Threads, n: usize, f: impl Fn(usize) -> [f64; K] + Sync + Send) -> [f64; K] {
+    let add = |sums: [f64; K], terms: [f64; K]| std::array::from_fn(|k| sums[k] + terms[k]);
+    let mut sums = vec![[0.0; K]; n.div_ceil(BLOCK)];
     threads.for_each_plain_row(&mut sums, 1, |k, sum| {
-        sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; 2], |s, v| plus(s, 1.0, v));
+        sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; K], add);
     });
-    sums.iter().fold([0.0; 2], |s, v| plus(s, 1.0, *v))
+    sums.into_iter().fold([0.0; K], add)
+}
+
+/// The largest value of f over n elements, or 0.
+pub fn largest(threads: &Threads, n: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    let mut largest = vec![0.0; n.div_ceil(BLOCK)];
+    threads.for_each_plain_row(&mut largest, 1, |k, largest| {
+        largest[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold(0.0, f64::max);
+    });
+    largest.into_iter().fold(0.0, f64::max)
 }
 
 /// Calls `work(first element, block)` on each of the blocks that several fields were cut into, and adds up what it returns.

@@ -16,16 +16,16 @@ pub struct Window {
 
 impl Window {
     /// Around the elements that are `inside`; none if there is none.
-    pub fn around(grid: &Grid, inside: impl Fn(usize) -> bool) -> Option<Window> {
-        let mut window: Option<Window> = None;
-        for iy in 0..grid.my {
+    pub fn around(grid: &Grid, threads: &Threads, inside: impl Fn(usize) -> bool + Sync + Send) -> Option<Window> {
+        let mut ends = vec![None; grid.my];
+        threads.for_each(&mut ends, |iy, ends| {
             let row = iy * grid.mx;
-            let Some(first) = (0..grid.mx).find(|ix| inside(row + ix)) else { continue };
-            let last = (0..grid.mx).rfind(|ix| inside(row + ix)).unwrap_or(first);
-            let Window { x, y } = window.unwrap_or(Window { x: (first, last + 1), y: (iy, iy + 1) });
-            window = Some(Window { x: (x.0.min(first), x.1.max(last + 1)), y: (y.0, iy + 1) });
-        }
-        window
+            let first = (0..grid.mx).find(|ix| inside(row + ix));
+            let last = || (0..grid.mx).rfind(|ix| inside(row + ix));
+            *ends = first.and_then(|first| Some((first, last()? + 1)));
+        });
+        let rows = ends.iter().enumerate().filter_map(|(iy, ends)| ends.map(|x| Window { x, y: (iy, iy + 1) }));
+        rows.reduce(|a, b| Window { x: (a.x.0.min(b.x.0), a.x.1.max(b.x.1)), y: (a.y.0, b.y.1) })
     }
 
     /// Its grid.
@@ -37,6 +37,14 @@ impl Window {
     pub fn row(&self, grid: &Grid, iy: usize) -> std::ops::Range<usize> {
         let start = (self.y.0 + iy) * grid.mx;
         start + self.x.0..start + self.x.1
+    }
+
+    /// Of each element of the window in row iy of the whole grid its index, and its column there.
+    pub fn columns(&self, iy: usize) -> impl Iterator<Item = (usize, usize)> {
+        let width = self.x.1 - self.x.0;
+        let row = (self.y.0..self.y.1).contains(&iy).then(|| (iy - self.y.0) * width);
+        let columns = self.x.0..self.x.1;
+        row.into_iter().flat_map(move |first| (first..).zip(columns.clone()))
     }
 
     /// Of each element of the window its index, and that on the whole grid.

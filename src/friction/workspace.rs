@@ -29,6 +29,7 @@ pub(super) struct Piece<T: Real> {
 impl<T: Real> Drop for Workspace<T> {
     fn drop(&mut self) {
         keep([&mut self.bins]);
+        self.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns, &mut piece.mirrored]));
     }
 }
 
@@ -36,14 +37,15 @@ impl<T: Real> Toeplitz<T> {
     /// Memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         let (px, py) = (self.rows.length(), self.columns.length());
+        let nothing = Complex::new(T::nan(), T::nan());
+        let columns = || blank(BLOCK * py, nothing, WORKSPACE);
         let piece = |_| {
             let mut scratch = self.rows.scratch();
             self.real_rows.fit(&mut scratch);
             self.columns.fit(&mut scratch);
-            let columns = vec![Complex::default(); BLOCK * py];
-            Piece { row: vec![T::zero(); px], mirrored: columns.clone(), columns, scratch }
+            Ok(Piece { row: vec![T::zero(); px], columns: columns()?, mirrored: columns()?, scratch })
         };
-        let bins = blank(self.my * px, Complex::new(T::nan(), T::nan()), WORKSPACE)?;
-        Ok(Workspace { bins, pieces: (0..self.threads.count()).map(piece).collect() })
+        let pieces = (0..self.threads.count()).map(piece).collect::<Result<_>>()?;
+        Ok(Workspace { bins: blank(self.my * px, nothing, WORKSPACE)?, pieces })
     }
 }
