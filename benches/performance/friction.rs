@@ -1,5 +1,7 @@
 //! A shift with friction: the tangential problem beside the normal one, and by two threads beside one.
 
+use std::time::Instant;
+
 use contact_normal::scene::{Bodies, Friction, Prescribed, Scene};
 use contact_normal::solver::{solve, Options};
 
@@ -20,21 +22,41 @@ pub fn shifts(threads: usize, sizes: &[usize]) {
     println!("|---|---:|---:|---:|---:|---:|");
     for &m in sizes {
         row(&ellipse(m), threads);
-        // Like bodies of the same E*: otherwise both problems are solved in turns.
-        row(&Case { bodies: Bodies::same(0.7, 0.3), ..rough(m) }, threads);
+        row(&like_bodies(m), threads);
     }
 }
 
-fn row(case: &Case, threads: usize) {
+/// Cold shifts by so many threads, for so many seconds, for a profiler.
+pub fn shift_again(case: &Case, threads: usize, time: f64) {
+    let (shifted, began) = (shifted(case), Instant::now());
+    while began.elapsed().as_secs_f64() < time {
+        cold(&shifted, &options(threads));
+    }
+}
+
+fn options(threads: usize) -> Options {
+    Options { tolerance: TOLERANCE, threads, ..Options::default() }
+}
+
+/// The shift that half of mu N asks for.
+fn shifted(case: &Case) -> Scene<'_> {
     let plain = case.scene();
-    let options = |threads| Options { tolerance: TOLERANCE, threads, ..Options::default() };
     let (_, _, normal) = solve(&plain, &options(1)).expect("a solution");
     let force = 0.5 * MU * normal.measures.force;
-    let pushed = Friction { prescribed: [Prescribed::Force(force), Prescribed::Force(0.0)], ..Friction::new(MU) };
     let with = |friction| Scene { friction: Some(friction), ..plain.clone() };
+    let pushed = Friction { prescribed: [Prescribed::Force(force), Prescribed::Force(0.0)], ..Friction::new(MU) };
     let (_, _, report) = solve(&with(pushed), &options(1)).expect("a solution");
     let creepage = report.friction.expect("friction").creepage;
-    let shifted = with(Friction { prescribed: creepage.map(Prescribed::Creepage), ..Friction::new(MU) });
+    with(Friction { prescribed: creepage.map(Prescribed::Creepage), ..Friction::new(MU) })
+}
+
+/// The rough surface, with like bodies of the same E*: otherwise both problems are solved in turns.
+pub fn like_bodies(m: usize) -> Case {
+    Case { bodies: Bodies::same(0.7, 0.3), ..rough(m) }
+}
+
+fn row(case: &Case, threads: usize) {
+    let (plain, shifted) = (case.scene(), shifted(case));
     let products = solve(&shifted, &options(1)).expect("a solution").2.friction.expect("friction").products;
     let call = |scene: &Scene<'_>, threads: usize| {
         cold(scene, &options(threads));

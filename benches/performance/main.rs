@@ -39,8 +39,13 @@ fn main() {
         let size = || m.parse().expect("a size");
         match (first.as_str(), rest) {
             (targets::SOLVE_ONCE, []) => return targets::solve_once(name, size()),
-            (targets::SOLVE_AGAIN, [what, seconds]) => {
-                return targets::solve_again(name, size(), what == "steps", seconds.parse().expect("seconds"))
+            (targets::SOLVE_AGAIN, [what, seconds, threads @ ..]) => {
+                let seconds = seconds.parse().expect("seconds");
+                if what != "shift" {
+                    return targets::solve_again(name, size(), what == "steps", seconds);
+                }
+                let case = if name == "rough" { friction::like_bodies(size()) } else { case::ellipse(size()) };
+                return friction::shift_again(&case, threads.len() + 1, seconds);
             }
             _ => {}
         }
