@@ -1577,7 +1577,7 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
                                                    struct contact_normal_fields *fields);
 
 /*
- Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 192 MiB of what
+ Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 512 MiB of what
  solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
  */
 void contact_normal_solver_free(struct contact_normal_solver *solver);

@@ -16,15 +16,15 @@ use std::sync::Mutex;
 
 use crate::error::{Error, Result};
 
-/// Bytes that are kept in the process, at most: more than a solve on 1024 x 1024 elements takes.
-const MOST_KEPT: usize = 192 << 20;
+/// Bytes that are kept in the process, at most: more than a solve on 2048 x 2048 elements takes.
+const MOST_KEPT: usize = 512 << 20;
 /// Smaller blocks the allocator keeps by itself.
 const LEAST_KEPT: usize = 1 << 13;
 /// Who asks for more at once has no use for what is kept.
-const TOO_LARGE_TO_KEEP: usize = MOST_KEPT / 2;
-/// Arrays of so many bytes rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
+const TOO_LARGE_TO_KEEP: usize = 96 << 20;
+/// Arrays of so many values rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
 /// product.
-const RESTS: usize = 1 << 26;
+const RESTS: usize = 1 << 23;
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {
@@ -114,8 +114,8 @@ fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
 }
 
 /// Whether an array of n values rests.
-pub(crate) fn rests<A>(n: usize) -> bool {
-    n.saturating_mul(size_of::<A>()) >= least_resting()
+pub(crate) fn rests(n: usize) -> bool {
+    n >= least_resting()
 }
 
 #[cfg(not(test))]
@@ -137,7 +137,7 @@ fn least_resting() -> usize {
 /// Room for n values that wake when they are first needed.
 pub(crate) fn resting<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    if rests::<A>(n) {
+    if rests(n) {
         reserve(&mut v, n, what)?;
     } else {
         unwritten(&mut v, n, mark, what)?;
@@ -147,7 +147,7 @@ pub(crate) fn resting<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -
 
 /// An array that is not needed for a while: a large one is empty then.
 pub(crate) fn rest<A>(values: &mut Vec<A>) {
-    if rests::<A>(values.capacity()) {
+    if rests(values.capacity()) {
         values.clear();
         give_pages_back(values);
     }

@@ -167,7 +167,7 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
     })
 }
 
-/// Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 192 MiB of what
+/// Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 512 MiB of what
 /// solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) {

@@ -93,7 +93,7 @@ impl ProjectedCg {
         let single = self.precision != Precision::Double;
         let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();
         let noisy = near && single && coarse.noise(task.problem) > NOISE * task.goal.tolerance;
-        if rests::<f64>(task.state.p.len()) {
+        if rests(task.state.p.len()) {
             self.coarse = None;
             release();
         }
