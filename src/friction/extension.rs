@@ -275,5 +275,5 @@ pub fn neighbours(fine: usize, coarse: usize) -> [(usize, f64); 2] {
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/extension.rs"]
+#[path = "../../tests/unit/friction_extension.rs"]
 mod tests;
