@@ -124,6 +124,8 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
     let place = |i: usize| ((i % 90) as f64 - 44.0, (i / 90) as f64 - 36.0);
     let h: Vec<f64> = (0..grid.len()).map(place).map(|(x, y)| 1e-3 * (x * x + y * y)).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.2));
+    // On a window of another size.
+    let less = Scene { load: Load::Approach(0.1), ..plain.clone() };
     let with = |values: &[f64]| Scene { influence: Some(Table::new(90, 72, values, &grid).unwrap()), ..plain.clone() };
     for precision in [Precision::Mixed, Precision::Double] {
         let options = Options { precision, ..Options::default() };
@@ -133,7 +135,7 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
         assert_eq!(handle.solve(&plain, &options, None, None).unwrap().0, Outcome::Converged);
         for (factor, skew) in [(1.5, 0.0), (1.0, 1e-8), (0.9, 1e-8), (1.2, 0.0), (1.2, 0.0)] {
             let values = own_table(&grid, factor, skew);
-            let (new, _, _) = solve(&with(&values), &options).unwrap();
+            let (mut new, _, _) = solve(&with(&values), &options).unwrap();
             handle.set_influence(Table::new(90, 72, &values, &grid).unwrap()).unwrap();
             for initial in [&previous, &options] {
                 assert_eq!(handle.solve(&plain, initial, None, None).unwrap().0, Outcome::Converged);
@@ -146,6 +148,11 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
                 assert_conditions(&h, 0.2, p, &u, &format!("{factor} {skew} {initial:?}"));
             }
             assert!(handle.state().p == new.state().p, "{factor} {skew} {precision:?}");
+            for scene in [&less, &plain] {
+                assert_eq!(handle.solve(scene, &options, None, None).unwrap().0, Outcome::Converged);
+                new.solve(scene, &options, None, None).unwrap();
+                assert!(handle.state().p == new.state().p, "{factor} {skew} {precision:?} {:?}", scene.load);
+            }
         }
     }
 }

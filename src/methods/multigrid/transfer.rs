@@ -6,6 +6,9 @@
 use crate::grid::{children, Grid};
 use crate::threads::Threads;
 
+/// Coarse elements of a row that are interpolated together.
+const BLOCK: usize = 32;
+
 /// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + Sync + Send, to: &mut [f64]) {
     let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
@@ -82,8 +85,15 @@ pub fn interpolate_row(
 ) {
     let of = |fine: usize, coarse: usize| if coarse < fine { 2 } else { 1 };
     let from = &from[y / of(fine.my, coarse.my) * coarse.mx..][..coarse.mx];
-    for (children, value) in row.chunks_mut(of(fine.mx, coarse.mx)).zip(from) {
-        children.iter_mut().for_each(|child| combine(child, *value));
+    if coarse.mx == fine.mx {
+        return row.iter_mut().zip(from).for_each(|(child, value)| combine(child, *value));
+    }
+    let mut pairs = row.chunks_exact_mut(2);
+    for (pair, value) in pairs.by_ref().zip(from) {
+        pair.iter_mut().for_each(|child| combine(child, *value));
+    }
+    if let ([child], Some(value)) = (pairs.into_remainder(), from.last()) {
+        combine(child, *value);
     }
 }
 
@@ -104,14 +114,23 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
             row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
             return;
         }
-        let (mut before, mut here) = (at(0), at(0));
-        for (x, children) in row.chunks_mut(2).enumerate() {
-            let after = if x + 1 < coarse.mx { at(x + 1) } else { here };
-            children[0] = mix(here, before);
-            if let Some(second) = children.get_mut(1) {
-                *second = mix(here, after);
+        // Blocks of coarse elements, with a neighbour on each side: loops that the compiler can vectorise.
+        let mut mixed = [0.0; BLOCK + 2];
+        for (children, first) in row.chunks_mut(2 * BLOCK).zip((0..).step_by(BLOCK)) {
+            let count = children.len().div_ceil(2);
+            let neighbours = near[first..].iter().zip(&far[first..]);
+            mixed[1..].iter_mut().zip(neighbours).for_each(|(mixed, (near, far))| *mixed = mix(*near, *far));
+            mixed[0] = if first > 0 { at(first - 1) } else { mixed[1] };
+            if first + count == coarse.mx {
+                mixed[count + 1] = mixed[count];
             }
-            (before, here) = (here, after);
+            let mut pairs = children.chunks_exact_mut(2);
+            for (pair, around) in pairs.by_ref().zip(mixed.windows(3)) {
+                (pair[0], pair[1]) = (mix(around[1], around[0]), mix(around[1], around[2]));
+            }
+            if let [last] = pairs.into_remainder() {
+                *last = mix(mixed[count], mixed[count - 1]);
+            }
         }
     });
 }

@@ -1,5 +1,6 @@
 //! The iteration in either precision.
 
+use super::vectors::Operators;
 use super::Iteration;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -8,40 +9,97 @@ use crate::operator::fft::Real;
 use crate::operator::{Operator, Precision};
 use crate::threads::Threads;
 
-/// The iteration in the precision asked for.
+/// Operators of windows that are kept at most, and elements of each: theirs are small beside those of the whole grid.
+const MOST_KEPT: usize = 8;
+const LARGEST_KEPT: usize = 128 * 128;
+
+/// The iteration in the precision asked for, and operators of other windows, the last that was left last: in many small problems the
+/// same few sizes come back.
 pub(super) enum Inner {
-    Single(Iteration<f32>),
-    Double(Iteration<f64>),
+    Single(Iteration<f32>, Vec<(Grid, Operators<f32>)>),
+    Double(Iteration<f64>, Vec<(Grid, Operators<f64>)>),
+}
+
+/// What the operators of a window are made of: the coefficients, taken times a factor, and of the whole grid the operator in double
+/// precision, if it is the window.
+#[derive(Clone, Copy)]
+pub(super) struct MadeOf<'a> {
+    pub(super) influence: &'a Coefficients,
+    pub(super) factor: f64,
+    pub(super) whole: Option<&'a Operator<f64>>,
+    pub(super) threads: &'a Threads,
+}
+
+impl MadeOf<'_> {
+    fn operators<T: Real>(&self, grid: &Grid) -> Result<Operators<T>> {
+        let MadeOf { influence, factor, whole, threads } = *self;
+        let operator = match whole {
+            Some(operator) => operator.in_precision(factor)?,
+            None => Operator::scaled(influence, factor, grid, threads)?,
+        };
+        Operators::new(operator, influence, factor, grid, threads)
+    }
+
+    fn iteration<T: Real>(&self, grid: &Grid) -> Result<Iteration<T>> {
+        Iteration::new(self.operators(grid)?, grid, self.threads)
+    }
+
+    /// The iteration goes on from one grid with another.
+    fn turn<T: Real>(
+        &self,
+        iteration: &mut Iteration<T>,
+        kept: &mut Vec<(Grid, Operators<T>)>,
+        (from, to): (&Grid, &Grid),
+    ) -> Result<()> {
+        let operators = match kept.iter().position(|(grid, _)| grid == to) {
+            Some(i) => kept.remove(i).1,
+            None => self.operators(to)?,
+        };
+        let left = iteration.turn_to(operators, to, self.threads)?;
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((*from, left));
+        Ok(())
+    }
 }
 
 impl Inner {
-    /// On `grid`, of which `operator` is the one in double precision if that is known. Coefficients are taken times `factor`.
-    pub fn new(
-        influence: &Coefficients,
-        grid: &Grid,
-        operator: Option<&Operator<f64>>,
-        factor: f64,
-        precision: Precision,
-        threads: &Threads,
-    ) -> Result<Inner> {
-        fn iteration<T: Real>(
-            influence: &Coefficients,
-            grid: &Grid,
-            operator: Option<&Operator<f64>>,
-            factor: f64,
-            threads: &Threads,
-        ) -> Result<Iteration<T>> {
-            let operator = match operator {
-                Some(operator) => operator.in_precision(factor)?,
-                None => Operator::scaled(influence, factor, grid, threads)?,
-            };
-            Iteration::new(operator, influence, factor, grid, threads)
-        }
-        let threads = &threads.suited_to(grid.len());
+    /// On `grid`.
+    pub fn new(from: MadeOf<'_>, grid: &Grid, precision: Precision) -> Result<Inner> {
         Ok(match precision {
-            Precision::Double => Inner::Double(iteration(influence, grid, operator, factor, threads)?),
-            Precision::Auto | Precision::Mixed => Inner::Single(iteration(influence, grid, operator, factor, threads)?),
+            Precision::Double => Inner::Double(from.iteration(grid)?, Vec::new()),
+            Precision::Auto | Precision::Mixed => Inner::Single(from.iteration(grid)?, Vec::new()),
         })
+    }
+
+    /// Whether the operators of a window are kept for the next of its size.
+    pub fn keeps(grid: &Grid) -> bool {
+        grid.len() <= LARGEST_KEPT
+    }
+
+    /// Goes on from one grid with another. Not to be used after an error.
+    pub fn turn_to(&mut self, made_of: MadeOf<'_>, grids: (&Grid, &Grid)) -> Result<()> {
+        match self {
+            Inner::Single(iteration, kept) => made_of.turn(iteration, kept, grids),
+            Inner::Double(iteration, kept) => made_of.turn(iteration, kept, grids),
+        }
+    }
+
+    /// The operators of other windows are of other coefficients.
+    pub fn forget_kept(&mut self) {
+        match self {
+            Inner::Single(_, kept) => kept.clear(),
+            Inner::Double(_, kept) => kept.clear(),
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Inner::Single(inner, kept) => inner.bytes() + kept.iter().map(|(_, kept)| kept.bytes()).sum::<usize>(),
+            Inner::Double(inner, kept) => inner.bytes() + kept.iter().map(|(_, kept)| kept.bytes()).sum::<usize>(),
+        }
     }
 }
 
@@ -49,8 +107,8 @@ impl Inner {
 macro_rules! in_either {
     ($inner:expr, $iteration:ident => $call:expr) => {
         match $inner {
-            Inner::Single($iteration) => $call,
-            Inner::Double($iteration) => $call,
+            Inner::Single($iteration, _) => $call,
+            Inner::Double($iteration, _) => $call,
         }
     };
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::inner::{in_either, Inner};
+use super::inner::{in_either, Inner, MadeOf};
 use super::known::Last;
 use super::scaling::Scaling;
 use super::{Cycle, End, Window};
@@ -95,8 +95,7 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let windowed =
-            |w: &Windowed| in_either!(&w.inner, inner => inner.bytes()) + w.part.as_ref().map_or(0, State::bytes);
+        let windowed = |w: &Windowed| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes);
         self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
@@ -213,14 +212,24 @@ impl Level {
             })
         };
         // The operator of a window depends on its size only.
-        let fits = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
-        let operator = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-        let factor = units.influence;
-        let windowed = match self.windowed.take().filter(fits) {
+        let whole = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
+        let (influence, factor) = (&self.influence, units.influence);
+        let threads = &self.threads.suited_to(grid.len());
+        let made_of = MadeOf { influence, factor, whole, threads };
+        let serves = |windowed: &Windowed| {
+            let before = windowed.window.grid(&self.grid);
+            before == grid || windowed.is_current && Inner::keeps(&before) && Inner::keeps(&grid)
+        };
+        let windowed = match self.windowed.take().filter(serves) {
             Some(mut windowed) => {
-                if !windowed.is_current {
-                    in_either!(&mut windowed.inner, inner => inner.renew(&self.influence, factor, &grid, operator)?);
+                let before = windowed.window.grid(&self.grid);
+                if before != grid {
+                    windowed.inner.turn_to(made_of, (&before, &grid))?;
+                } else if !windowed.is_current {
+                    windowed.inner.forget_kept();
+                    in_either!(&mut windowed.inner, inner => inner.renew(influence, factor, &grid, whole)?);
                 }
+                windowed.part = windowed.part.filter(|part| part.grid == grid);
                 let part = match (part, windowed.part) {
                     (Some(new), None) => Some(new()?),
                     (part, known) => known.filter(|_| part.is_some()),
@@ -228,7 +237,7 @@ impl Level {
                 Windowed { window, units, inner: windowed.inner, part, is_current: true }
             }
             None => {
-                let inner = Inner::new(&self.influence, &grid, operator, factor, self.precision, &self.threads)?;
+                let inner = Inner::new(made_of, &grid, self.precision)?;
                 let part = part.map(|new| new()).transpose()?;
                 Windowed { window, inner, units, part, is_current: true }
             }

@@ -1,6 +1,7 @@
 //! What the iteration on one grid holds.
 
 use std::iter::once;
+use std::mem::replace;
 
 use super::known::Known;
 use super::preconditioner::Preconditioner;
@@ -37,6 +38,31 @@ impl Beyond {
     }
 }
 
+/// A and M on one grid.
+pub struct Operators<T: Real> {
+    pub(super) operator: Operator<T>,
+    pub(super) preconditioner: Option<Preconditioner<T>>,
+}
+
+impl<T: Real> Operators<T> {
+    /// On `grid`; `operator` is that of the coefficients times `factor`. Where the preconditioner's circulant is not positive, the iteration
+    /// does without.
+    pub fn new(
+        operator: Operator<T>,
+        influence: &Coefficients,
+        factor: f64,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Operators<T>> {
+        Ok(Operators { operator, preconditioner: preconditioner(influence, factor, grid, threads)? })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.operator.bytes() + self.preconditioner.as_ref().map_or(0, Preconditioner::bytes)
+    }
+}
+
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
@@ -58,16 +84,9 @@ pub struct Iteration<T: Real> {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`, the operator of which is given: that of the coefficients times `factor`. Where the preconditioner's
-    /// circulant is not positive, the iteration does without.
-    pub fn new(
-        operator: Operator<T>,
-        influence: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        threads: &Threads,
-    ) -> Result<Iteration<T>> {
-        let preconditioner = preconditioner(influence, factor, grid, threads)?;
+    /// Sets up the iteration on `grid`.
+    pub fn new(operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
+        let Operators { operator, preconditioner } = operators;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
         let directions = || {
@@ -90,6 +109,24 @@ impl<T: Real> Iteration<T> {
             entering: vec![0; grid.my],
             threads: threads.clone(),
         })
+    }
+
+    /// Goes on with another grid; returns the operators of the one before. Not to be used after an error.
+    pub fn turn_to(&mut self, operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Operators<T>> {
+        let n = grid.len();
+        let left = Operators {
+            operator: replace(&mut self.operator, operators.operator),
+            preconditioner: replace(&mut self.preconditioner, operators.preconditioner),
+        };
+        self.threads = threads.for_a_pass(n);
+        self.workspace = workspace(&self.operator, &self.preconditioner)?;
+        self.runs = Segments::new(grid, &self.threads)?;
+        for values in [&mut self.t, &mut self.q, &mut self.z] {
+            reserve(values, n, "search directions")?;
+        }
+        reserve(&mut self.debts, n, "truncated elements")?;
+        self.entering.resize(grid.my, 0);
+        Ok(left)
     }
 
     /// Takes other coefficients, times `factor`, on the same grid, of which `whole` is the operator in double precision if that is
