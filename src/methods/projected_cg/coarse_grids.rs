@@ -24,9 +24,8 @@ use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 8;
-/// Where the coarsest grid is solved well enough: its elements are larger than that is small. With 1e-3 in its place the other grids need
-/// as many iterations.
-const COARSEST_TOLERANCE: f64 = 5e-3;
+/// Where the coarsest grid is solved well enough: its elements are larger than that is small.
+const COARSEST_TOLERANCE: f64 = 1e-3;
 /// Iterations at most on the coarsest grid, and on those between it and the finest, where they follow a first step without
 /// direction. Measured: with 3 or 4 the finest grid needs no fewer.
 const COARSEST_ITERATIONS: u64 = 50;

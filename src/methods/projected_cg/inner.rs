@@ -86,11 +86,18 @@ impl Inner {
         }
     }
 
-    /// The operators of other windows are of other coefficients.
-    pub fn forget_kept(&mut self) {
+    /// Takes other coefficients, on the same grid. Not to be used after an error.
+    pub fn renew(&mut self, made_of: MadeOf<'_>, grid: &Grid) -> Result<()> {
+        let MadeOf { influence, factor, whole, .. } = made_of;
         match self {
-            Inner::Single(_, kept) => kept.clear(),
-            Inner::Double(_, kept) => kept.clear(),
+            Inner::Single(iteration, kept) => {
+                kept.clear();
+                iteration.renew(influence, factor, grid, whole)
+            }
+            Inner::Double(iteration, kept) => {
+                kept.clear();
+                iteration.renew(influence, factor, grid, whole)
+            }
         }
     }
 

@@ -213,9 +213,8 @@ impl Level {
         };
         // The operator of a window depends on its size only.
         let whole = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
-        let (influence, factor) = (&self.influence, units.influence);
         let threads = &self.threads.suited_to(grid.len());
-        let made_of = MadeOf { influence, factor, whole, threads };
+        let made_of = MadeOf { influence: &self.influence, factor: units.influence, whole, threads };
         let serves = |windowed: &Windowed| {
             let before = windowed.window.grid(&self.grid);
             before == grid || windowed.is_current && Inner::keeps(&before) && Inner::keeps(&grid)
@@ -226,8 +225,7 @@ impl Level {
                 if before != grid {
                     windowed.inner.turn_to(made_of, (&before, &grid))?;
                 } else if !windowed.is_current {
-                    windowed.inner.forget_kept();
-                    in_either!(&mut windowed.inner, inner => inner.renew(influence, factor, &grid, whole)?);
+                    windowed.inner.renew(made_of, &grid)?;
                 }
                 windowed.part = windowed.part.filter(|part| part.grid == grid);
                 let part = match (part, windowed.part) {
