@@ -1,7 +1,8 @@
 //! The threads of one solve, or of a batch of solves: none but the caller's own, or a pool of ours.
 //!
 //! Work is cut into pieces whose results do not depend on who computes them, so that the answer has the same bits for
-//! any number of threads. It is compiled for the vectors of this machine, on which no bit depends either: nothing is contracted or reordered.
+//! any number of threads. What the compiler inlines here is compiled for the vectors of this machine, on which no bit depends either: nothing is
+//! contracted or reordered.
 
 mod pool;
 
