@@ -3,8 +3,8 @@
 //! Each is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads
 //! that are not there; so does an operator that was set up before the fork.
 //!
-//! *Between two passes* workers look for work for a while before they sleep, and yield their core meanwhile to any other thread that wants it:
-//! a solve has hundreds of passes of some 10 to 1000 us, and waking a thread that sleeps takes some 50.
+//! *Between two passes* workers look for work for a while before they sleep: a solve has hundreds of passes of some 10 to 1000 us, and
+//! waking a thread that sleeps takes some 50. They do not yield their core meanwhile (docs/notes/2026-11-performance-targets.md).
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
