@@ -547,7 +547,7 @@ typedef struct contact_normal_friction {
    */
   double force[2];
   /*
-   The length rolled in the step; default 0: dx.
+   The length rolled in the step, at most a million elements; default 0: dx.
    */
   double rolling_distance;
   /*

@@ -171,6 +171,7 @@ impl Sliding {
             direction: input.rolling_direction,
             previous: self.previous.as_ref().map(|pair| [0, 1].map(|k: usize| pair[k][..n].to_vec())),
             rigid: self.rigid.as_ref().map(|pair| [0, 1].map(|k: usize| pair[k][..n].to_vec())),
+            sensitivities: input.sensitivities == 1,
         };
         let vectors = |pair: &Pair| (0..n).map(|i| [pair[0][i], pair[1][i]]).collect::<Vec<_>>();
         let found = Found {

@@ -44,7 +44,10 @@ fn check_answer(case: &Case, found: &Found, before: &[Vector], broken: &mut Brok
 /// Numbers, tractions within their bounds, stick and slip, and the forces; returns mu N.
 fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let (status, slide) = (found.status, &case.slide);
+    let report = &found.report;
+    let of_report = report.tangential_force.iter().chain(&report.creepage).chain(&report.sensitivities);
     let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
+    let numbers = numbers.chain(of_report).chain([&report.tangential_moment, &report.tangential_residual]);
     broken.unless(numbers.copied().all(f64::is_finite), "friction returns numbers", || format!("status {status}"));
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);
@@ -129,9 +132,10 @@ pub fn tables(place: &Place) -> Vec<Vec<f64>> {
 pub fn check(random: &mut Random) -> (Case, Vec<i32>, Vec<Failure>) {
     let place = Place::random(random);
     let without = frictionless(&place, &crate::friction_case::Stop::unhindered(random));
-    let case = Case::random(random, place, &without);
-    let mut broken = Broken { case: &case, failures: Vec::new() };
+    let mut case = Case::random(random, place, &without);
     let twice = random.chance(0.25);
+    case.slide.sensitivities = random.chance(0.2);
+    let mut broken = Broken { case: &case, failures: Vec::new() };
     let found = call(&case, twice);
     let before = case.slide.before();
     check_answer(&case, &found[0], &before, &mut broken);

@@ -51,7 +51,7 @@ fn friction(slide: &Slide, continues: bool) -> contact_normal_friction {
         arrays.as_ref().map_or([null(); 2], |arrays| [arrays[0].as_ptr(), arrays[1].as_ptr()])
     };
     friction.rigid_slip = pointers(&slide.rigid);
-    friction.continues = i32::from(continues);
+    (friction.continues, friction.sensitivities) = (i32::from(continues), i32::from(slide.sensitivities));
     if !continues {
         friction.previous_traction = pointers(&slide.previous);
     }

@@ -79,6 +79,8 @@ pub struct Slide {
     pub direction: f64,
     pub previous: Option<[Vec<f64>; 2]>,
     pub rigid: Option<[Vec<f64>; 2]>,
+    /// Whether the derivatives of the forces are asked for.
+    pub sensitivities: bool,
 }
 
 impl Slide {
@@ -172,6 +174,16 @@ fn coefficients(random: &mut Random, n: usize) -> (Vec<f64>, bool, f64) {
     ((0..n).map(|_| value(random)).collect(), false, usual)
 }
 
+/// A step in elements: the last tenth of 0.3 to 3 stands for 3 to 1e5, in the longer direction.
+fn step(length: f64) -> f64 {
+    let beyond = (length - 2.9) / 0.1;
+    if beyond > 0.0 {
+        (3.0 * (1e5f64 / 3.0).powf(beyond)).round()
+    } else {
+        length
+    }
+}
+
 impl Case {
     /// A motion or forces of the size that the bodies' pressures suggest.
     pub fn random(random: &mut Random, place: Place, without: &Found) -> Case {
@@ -214,7 +226,7 @@ impl Case {
             amount,
             spin: signed(random, spin),
             spin_centre: if random.chance(0.8) { [0.0; 2] } else { [size * random.between(-2.0, 2.0), 0.3 * size] },
-            distance: if random.chance(0.6) { 0.0 } else { grid.dx.max(grid.dy) * random.between(0.3, 3.0) },
+            distance: if random.chance(0.6) { 0.0 } else { grid.dx.max(grid.dy) * step(random.between(0.3, 3.0)) },
             direction: match random.uniform() {
                 u if u < 0.4 => 0.0,
                 u if u < 0.7 => random.pick(&[0.5, 1.0, 1.5]) * std::f64::consts::PI,
@@ -222,6 +234,7 @@ impl Case {
             },
             previous,
             rigid: random.chance(0.15).then(|| [0, 1].map(|_| noise(random, own_size))),
+            sensitivities: false,
         };
         let mut stop = Stop::unhindered(random);
         if random.chance(0.1) {

@@ -30,8 +30,10 @@ impl Coefficient<'_> {
     }
 }
 
-/// Steps of steady rolling, in elements.
-const STEPS: std::ops::RangeInclusive<f64> = 0.1..=1e6;
+/// Steps of rolling are at most so many elements long,
+const LONGEST_STEP: f64 = 1e6;
+/// and those of steady rolling at least so many.
+const SHORTEST_STEADY_STEP: f64 = 0.1;
 
 /// Slips and tractions are smaller: their squares are numbers.
 const LARGEST: f64 = 1e140;
@@ -174,16 +176,23 @@ impl Friction<'_> {
         unit.rigid_slip_at(grid, i)
     }
 
-    /// Refuses steps of steady rolling that elements do not resolve.
+    /// Refuses steps beyond all grids, and steps of steady rolling that elements do not resolve.
     fn check_step(&self, grid: &Grid) -> Result<()> {
-        if self.motion != Motion::SteadyRolling {
-            return Ok(());
-        }
+        let (name, distance) = ("friction->rolling_distance", self.distance(grid));
         let (x, y) = self.elements_rolled(grid);
         let longest = x.abs().max(y.abs());
-        let rule =
-            "a step of steady rolling must be at least a tenth of an element long, and at most a million elements";
-        require(STEPS.contains(&longest), "friction->rolling_distance", self.distance(grid), rule)
+        match self.motion {
+            Motion::Shift => Ok(()),
+            Motion::TransientRolling => {
+                let rule = "a step of transient rolling must be at most a million elements long";
+                require(longest <= LONGEST_STEP, name, distance, rule)
+            }
+            Motion::SteadyRolling => {
+                let rule =
+                    "a step of steady rolling must be at least a tenth of an element long, and at most a million elements";
+                require((SHORTEST_STEADY_STEP..=LONGEST_STEP).contains(&longest), name, distance, rule)
+            }
+        }
     }
 
     /// Refuses slips and tractions that are no numbers, or whose squares leave the range of double precision.

@@ -66,7 +66,7 @@ pub struct contact_normal_friction {
     pub spin_centre: [f64; 2],
     /// The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
     pub force: [f64; 2],
-    /// The length rolled in the step; default 0: dx.
+    /// The length rolled in the step, at most a million elements; default 0: dx.
     pub rolling_distance: f64,
     /// The direction of rolling: an angle from the x axis, in radians; default 0.
     pub rolling_direction: f64,

@@ -37,6 +37,16 @@ pub enum Source {
     Tables(CrossTables),
 }
 
+impl Source {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Source::HalfSpace(_) => 0,
+            Source::Tables(tables) => size_of_val(&tables.values[..]),
+        }
+    }
+}
+
 /// Axz and Ayz of the caller's own, at the offsets `-cx..cx` by `-cy..cy`.
 #[derive(Clone, Debug)]
 pub struct CrossTables {
@@ -180,6 +190,12 @@ impl Coupling {
         let workspace = operators[0].workspace()?;
         let field = || zeros(grid.len(), "the coupling of unlike bodies");
         Ok(Coupling { operators, workspace, field: [field()?, field()?] })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let fields = self.field.iter().map(|field| size_of_val(&field[..])).sum::<usize>();
+        self.operators.iter().map(Operator::bytes).sum::<usize>() + self.workspace.bytes() + fields
     }
 
     /// Adds `sign` times the sideways displacements by pressures.

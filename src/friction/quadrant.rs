@@ -18,9 +18,9 @@ pub struct Quadrant {
 
 impl Quadrant {
     /// As far as operators of a grid ask: products ask for the offsets between its elements, preconditioners for one more, and rolling
-    /// by whole elements for `by` more.
+    /// by whole elements, no more of them than the grid has, for `by` more.
     pub fn new(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
-        let (cx, cy) = reach(grid, by);
+        let (cx, cy) = reach(tangential, grid, by);
         let mut values: Vec<Entry> = blank(cx * cy, [f64::NAN; 3], "the tangential influence coefficients")?;
         threads.for_each_plain_row(&mut values, cx, |ky, row| tangential.fill_row(ky, row));
         Ok(Quadrant { tangential: tangential.clone(), cx, cy, values })
@@ -28,7 +28,7 @@ impl Quadrant {
 
     /// Of a coarser grid.
     pub fn coarser(self, tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
-        let (cx, cy) = reach(grid, by);
+        let (cx, cy) = reach(tangential, grid, by);
         match tangential.times(&self.tangential) {
             Some(factor) if cx <= self.cx && cy <= self.cy => {
                 let Quadrant { cx: width, mut values, .. } = self;
@@ -66,22 +66,23 @@ impl Quadrant {
         [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
     }
 
-    /// The same `by` elements further on.
+    /// The same `by` elements further on: computed where they are not at whole offsets within reach.
     pub fn displaced(&self, x: i64, y: i64, by: (f64, f64)) -> Entry {
-        match whole(by) {
-            Some((in_x, in_y)) => self.at(x + in_x, y + in_y),
-            None => self.tangential.at(x as f64 + by.0, y as f64 + by.1),
+        let (at_x, at_y) = (x as f64 + by.0, y as f64 + by.1);
+        let is_kept =
+            at_x.fract() == 0.0 && at_y.fract() == 0.0 && at_x.abs() < self.cx as f64 && at_y.abs() < self.cy as f64;
+        if is_kept {
+            self.at(at_x as i64, at_y as i64)
+        } else {
+            self.tangential.at(at_x, at_y)
         }
     }
 }
 
-/// A displacement by whole elements.
-fn whole(by: (f64, f64)) -> Option<(i64, i64)> {
-    (by.0.fract() == 0.0 && by.1.fract() == 0.0).then_some((by.0 as i64, by.1 as i64))
-}
-
-/// Offsets in each direction.
-fn reach(grid: &Grid, by: (f64, f64)) -> (usize, usize) {
-    let (in_x, in_y) = whole(by).unwrap_or((0, 0));
-    (grid.mx + 1 + in_x.unsigned_abs() as usize, grid.my + 1 + in_y.unsigned_abs() as usize)
+/// Offsets in each direction. A step beyond the grid is no reason to keep what lies between, but of own tables.
+fn reach(tangential: &Tangential, grid: &Grid, by: (f64, f64)) -> (usize, usize) {
+    let is_whole = by.0.fract() == 0.0 && by.1.fract() == 0.0;
+    let is_short = by.0.abs() <= grid.mx as f64 && by.1.abs() <= grid.my as f64;
+    let (in_x, in_y) = if is_whole && (is_short || tangential.is_own()) { by } else { (0.0, 0.0) };
+    (grid.mx + 1 + in_x.abs() as usize, grid.my + 1 + in_y.abs() as usize)
 }

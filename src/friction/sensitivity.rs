@@ -34,13 +34,18 @@ pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> R
     Ok(())
 }
 
-/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return.
+/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return. Where nothing moves or carries
+/// tractions, dq = 0.
 pub fn solve(problem: &mut Problem, tangent: &Tangent, fields: &mut Fields, dw: &mut [Vector]) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
-    let mut system = TangentSystem::new(problem, tangent, Forces::NONE, fields)?;
     // Unit tractions: the system is linear, and single precision has a small range.
     let size = vectors::dot(&threads, dw, dw).sqrt();
-    let scale = system.problem.rms_bound() / size;
+    let scale = problem.rms_bound() / size;
+    if !(scale > 0.0 && scale < f64::INFINITY) {
+        vectors::fill(&threads, dw, |_| [0.0; 2]);
+        return Ok(());
+    }
+    let mut system = TangentSystem::new(problem, tangent, Forces::NONE, fields)?;
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
     let first = vectors::dot(&threads, &r, &r).sqrt();

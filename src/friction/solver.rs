@@ -17,12 +17,10 @@ use super::{Tangential, Vector};
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
-use crate::memory::{blank, keep};
+use crate::memory::keep;
 use crate::progress::Outcome;
 use crate::threads::Threads;
 
-/// What memory is for.
-const FIELDS: &str = "tangential fields";
 /// A start that leaves more than this residual is worth less than the coarser grids.
 const WORTHLESS: f64 = 0.1;
 
@@ -91,6 +89,15 @@ impl Solver {
         self.has_solution.then_some(&self.solution)
     }
 
+    /// The last result, or an empty one.
+    pub fn into_solution(mut self) -> Solution {
+        if self.has_solution {
+            std::mem::take(&mut self.solution)
+        } else {
+            Solution::default()
+        }
+    }
+
     /// There is no last result any more.
     pub fn forget(&mut self) {
         self.has_solution = false;
@@ -99,7 +106,8 @@ impl Solver {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let displaced = self.displaced.as_ref().map_or(0, |displaced| displaced.operator.bytes());
-        let fields = self.solution.traction.len() * (2 * size_of::<Vector>() + size_of::<i32>());
+        let fields = self.solution.traction.len() * (2 * size_of::<Vector>() + size_of::<i32>())
+            + self.before.capacity() * size_of::<Vector>();
         self.levels.iter().map(Level::bytes).sum::<usize>() + displaced + fields
     }
 
@@ -119,7 +127,7 @@ impl Solver {
         self.make_room()?;
         let forces = Forces::of(friction, &self.grid, bound)?;
         if keeps && !matches!(request.start, Start::Again) {
-            self.before.clone_from(&self.solution.traction);
+            self.keep_tractions()?;
         }
         let kept = &self.before;
         let from_rest =
@@ -163,16 +171,6 @@ impl Solver {
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
-    }
-
-    /// Room for the result.
-    fn make_room(&mut self) -> Result<()> {
-        if self.solution.traction.is_empty() {
-            let n = self.grid.len();
-            let field = || blank(n, [f64::NAN; 2], FIELDS);
-            self.solution = Solution { traction: field()?, slip: field()?, adhesion: blank(n, EXTERIOR, FIELDS)? };
-        }
-        Ok(())
     }
 
     /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.

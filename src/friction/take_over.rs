@@ -3,12 +3,14 @@
 use super::levels::Level;
 use super::problem::{add, square, Scale};
 use super::request::{Request, Start, Superposed};
+use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
 use super::window::{displaced, Window};
 use super::Vector;
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
+use crate::memory::{blank, unwritten};
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -18,7 +20,28 @@ const LARGEST_RATIO: f64 = 1e30;
 /// And this part of it: the round-off of what pressures displace sideways is a slip, too.
 const LEAST_RATIO: f64 = 1e-60;
 
+/// What memory is for.
+const FIELDS: &str = "tangential fields";
+
 impl Solver {
+    /// Room for the result.
+    pub(super) fn make_room(&mut self) -> Result<()> {
+        if self.solution.traction.is_empty() {
+            let n = self.grid.len();
+            let field = || blank(n, [f64::NAN; 2], FIELDS);
+            self.solution = Solution { traction: field()?, slip: field()?, adhesion: blank(n, EXTERIOR, FIELDS)? };
+        }
+        Ok(())
+    }
+
+    /// The tractions of the last result become those before the step.
+    pub(super) fn keep_tractions(&mut self) -> Result<()> {
+        let last = &self.solution.traction;
+        unwritten(&mut self.before, last.len(), [f64::NAN; 2], FIELDS)?;
+        self.before.copy_from_slice(last);
+        Ok(())
+    }
+
     /// g, w, and for rolling the tractions to start from; refuses slips out of range. Returns whether most of C slipped before.
     pub(super) fn begin(
         &mut self,

@@ -73,6 +73,11 @@ impl Tangent {
         self.solver.solution()
     }
 
+    /// The last result, or an empty one.
+    fn into_solution(self) -> Solution {
+        self.solver.into_solution()
+    }
+
     /// Whether it has the coefficients that a scene asks for.
     pub fn suits(&self, friction: &Friction<'_>) -> bool {
         let cross = self.coupled.as_ref().map(|coupled| &coupled.source);
@@ -96,7 +101,7 @@ impl Tangent {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.solver.bytes()
+        self.solver.bytes() + self.coupled.as_ref().map_or(0, Coupled::bytes)
     }
 
     /// Solves the tangential problem with pressures; `again`: the same step with other pressures.
@@ -205,7 +210,7 @@ pub fn solve_tangential(
     let measures = measures(&scene.grid, pressure);
     let (friction, tolerance, solve_seconds) = (Some(found), options.tolerance, monitor.seconds());
     let report = super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() };
-    Ok((stop, tangent.solution().cloned().unwrap_or_default(), report))
+    Ok((stop, tangent.into_solution(), report))
 }
 
 /// Refuses pressures that are not one finite value per element.
@@ -244,6 +249,13 @@ impl Coupled {
             before: zeros(n, FIELDS)?,
             last_pressure: zeros(n, FIELDS)?,
         })
+    }
+
+    /// Bytes held.
+    fn bytes(&self) -> usize {
+        let there = self.there.as_ref().map_or(0, |(_, there)| there.bytes());
+        let fields = size_of::<Vector>() + 3 * size_of::<f64>();
+        self.source.bytes() + self.here.bytes() + there + self.before.len() * fields
     }
 
     /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures

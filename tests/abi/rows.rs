@@ -132,6 +132,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->motion", "7"], INVALID, |c| c.use_friction().motion = 7),
     (&["friction->rolling_distance", "tenth"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e-3); }),
     (&["friction->rolling_distance", "million"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (2, 1e30); }),
+    (&["friction->rolling_distance", "million"], INVALID, |c| { let f = c.use_friction(); (f.motion, f.rolling_distance) = (1, 1e20); }),
     (&["friction->continues", "2"], INVALID, |c| c.use_friction().continues = 2),
     (&["friction->sensitivities", "2"], INVALID, |c| c.use_friction().sensitivities = 2),
     (&["friction->reserved", "1"], INVALID, |c| c.use_friction().reserved = 1),

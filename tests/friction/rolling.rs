@@ -56,6 +56,32 @@ fn steps_in_any_direction_and_of_any_length_meet_the_conditions() {
     }
 }
 
+/// A step of 3e5 by 3e5 elements: a table of the coefficients as far as that would take 2 TB.
+#[test]
+fn a_long_step_of_whole_elements_takes_no_more_memory_than_a_short_one() {
+    let (grid, g) = ellipse(20, 1.0);
+    for motion in [Motion::TransientRolling, Motion::SteadyRolling] {
+        let mut solver = solver(&grid, 0.3);
+        let shift =
+            Friction { prescribed: [Prescribed::Creepage(-0.4), Prescribed::Creepage(0.1)], ..Friction::new(1.0) };
+        let (_, before) = run(&mut solver, &g, &shift, 1e-7);
+        let distance = 3e5 * 2.0f64.sqrt() * grid.dx;
+        let step = Friction {
+            motion,
+            rolling_distance: distance,
+            rolling_direction: 0.25 * PI,
+            previous: Previous::Kept,
+            ..rolling([-0.4 / distance, 0.2 / distance], 0.0)
+        };
+        let by = step.elements_rolled(&grid);
+        assert_eq!((by.0.fract(), by.0, by.1), (0.0, by.1, 3e5));
+        let (report, now) = run(&mut solver, &g, &step, 1e-6);
+        let left = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
+        assert!(left <= 1.001e-6 + 1e-9, "{motion:?}: {left}");
+        assert!(report.certificate.stick_count > 0 && report.certificate.slip_count > 0);
+    }
+}
+
 #[test]
 fn previous_tractions_may_be_given_or_kept() {
     let (grid, g) = ellipse(24, 1.0);

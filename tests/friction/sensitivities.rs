@@ -1,10 +1,11 @@
 //! Derivatives of the forces by creepages and spin, against differences; warm starts through a series.
 
-use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 
 use super::steady::rolling;
 use super::steady_scenes::{ellipse, NU};
-use super::support::{run, solver};
+use super::support::{run, solver, tangential};
 
 #[test]
 fn derivatives_are_those_of_differences() {
@@ -46,6 +47,37 @@ fn derivatives_are_those_of_differences() {
                         found[k][by]
                     );
                 }
+            }
+        }
+    }
+}
+
+/// Without friction nothing is carried, and the spin about the centre of a single element moves nothing: derivatives of 0, not 0/0.
+#[test]
+fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
+    let (disc, g) = ellipse(1.0, 16);
+    let one = Grid::new(1, 1, 0.5, 0.5).unwrap();
+    let own = tangential(&one, NU).at(0.0, 0.0);
+    let ahead = tangential(&one, NU).at(1.0, 0.0);
+    for motion in [Motion::SteadyRolling, Motion::TransientRolling, Motion::Shift] {
+        let friction = Friction { motion, sensitivities: true, ..rolling([-1e-3, 1e-3], 0.0) };
+        let without = Friction { coefficient: Coefficient::Uniform(0.0), ..friction };
+        let (report, _) = run(&mut solver(&disc, NU), &g, &without, 1e-8);
+        assert_eq!(report.sensitivities, Some([[0.0; 3]; 3]), "{motion:?}");
+        // It sticks: dq = -dw/A. Without an offset the slip by spin in the middle is 0.
+        let centred = Friction { spin_offset: 0.0, ..friction };
+        let (report, _) = run(&mut solver(&one, NU), &[1.0], &centred, 1e-8);
+        let found = report.sensitivities.unwrap();
+        for k in 0..3 {
+            for by in 0..3 {
+                let expected = match (k == by && k < 2, motion) {
+                    (false, _) => 0.0,
+                    (_, Motion::Shift) => -0.25 / own[k],
+                    (_, Motion::TransientRolling) => -0.25 * 0.5 / own[k],
+                    (_, Motion::SteadyRolling) => -0.25 * 0.5 / (own[k] - ahead[k]),
+                };
+                // The linear solves leave 1e-5.
+                assert!((found[k][by] - expected).abs() <= 1e-5 * expected.abs(), "{motion:?}: {found:?}");
             }
         }
     }

@@ -124,6 +124,21 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
 }
 
 #[test]
+fn reported_bytes_hold_what_couples_unlike_bodies() {
+    let (grid, h) = ball(24);
+    let bytes = |nu: f64| {
+        let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3, nu] };
+        let friction = Friction { prescribed: [Prescribed::Creepage(-0.001); 2], ..Friction::new(0.3) };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(0.05)) };
+        solve(&scene, &Options::default()).unwrap().2.bytes
+    };
+    // Of each element: sideways displacements (two numbers), those along the normal, the distance with them, pressures before, two
+    // fields of a product; the transforms of two odd kernels, of which a quarter of the waves of twice the sides are known.
+    let least = (24 * 24 * (7 + 2)) as u64 * 8;
+    assert!(bytes(0.2) >= bytes(0.3) + least, "{} {} {least}", bytes(0.2), bytes(0.3));
+}
+
+#[test]
 fn an_indentation_with_friction_is_similar_at_all_loads() {
     // Spence 1968, 1975: while the load grows, the stick area keeps its part of the contact area. A rigid ball on a soft half-space.
     let (grid, h) = ball(48);

@@ -23,6 +23,7 @@ struct Ball {
     limit: contact_normal_pressure_limit,
     coating: contact_normal_coating,
     period: contact_normal_period,
+    friction: contact_normal_friction,
 }
 
 impl Ball {
@@ -38,6 +39,7 @@ impl Ball {
             limit: initialised(contact_normal_pressure_limit_init),
             coating: initialised(contact_normal_coating_init),
             period: initialised(contact_normal_period_init),
+            friction: initialised(contact_normal_friction_init),
         });
         let scene = &mut ball.scene;
         (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 1.0 / M as f64, 1.0 / M as f64);
@@ -51,6 +53,7 @@ impl Ball {
         // Stiff, and thicker than elements are wide: near and far coefficients, means of both bases.
         (coating.thickness, coating.shear_modulus, coating.poisson_ratio) = (0.4, 3.0, 0.2);
         (ball.period.x, ball.period.y) = (1, 1);
+        (ball.friction.coefficient, ball.friction.creepage) = (0.3, [-0.01, 0.0]);
         ball
     }
 
@@ -58,9 +61,12 @@ impl Ball {
     fn name(&mut self, effect: &str) {
         let (layer, patches, limit) = (&raw const self.layer, &raw const self.patches, &raw const self.limit);
         let (coating, period) = (&raw const self.coating, &raw const self.period);
+        let friction = &raw const self.friction;
+        self.friction.motion = if effect.ends_with("rolling") { CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING } else { 0 };
         let scene = &mut self.scene;
         (scene.layer, scene.patches, scene.pressure_limit) = (null(), null(), null());
-        (scene.coating, scene.period) = ([null(); 2], null());
+        (scene.coating, scene.period, scene.friction) = ([null(); 2], null(), null());
+        scene.shear_modulus[1] = if effect.starts_with("unlike") { 2.0 } else { 1.0 };
         match effect {
             "none" => {}
             "layer" => scene.layer = layer,
@@ -69,6 +75,9 @@ impl Ball {
             "coating" => scene.coating[0] = coating,
             "coating with a period" => (scene.coating[0], scene.period) = (coating, period),
             "period" => scene.period = period,
+            "friction" | "friction rolling" | "unlike friction" | "unlike friction rolling" => {
+                scene.friction = friction
+            }
             _ => panic!("{effect}"),
         }
         (scene.load, scene.force) = match effect.contains("period") {
@@ -96,6 +105,17 @@ impl Ball {
         assert_eq!(status, CONTACT_NORMAL_OK);
         Handle(handle)
     }
+}
+
+/// Solves the tangential problem alone: status and tractions.
+fn solve_tangential(ball: &Ball, pressure: &[f64]) -> (i32, [Vec<f64>; 2]) {
+    let (mut x, mut y) = (vec![-7.0; N], vec![-7.0; N]);
+    let mut fields = initialised(contact_normal_fields_init);
+    fields.traction = [x.as_mut_ptr(), y.as_mut_ptr()];
+    // SAFETY: structs with their arrays, and one pressure an element.
+    let status =
+        unsafe { contact_normal_solve_tangential(&ball.scene, pressure.as_ptr(), null(), &mut fields, null_mut()) };
+    (status, [x, y])
 }
 
 /// The pressures that the handle holds; none if it says so.
@@ -176,6 +196,80 @@ fn a_set_up_without_memory_makes_no_handle() {
                 break;
             }
             assert_eq!((status, handle), (CONTACT_NORMAL_OUT_OF_MEMORY, null_mut()), "{effect}, {allowed} allocations");
+            failures += 1;
+        }
+        assert!(failures > 0, "{effect}: nothing was allocated");
+    }
+}
+
+const FRICTION: [&str; 4] = ["friction", "friction rolling", "unlike friction", "unlike friction rolling"];
+
+/// The step after another keeps the tractions before it.
+#[test]
+fn after_a_lack_of_memory_in_a_step_that_continues_the_handle_works() {
+    let _alone = alone();
+    let mut ball = Ball::new();
+    for effect in FRICTION {
+        ball.name(effect);
+        for first in [None, Some(0)] {
+            fails_everywhere(&ball, first, 1, &format!("{effect} after {first:?}"));
+        }
+        let step = |ball: &mut Ball, handle: &Handle, continues: i32| {
+            (ball.friction.continues, ball.friction.creepage) = (continues, [-0.01, 0.002 * f64::from(continues)]);
+            ball.solve(handle, 1)
+        };
+        let expected = {
+            let handle = ball.new_handle();
+            assert_eq!(step(&mut ball, &handle, 0).0, CONTACT_NORMAL_OK, "{effect}");
+            step(&mut ball, &handle, 1)
+        };
+        assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
+        let mut failures = 0;
+        for allowed in 0.. {
+            ball.friction.continues = 0;
+            let handle = ball.new_handle();
+            assert_eq!(step(&mut ball, &handle, 0).0, CONTACT_NORMAL_OK, "{effect}");
+            release();
+            let (status, _) = limited_memory::with(4 * N, 1 + allowed, || step(&mut ball, &handle, 1));
+            if status == CONTACT_NORMAL_OK {
+                break;
+            }
+            assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{effect}, {allowed} allocations");
+            failures += 1;
+            // From the tractions before the step that failed; where the handle holds no result, it may refuse that.
+            let may_refuse = held(&handle).is_none();
+            let next = step(&mut ball, &handle, 1);
+            let refused = may_refuse && next.0 == CONTACT_NORMAL_INVALID_ARGUMENT;
+            assert!(refused || next == expected, "{effect}, {allowed} allocations: {}", next.0);
+        }
+        ball.friction.continues = 0;
+        assert!(failures > 0, "{effect}: nothing was allocated");
+    }
+}
+
+#[test]
+fn a_tangential_solve_without_memory_is_refused() {
+    let _alone = alone();
+    let mut ball = Ball::new();
+    for effect in FRICTION {
+        ball.name(effect);
+        let (_, pressure) = ball.solve(&ball.new_handle(), 1);
+        let expected = solve_tangential(&ball, &pressure);
+        assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
+        let mut failures = 0;
+        for allowed in 0.. {
+            release();
+            // Both arrays of the test itself are the first that are allowed.
+            let (status, q) = limited_memory::with(4 * N, 2 + allowed, || solve_tangential(&ball, &pressure));
+            if status == CONTACT_NORMAL_OK {
+                assert!((status, q) == expected, "{effect} after {failures} failures");
+                break;
+            }
+            assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{effect}, {allowed} allocations");
+            assert!(
+                q.iter().flatten().all(|value| *value == -7.0),
+                "{effect}, {allowed} allocations: outputs were written"
+            );
             failures += 1;
         }
         assert!(failures > 0, "{effect}: nothing was allocated");
