@@ -153,10 +153,10 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     });
     let (mut residual, mut distance, mut slips, mut rigid, mut moved, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut deepest) = (0.0_f64, 0.0_f64);
-    for i in 0..h.len() {
+    for (i, h) in h.iter().enumerate() {
         let [by_q, by_p] = sums.displacements(i, &solution.traction, &state.p);
         // What the tractions displace is part of the distance.
-        let d = h[i] - state.approach + by_q[2];
+        let d = h - state.approach + by_q[2];
         let e = d + by_p[2];
         assert!((state.deformed_distance(i) - e).abs() <= 1e-12, "{i}: {} {e}", state.deformed_distance(i));
         if !(state.p[i] > 0.0) {
