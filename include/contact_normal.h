@@ -1125,7 +1125,7 @@ typedef struct contact_normal_report {
   double sensitivities[9];
   /*
    Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
-   They are estimated of shifts and of steady rolling from rest, for bodies that are alike, when `error_force` is.
+   They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.
    */
   double error_tangential[2];
 } contact_normal_report;

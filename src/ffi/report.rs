@@ -210,7 +210,7 @@ pub struct contact_normal_report {
     /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
     pub sensitivities: [f64; 9],
     /// Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
-    /// They are estimated of shifts and of steady rolling from rest, for bodies that are alike, when `error_force` is.
+    /// They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.
     pub error_tangential: [f64; 2],
 }
 

@@ -135,7 +135,9 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     options.check()?;
     if scene.friction.is_some() {
         effects::check_effects(scene)?;
-        let message = "friction is given; this version estimates no errors of tractions: solve on grids of your own";
+        let message =
+            "friction is given; no coarser grid bounds the error of a transient step: solve on grids of your own, \
+                       and read error_tangential, the estimated error of a shift from rest and of steady rolling";
         return Err(Error::Unsupported(message.into()));
     }
     let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];

@@ -13,7 +13,7 @@
 //!
 //! Where a force is prescribed, the creepage has the error: `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is that of
 //! Cattaneo's and of Carter's curve or less. A residual R leaves an error of R mu N at most (docs/friction.md). PART, CHORD and ROLLING are
-//! measured, on balls and ellipses of 7 to 54 elements across (docs/accuracy.md).
+//! measured, on balls and ellipses of 7 to 54 elements across (docs/notes/2026-11-friction.md; `tests/friction/estimates.rs` keeps to them).
 //!
 //! [`estimates`]: super::estimates
 
@@ -31,7 +31,7 @@ const LEAST_CHORD: f64 = 1.5;
 const ROLLING: f64 = 3.0;
 const ROLLING_SHIFT: f64 = 3.0;
 const ACROSS: f64 = 0.25;
-/// Of unlike bodies a shift is off by up to 3.7 times as much: pressures push sideways, and force and creepage do not begin at 0 together.
+/// Of unlike bodies a shift is off by up to 3.4 times as much: pressures push sideways, and force and creepage do not begin at 0 together.
 const UNLIKE: f64 = 8.0;
 
 /// Errors of the tangential force in each direction, or of the creepage where the force is prescribed; negative: not known. `alike`:
