@@ -253,7 +253,11 @@ impl Case {
         let force = [0, 1].map(|k| if given(k) { amount[k] } else { 0.0 });
         let else_moves = *spin != 0.0 || rigid.is_some() || previous.is_some();
         let moves = else_moves || (0..2).any(|k| !given(k) && amount[k] != 0.0);
-        self.slide.has_forces() && (force[0].hypot(force[1]) >= 0.99 * self.carried || moves || !self.place.is_alike())
+        // A force of 0 is met where nothing is carried.
+        let nothing = force == [0.0; 2] && self.carried == 0.0;
+        self.slide.has_forces()
+            && !nothing
+            && (force[0].hypot(force[1]) >= 0.99 * self.carried || moves || !self.place.is_alike())
     }
 
     /// What the motion is called.

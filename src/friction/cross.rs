@@ -9,7 +9,8 @@
 //!
 //! so that the operator of all three components is symmetric. Both integrals are one, `integral of 1/(x + i y)`: beyond six
 //! half-diagonals a series in the moments of the element, `dx dy sum_k m_2k/Z^(2k+1)`, `Z = X + i Y`; nearer exact in one direction and by
-//! Gauss-Legendre in the other; next to the element differences of `Y ln r + X atan(Y/X)` over its corners.
+//! Gauss-Legendre in the other; next to the element differences of `Y ln r + X atan(Y/X)` over its corners, of
+//! a slender one over those of the part that is near, and by Gauss-Legendre over panels that grow beyond it.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -27,6 +28,10 @@ use crate::threads::Threads;
 /// The series suffices from so many half-diagonals on, with this many terms after the first.
 const FAR: f64 = 6.0;
 const TERMS: usize = 8;
+/// Next to the element differences over corners serve so far, in units of its shorter side;
+const CORNERS: f64 = 2.0;
+/// beyond that panels, of which each ends so many times as far away as it begins.
+const PANELS: f64 = 1.5;
 
 /// Where Axz and Ayz come from.
 #[derive(Clone, Debug)]
@@ -157,7 +162,38 @@ fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
     if kx >= 2.0 {
         return [gauss(kx * dx, dx, |x| along(ky, dy, x)[1]), gauss(kx * dx, dx, |x| along(ky, dy, x)[0])];
     }
-    let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
+    if dx >= dy {
+        // In units of the shorter side: the integral of a length over r^2 is a length.
+        beside(kx * dx / dy, ky, dx / dy).map(|value| value * dy)
+    } else {
+        let [jy, jx] = beside(ky * dy / dx, kx, dy / dx);
+        [jx * dx, jy * dx]
+    }
+}
+
+/// The element is `length >= 1` long in x, 1 in y, and less than two of itself away, at `(x, ky)`: the part next to the loaded point by
+/// its corners, whose difference over a long element would lose what it is longer, beyond it panels in x.
+fn beside(x: f64, ky: f64, length: f64) -> [f64; 2] {
+    let (from, to) = (x - 0.5 * length, x + 0.5 * length);
+    let (near_from, near_to) = (from.clamp(-CORNERS, CORNERS), to.clamp(-CORNERS, CORNERS));
+    let mut sum = if near_from < near_to { corners((near_from, near_to), ky) } else { [0.0; 2] };
+    // The integral of x/r^2 is odd in x.
+    for (sign, first, last) in [(1.0, from.max(CORNERS), to), (-1.0, (-to).max(CORNERS), -from)] {
+        let mut at = first;
+        while at < last {
+            let next = (PANELS * at).min(last);
+            let panel = |component: usize| gauss(0.5 * (at + next), next - at, |x| along(ky, 1.0, x)[component]);
+            // Over y at the distance x: the roles of both are exchanged.
+            sum = [sum[0] + sign * panel(1), sum[1] + panel(0)];
+            at = next;
+        }
+    }
+    sum
+}
+
+/// Differences of `Y ln r + X atan(Y/X)` over the corners of `(xm, xp)` by an element of 1 at ky.
+fn corners((xm, xp): (f64, f64), ky: f64) -> [f64; 2] {
+    let (ym, yp) = (ky - 0.5, ky + 0.5);
     let f = |x: f64, y: f64| {
         let logarithm = if y == 0.0 { 0.0 } else { y * x.hypot(y).ln() };
         logarithm + if x == 0.0 { 0.0 } else { x * (y / x).atan() }

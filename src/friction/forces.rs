@@ -23,7 +23,8 @@ impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
 
-    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that.
+    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that. Where nothing can be carried
+    /// a force of 0 is met as it is, and its creepage stays 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
         let area = grid.element_area();
         let mut forces = Forces::NONE;
@@ -36,6 +37,9 @@ impl Forces {
             return Ok(forces);
         }
         let greatest: f64 = (0..grid.len()).map(bound).sum();
+        if greatest == 0.0 && forces.sum == [0.0; 2] {
+            return Ok(Forces::NONE);
+        }
         if !(square(forces.sum).sqrt() < greatest * (1.0 - ROUND_OFF)) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",

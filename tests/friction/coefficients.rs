@@ -16,7 +16,7 @@ pub fn numbers(n: usize, mut seed: u64) -> Vec<f64> {
 }
 
 /// Nodes and weights of the 16-point Gauss-Legendre rule on [-1, 1], by Newton's method on P_16.
-fn rule() -> Vec<(f64, f64)> {
+pub fn rule() -> Vec<(f64, f64)> {
     let n = 16;
     let legendre = |x: f64| {
         let (mut p, mut before) = (x, 1.0);
@@ -38,7 +38,7 @@ fn rule() -> Vec<(f64, f64)> {
 }
 
 /// Ends of intervals that halve towards 0 where they contain it, so that an integrand like a power is smooth on each.
-fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
+pub fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
     if from < 0.0 && to > 0.0 {
         let mut all = panels(0.0, to);
         all.extend(panels(0.0, -from).into_iter().map(|(a, b)| (-b, -a)));

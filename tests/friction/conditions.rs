@@ -1,9 +1,10 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
+use contact_normal::error::Error;
 use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Friction, Prescribed, Previous};
-use contact_normal::solver::Outcome;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
+use contact_normal::solver::{solve, Options, Outcome};
 
 use super::scenes::Ellipse;
 use super::support::{residual, run, solver};
@@ -115,6 +116,41 @@ fn forces_that_friction_cannot_carry_are_refused() {
     let (end, report) = solve(&Friction { spin: 50.0, ..with(0.9) }).unwrap();
     assert_eq!(end, Outcome::Converged);
     assert!((report.force[0] - 0.9 * carried).abs() <= 1e-6 * carried && report.creepage[0] < -50.0 * 0.5);
+}
+
+/// Without friction, and where the bodies are apart, a force of 0 is met, and no other one.
+#[test]
+fn a_force_of_zero_is_met_where_nothing_is_carried() {
+    let (grid, g) = disc(20, |_, _| true);
+    let apart = vec![0.0; grid.len()];
+    for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+        for (mu, pressure) in [(0.0, &g), (1.0, &apart)] {
+            for other in [Prescribed::Force(0.0), Prescribed::Creepage(1e-3)] {
+                let friction = Friction {
+                    motion,
+                    prescribed: [Prescribed::Force(0.0), other],
+                    sensitivities: true,
+                    ..Friction::new(mu)
+                };
+                let (report, solution) = run(&mut solver(&grid, 0.3), pressure, &friction, 1e-6);
+                assert_eq!((report.force, report.creepage[0]), ([0.0; 2], 0.0), "{motion:?} {mu}");
+                assert!(solution.traction.iter().all(|q| *q == [0.0; 2]));
+                assert!(solution.slip.iter().flatten().all(|s| s.is_finite()));
+                let little = Friction { prescribed: [Prescribed::Force(1e-9), other], ..friction };
+                let refused = solver(&grid, 0.3).solve(&Request::new(pressure, &little, 1e-6), &mut |_, _| true);
+                assert!(matches!(refused, Err(Error::Infeasible(_))), "{motion:?} {mu}");
+            }
+        }
+    }
+    // The whole call, where nothing touches.
+    let far = vec![1.0; grid.len()];
+    for nu in [0.3, 0.2] {
+        let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3, nu] };
+        let friction = Friction { prescribed: [Prescribed::Force(0.0); 2], ..Friction::new(0.3) };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &far, bodies, Load::Approach(0.5)) };
+        let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+        assert_eq!((stop, report.friction.unwrap().force), (Outcome::Converged, [0.0; 2]), "{nu}");
+    }
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod rolling;
 #[allow(dead_code)]
 mod scenes;
 mod sensitivities;
+mod stalls;
 mod steady;
 mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
@@ -22,6 +23,7 @@ mod steady_scenes;
 mod superposition;
 mod support;
 mod tables;
+mod threads;
 mod unlike;
 mod wheel_on_rail;
 mod wheel_rail;

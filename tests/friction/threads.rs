@@ -1,0 +1,54 @@
+//! Any number of threads finds the same bits: each motion, with and without coupling, creepages and forces, derivatives.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
+use contact_normal::solver::{solve, Options, Outcome};
+
+fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
+    let centre = 0.5 * (m as f64 - 1.0);
+    let h = (0..m * m)
+        .map(|i| (((i % m) as f64 - centre).powi(2) + ((i / m) as f64 - centre).powi(2)) * d * d / 100.0)
+        .collect();
+    (Grid::new(m, m, d, d).unwrap(), h)
+}
+
+/// So many elements that each pass is shared between threads.
+const M: usize = 160;
+
+fn check(name: &str, nu: [f64; 2], friction: Friction<'_>) {
+    let (grid, h) = ball(M, 0.012);
+    let bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: nu };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(1000.0)) };
+    let found = |threads: usize| {
+        let (solver, stop, report) = solve(&scene, &Options { threads, ..Options::default() }).unwrap();
+        assert_eq!(stop, Outcome::Converged, "{name}");
+        let (found, solution) = (report.friction.unwrap(), solver.friction().unwrap());
+        assert!(found.certificate.stick_count > 0 && found.certificate.slip_count > 0, "{name}: {found:?}");
+        let numbers = solution.traction.iter().chain(&solution.slip).flatten();
+        let of_report = found.creepage.into_iter().chain(found.force).chain([found.moment, found.certificate.residual]);
+        let derivatives = found.sensitivities.into_iter().flatten().flatten();
+        let bits = |value: f64| value.to_bits();
+        (numbers.copied().map(bits).collect::<Vec<_>>(), of_report.chain(derivatives).map(bits).collect::<Vec<_>>())
+    };
+    let one = found(1);
+    for threads in [2, 3] {
+        assert!(one == found(threads), "{name}: {threads} threads");
+    }
+}
+
+#[test]
+fn any_number_of_threads_finds_the_same_bits_of_each_motion() {
+    let creepages = |x: f64, y: f64| [Prescribed::Creepage(x), Prescribed::Creepage(y)];
+    let forces = [Prescribed::Force(150.0), Prescribed::Force(30.0)];
+    let shift = Friction { prescribed: creepages(-2e-3, 5e-4), ..Friction::new(0.3) };
+    let rolling = Friction { motion: Motion::SteadyRolling, prescribed: creepages(-1e-3, 5e-4), ..shift };
+    let along_x = [Prescribed::Creepage(-2e-3), Prescribed::Creepage(0.0)];
+    check("a shift without coupling, from a smaller load", [0.0; 2], Friction { prescribed: along_x, ..shift });
+    check("a shift without coupling", [0.0; 2], Friction { spin: 1e-3, ..shift });
+    check("unlike bodies", [0.28, 0.1], shift);
+    let transient = Friction { motion: Motion::TransientRolling, ..shift };
+    check("a transient step", [0.28; 2], Friction { prescribed: creepages(-0.1, 0.03), ..transient });
+    check("steady rolling and derivatives", [0.28; 2], Friction { sensitivities: true, spin: 1e-4, ..rolling });
+    let across = Friction { rolling_direction: 0.6, prescribed: forces, ..rolling };
+    check("steady rolling across the grid, by forces", [0.28; 2], across);
+}
