@@ -30,27 +30,26 @@ impl Log for Listener {
     fn flush(&self) {}
 }
 
-/// Shifts on elements 30 and 300 times as long as wide, to 1e-11: single precision does not carry the gradients that far.
+/// Shifts with the coefficients of nu = 0.999, which no half-space has and own tables may hold: one component couples to the other nearly
+/// as much as it displaces itself. By gradients alone 18 of the first 30 scenes are not solved.
 #[test]
 fn where_gradients_stall_newtons_method_goes_on() {
     set_logger(&Listener).expect("the only logger of these tests");
     set_max_level(LevelFilter::Info);
-    let mut scenes = 0;
-    for (seed, longer) in [(12, 30.0), (12, 300.0), (21, 300.0), (36, 30.0), (36, 300.0), (51, 30.0), (51, 300.0)] {
-        let mut case = Ellipse::random(seed, 24, false);
-        case.grid.dx *= longer;
+    let mut stalls = 0;
+    for seed in 0..12 {
+        let case = Ellipse { nu: 0.999, ..Ellipse::random(seed, 24, false) };
         let mut solver = solver(&case.grid, case.nu);
         TOLD.set(0);
-        let request = Request::new(&case.bound, &case.friction, 1e-11);
+        let request = Request::new(&case.bound, &case.friction, 1e-6);
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
-        assert_eq!(end, Outcome::Converged, "{seed} {longer}");
-        assert!(report.certificate.stick_count > 0 && report.certificate.slip_count > 0, "{seed} {longer}");
+        assert_eq!(end, Outcome::Converged, "{seed}");
         let found = (&report, solver.solution().unwrap());
         let none = vec![[0.0; 2]; case.grid.len()];
         let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
         // The tolerance, and round-off of two products.
-        assert!(left <= 1.001e-11, "{seed} {longer}: {left}");
-        scenes += u32::from(TOLD.get() > 0);
+        assert!(left <= 1.001e-6, "{seed}: {left}");
+        stalls += u32::from(TOLD.get() > 0);
     }
-    assert!(scenes > 0, "gradients never stalled");
+    assert!(stalls >= 4, "gradients stalled in {stalls} scenes");
 }
