@@ -1094,8 +1094,9 @@ typedef struct contact_normal_report {
    */
   double creepage[2];
   /*
-   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift: to that or
-   the displacements, whichever is larger); with a fresh product in double precision.
+   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
+   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
+   round-off leaves); with a fresh product in double precision.
    */
   double tangential_residual;
   /*

@@ -193,8 +193,9 @@ pub struct contact_normal_report {
     pub tangential_moment: f64,
     /// Creepages in x and y, given or found.
     pub creepage: [f64; 2],
-    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift: to that or
-    /// the displacements, whichever is larger); with a fresh product in double precision.
+    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
+    /// steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
+    /// round-off leaves); with a fresh product in double precision.
     pub tangential_residual: f64,
     /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
     pub tangential_gap: f64,

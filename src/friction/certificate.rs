@@ -4,7 +4,8 @@
 //! n = q/|q|,  s_n = s.n;  on the circle: |q| >= g (1 - 1e-7)
 //! rest = s                       inside the circle
 //! rest = s - min(s_n, 0) n       on it: what of -s does not point outwards along the normal
-//! residual = rms_C(rest)/S,      S = max(rms_C(w), rms_C(u)) for a shift, rms_C(rigid slip) for rolling
+//! residual = rms_C(rest)/S,      S = max(rms_C(rigid slip), f rms_C(u));  u: displacements of a shift or of a step, f = 1 for a shift and
+//!                                for steady rolling by a force; else f = 1.5e-8, which is what round-off leaves
 //! gap      = sum_C (s.q + g |s|) / sum_C g |rigid slip|     >= 0, and 0 for the solution only
 //! ```
 //!

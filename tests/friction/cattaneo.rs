@@ -25,6 +25,7 @@ fn a_ball_pushed_sideways_has_cattaneos_tractions() {
         // Half an element, and the elements of C do not fill the disc.
         assert!((found.stick_radius - 0.5).abs() <= 0.5 * case.grid.dx, "{m}: {}", found.stick_radius);
         let force = report.force[0] / case.carried();
+        // Of first order at worst; twice what the coarsest grid has (docs/friction.md), for which theory gives no factor.
         assert!((force - 0.875).abs() <= 0.02 * case.grid.dx, "{m}: {force}");
     }
 }
@@ -53,6 +54,8 @@ fn contacts_cattaneo_is_met() {
     assert!((report.measures.approach - 1.998e-2).abs() <= 5e-6, "{}", report.measures.approach);
     assert!((report.measures.max_pressure - 4.393).abs() <= 5e-4, "{}", report.measures.max_pressure);
     assert_eq!((report.measures.contact_count, found.certificate.stick_count), (177, 45));
+    assert!((found.creepage[0] - 8.155e-3).abs() <= 5e-7, "{:?}", found.creepage);
+    // An independent program in Python, whose last digit this is; a residual of 1e-6 hides 1e-8.
     assert!((found.creepage[0] - 8.15489e-3).abs() <= 2e-8, "{:?}", found.creepage);
     assert!(found.creepage[1].abs() <= 1e-6 * found.creepage[0], "{:?}", found.creepage);
 }

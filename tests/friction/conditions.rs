@@ -1,13 +1,13 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
 use contact_normal::error::Error;
-use contact_normal::friction::Request;
+use contact_normal::friction::{dense, Request};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::scenes::Ellipse;
-use super::support::{residual, run, solver};
+use super::support::{residual, run, solver, tangential};
 
 #[test]
 fn random_motions_and_forces_meet_the_conditions() {
@@ -49,6 +49,26 @@ pub fn disc(m: usize, inside: impl Fn(usize, usize) -> bool) -> (Grid, Vec<f64>)
         })
         .collect();
     (grid, g)
+}
+
+#[test]
+fn the_gap_bounds_the_error_of_loose_tractions() {
+    for seed in 0..20 {
+        let case = Ellipse::random(seed, 24, false);
+        let solved = |tolerance: f64| run(&mut solver(&case.grid, case.nu), &case.bound, &case.friction, tolerance);
+        let ((report, loose), (_, tight)) = (solved(3e-2), solved(1e-10));
+        let n = case.grid.len();
+        let difference: Vec<[f64; 2]> =
+            loose.traction.iter().zip(&tight.traction).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+        let mut u = vec![[0.0; 2]; n];
+        dense::apply(&tangential(&case.grid, case.nu), &case.grid, (0.0, 0.0), &difference, &mut u);
+        let energy: f64 = difference.iter().zip(&u).map(|(q, u)| q[0] * u[0] + q[1] * u[1]).sum();
+        let rigid = (0..n).map(|i| case.friction.rigid_slip_at(&case.grid, i));
+        let work: f64 = case.bound.iter().zip(rigid).map(|(g, w)| g * w[0].hypot(w[1])).sum();
+        let numerator = report.certificate.gap * work;
+        // What the tighter one leaves is 1e-8 of that.
+        assert!(energy <= 1.000001 * numerator, "{seed}: {energy:e} {numerator:e}");
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
 
 use super::conditions::disc;
@@ -37,6 +37,30 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
     }
 }
 
+/// Motions and forces of all sizes.
+fn extremes(grid: &Grid, g: &[f64]) -> [(&'static str, Friction<'static>); 12] {
+    [
+        ("partial slip", rolling([-0.3, 0.2], 0.2)),
+        ("creepages of 1e-12", rolling([1e-12, 0.0], 0.0)),
+        ("creepages of 1e3", rolling([-1e3, 1e3], 0.0)),
+        ("spin alone", rolling([0.0; 2], 0.7)),
+        ("spin of 1e-12", rolling([0.0; 2], 1e-12)),
+        ("spin of 1e3", rolling([0.0; 2], 1e3)),
+        ("against the spin", rolling([0.5, -0.5], -1.0)),
+        ("hardly any friction", Friction { coefficient: Coefficient::Uniform(1e-9), ..rolling([-0.3, 0.2], 0.1) }),
+        ("mu 1e9", Friction { coefficient: Coefficient::Uniform(1e9), ..rolling([-0.3, 0.2], 0.1) }),
+        ("forces", with_forces([0.6, -0.3], 0.1, g, grid)),
+        ("small forces", with_forces([1e-4, 0.0], 0.0, g, grid)),
+        (
+            "one force",
+            Friction {
+                prescribed: [Prescribed::Creepage(0.1), with_forces([0.0, 0.5], 0.0, g, grid).prescribed[1]],
+                ..rolling([0.0; 2], 0.2)
+            },
+        ),
+    ]
+}
+
 #[test]
 fn hard_cases_of_steady_rolling_have_their_answers() {
     let rough = |x: usize, y: usize| ((13 * x + 7 * y) % 17) < 9 || (x / 4 + y / 5) % 2 == 0;
@@ -52,35 +76,7 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
     ];
     for (name, (grid, g)) in &shapes {
         let in_contact = g.iter().filter(|g| **g > 0.0).count();
-        for (what, friction) in [
-            ("partial slip", rolling([-0.3, 0.2], 0.2)),
-            ("creepages of 1e-12", rolling([1e-12, 0.0], 0.0)),
-            ("creepages of 1e3", rolling([-1e3, 1e3], 0.0)),
-            ("spin alone", rolling([0.0; 2], 0.7)),
-            ("spin of 1e-12", rolling([0.0; 2], 1e-12)),
-            ("spin of 1e3", rolling([0.0; 2], 1e3)),
-            ("against the spin", rolling([0.5, -0.5], -1.0)),
-            (
-                "hardly any friction",
-                Friction {
-                    coefficient: contact_normal::scene::Coefficient::Uniform(1e-9),
-                    ..rolling([-0.3, 0.2], 0.1)
-                },
-            ),
-            (
-                "mu 1e9",
-                Friction { coefficient: contact_normal::scene::Coefficient::Uniform(1e9), ..rolling([-0.3, 0.2], 0.1) },
-            ),
-            ("forces", with_forces([0.6, -0.3], 0.1, g, grid)),
-            ("small forces", with_forces([1e-4, 0.0], 0.0, g, grid)),
-            (
-                "one force",
-                Friction {
-                    prescribed: [Prescribed::Creepage(0.1), with_forces([0.0, 0.5], 0.0, g, grid).prescribed[1]],
-                    ..rolling([0.0; 2], 0.2)
-                },
-            ),
-        ] {
+        for (what, friction) in extremes(grid, g) {
             let directions =
                 if *name == "a ball" { &[0.0, 180.0_f64, 90.0, 270.0, 37.0][..] } else { &[0.0, 37.0][..] };
             for &direction in directions {

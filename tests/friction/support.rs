@@ -32,7 +32,8 @@ fn rms(values: impl Iterator<Item = f64>, count: usize) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count as f64).sqrt()
 }
 
-/// The conditions of friction, by direct sums: `|q| <= mu p` to the last bit; what is left of the slip; returns that, relative.
+/// The conditions of friction, by direct sums: `|q| <= mu p` to the last bit; what is left of the slip; returns that, relative. The gap that
+/// is reported is that of the same sums.
 pub fn residual(
     (grid, nu): (&Grid, f64),
     g: &[f64],
@@ -53,6 +54,7 @@ pub fn residual(
     let is_steady = friction.motion == Motion::SteadyRolling;
     dense::apply(&tangential, grid, by, if is_steady { q } else { before }, &mut u_before);
     let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut gap, mut work, mut rounding) = (0.0, 0.0, 0.0);
     for i in 0..n {
         let Coefficient::Uniform(mu) = friction.coefficient else { panic!("one coefficient") };
         let bound = mu * g[i];
@@ -78,10 +80,19 @@ pub fn residual(
             let along = (s[0] * outward[0] + s[1] * outward[1]).min(0.0);
             rest = [s[0] - along * outward[0], s[1] - along * outward[1]];
         }
+        gap += s[0] * q[i][0] + s[1] * q[i][1] + bound * length(s);
+        work += bound * length(w);
+        // Of coefficients, transforms and sums.
+        rounding += 1e-12 * bound * (length(w) + length(u[i]) + length(u_before[i]));
         left.push(length(rest));
         rigid.push(length(w));
         displaced.push(length(if is_steady { [u[i][0] - u_before[i][0], u[i][1] - u_before[i][1]] } else { u[i] }));
     }
+    let reported = report.certificate.gap * work;
+    assert!(
+        (reported - gap).abs() <= 1e-9 * gap + rounding,
+        "gap {gap:e}, reported {reported:e}, rounding {rounding:e}"
+    );
     let forces = friction.prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_)));
     let scale = match friction.motion {
         Motion::SteadyRolling if !forces => rms(rigid.into_iter(), count),
