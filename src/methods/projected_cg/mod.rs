@@ -3,6 +3,7 @@
 
 mod coarse_grids;
 mod exchange;
+mod extension;
 mod inner;
 mod iteration;
 mod known;

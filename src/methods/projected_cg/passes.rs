@@ -79,11 +79,13 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = M r, r being what z holds.
+    /// z = M r, r being what z holds; where M is one circulant, extended (module `extension`).
     pub(super) fn precondition(&mut self, state: &State) {
-        if let Some(m) = &mut self.preconditioner {
-            let by_force = matches!(state.load, Load::Force(_));
-            m.apply(&mut self.z, by_force.then_some(&state.contact[..]), &mut self.workspace);
+        let Iteration { preconditioner: Some(m), extension, workspace, z, .. } = self else { return };
+        let contact = &state.contact[..];
+        match extension {
+            Some(extension) => extension.around(z, contact, |z| m.apply(z, None, workspace)),
+            None => m.apply(z, matches!(state.load, Load::Force(_)).then_some(contact), workspace),
         }
     }
 

@@ -56,10 +56,15 @@ impl<T: Real> Preconditioner<T> {
         &self.parts[0].inverse
     }
 
+    /// Whether it is a mix of several circulants.
+    pub fn is_mixed(&self) -> bool {
+        !self.right.is_empty()
+    }
+
     /// z = M z. With a prescribed force `carried_by` is the contact area: a mix is no multiple of 1 on a uniform residual, so that
     /// the approach, that is the residual's constant, is chosen such that z has mean zero: `z = M z - (1, M z)/(1, M 1) M 1`.
     pub fn apply(&mut self, z: &mut [T], carried_by: Option<&[bool]>, workspace: &mut Workspace<T>) {
-        if self.right.is_empty() {
+        if !self.is_mixed() {
             return self.parts[0].inverse.apply_in_place(z, workspace);
         }
         let Preconditioner { parts, right, term, unit } = self;

@@ -3,6 +3,7 @@
 use std::iter::once;
 use std::mem::replace;
 
+use super::extension::Extension;
 use super::known::Known;
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
@@ -67,6 +68,8 @@ impl<T: Real> Operators<T> {
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
+    /// Where the preconditioner is one circulant.
+    pub(super) extension: Option<Extension<T>>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
@@ -89,6 +92,7 @@ impl<T: Real> Iteration<T> {
         let Operators { operator, preconditioner } = operators;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
+        let extension = extension(&preconditioner, None, grid, threads)?;
         let directions = || {
             let mut direction = Vec::new();
             reserve(&mut direction, n, "search directions").map(|()| direction)
@@ -99,6 +103,7 @@ impl<T: Real> Iteration<T> {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
+            extension,
             t: directions()?,
             q: directions()?,
             z: directions()?,
@@ -146,6 +151,7 @@ impl<T: Real> Iteration<T> {
         // What the one before held serves the next.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
+        self.extension = extension(&self.preconditioner, self.extension.take(), grid, &self.threads)?;
         if self.periods() != before {
             self.workspace = workspace(&self.operator, &self.preconditioner)?;
         }
@@ -161,19 +167,24 @@ impl<T: Real> Iteration<T> {
     /// It is not needed for a while.
     pub fn rest(&mut self) {
         self.workspace.rest();
+        self.extension.iter_mut().for_each(Extension::rest);
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
     }
 
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
+        self.extension.iter_mut().for_each(|extension| extension.wake(n));
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
-        let directions = 3 * self.operator.elements() * size_of::<T>();
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + directions + self.known.bytes()
+        let n = self.operator.elements();
+        let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
+        let directions = 3 * n * size_of::<T>();
+        let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
+        products + extension + directions + self.known.bytes()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -193,6 +204,20 @@ impl<T: Real> Iteration<T> {
 /// Memory for products by either.
 fn workspace<T: Real>(operator: &Operator<T>, preconditioner: &Option<Preconditioner<T>>) -> Result<Workspace<T>> {
     Workspace::new(once(operator).chain(preconditioner.as_ref().map(Preconditioner::inverse)))
+}
+
+/// That of a preconditioner, or the one there is.
+fn extension<T: Real>(
+    preconditioner: &Option<Preconditioner<T>>,
+    known: Option<Extension<T>>,
+    grid: &Grid,
+    threads: &Threads,
+) -> Result<Option<Extension<T>>> {
+    match (preconditioner, known) {
+        (Some(m), None) if !m.is_mixed() => Extension::new(grid, threads).map(Some),
+        (Some(m), known) if !m.is_mixed() => Ok(known),
+        _ => Ok(None),
+    }
 }
 
 fn preconditioner<T: Real>(
