@@ -46,8 +46,8 @@ pub(super) struct Extension<T: Real> {
 
 /// Sums of one row, for a thread.
 struct Scratch<T> {
-    sums: [Vec<T>; 2],
-    counts: [Vec<u8>; 2],
+    sums: [Vec<T>; 3],
+    counts: [Vec<u8>; 3],
 }
 
 impl<T: Real> Extension<T> {
@@ -60,8 +60,8 @@ impl<T: Real> Extension<T> {
         reserve(&mut near, n, what)?;
         let scratch = || {
             Ok(Scratch {
-                sums: [zeros(length, what)?, zeros(length, what)?],
-                counts: [zeros(length, what)?, zeros(length, what)?],
+                sums: [zeros(length, what)?, zeros(length, what)?, zeros(length, what)?],
+                counts: [zeros(length, what)?, zeros(length, what)?, zeros(length, what)?],
             })
         };
         Ok(Extension {
@@ -169,7 +169,7 @@ fn count<T: Real>(near: u8) -> T {
 fn box_sums<'a, A, B: Copy + Default + std::ops::Add<Output = B>>(
     from: &[A],
     (y, mx): (usize, usize),
-    [column, sums]: &'a mut [Vec<B>; 2],
+    [column, sums, more]: &'a mut [Vec<B>; 3],
     value: impl Fn(&A) -> B,
 ) -> &'a [B] {
     let rows = y.saturating_sub(REACH) * mx..from.len().min((y + REACH + 1) * mx);
@@ -181,15 +181,10 @@ fn box_sums<'a, A, B: Copy + Default + std::ops::Add<Output = B>>(
     // Of 2, 4, 8 neighbours, and the ninth.
     let n = mx + BOX - 1;
     pairs(&mut sums[..n - 1], &column[..n - 1], &column[1..n]);
-    for distance in [2, 4] {
-        for i in 0..n - 2 * distance + 1 {
-            sums[i] = sums[i] + sums[i + distance];
-        }
-    }
-    for i in 0..mx {
-        sums[i] = sums[i] + column[i + BOX - 1];
-    }
-    &sums[..mx]
+    pairs(&mut more[..n - 3], &sums[..n - 3], &sums[2..n - 1]);
+    pairs(&mut sums[..n - 7], &more[..n - 7], &more[4..n - 3]);
+    pairs(&mut more[..mx], &sums[..mx], &column[BOX - 1..n]);
+    &more[..mx]
 }
 
 /// The sums of two rows.

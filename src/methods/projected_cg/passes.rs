@@ -79,13 +79,11 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = M r, r being what z holds; where M is one circulant, extended (module `extension`).
+    /// z = E^T M E r, r being what z holds (module `extension`).
     pub(super) fn precondition(&mut self, state: &State) {
-        let Iteration { preconditioner: Some(m), extension, workspace, z, .. } = self else { return };
-        let contact = &state.contact[..];
-        match extension {
-            Some(extension) => extension.around(z, contact, |z| m.apply(z, None, workspace)),
-            None => m.apply(z, matches!(state.load, Load::Force(_)).then_some(contact), workspace),
+        if let Some(m) = &mut self.preconditioner {
+            let by_force = matches!(state.load, Load::Force(_));
+            m.apply(&mut self.z, (&state.contact, by_force), &mut self.extension, &mut self.workspace);
         }
     }
 

@@ -7,6 +7,7 @@
 //! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
 //! M is symmetric and positive definite.
 
+use super::extension::Extension;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -56,22 +57,26 @@ impl<T: Real> Preconditioner<T> {
         &self.parts[0].inverse
     }
 
-    /// Whether it is a mix of several circulants.
-    pub fn is_mixed(&self) -> bool {
-        !self.right.is_empty()
-    }
-
-    /// z = M z. With a prescribed force `carried_by` is the contact area: a mix is no multiple of 1 on a uniform residual, so that
-    /// the approach, that is the residual's constant, is chosen such that z has mean zero: `z = M z - (1, M z)/(1, M 1) M 1`.
-    pub fn apply(&mut self, z: &mut [T], carried_by: Option<&[bool]>, workspace: &mut Workspace<T>) {
-        if !self.is_mixed() {
-            return self.parts[0].inverse.apply_in_place(z, workspace);
-        }
+    /// z = E^T M E z, z being zero outside C, by the extension E. With a prescribed force a mix is no multiple of 1 on a uniform
+    /// residual, so that the approach, that is the residual's constant, is chosen such that z has mean zero:
+    /// `z = M z - (1, M z)/(1, M 1) M 1`.
+    pub fn apply(
+        &mut self,
+        z: &mut Vec<T>,
+        (contact, by_force): (&[bool], bool),
+        extension: &mut Extension<T>,
+        workspace: &mut Workspace<T>,
+    ) {
         let Preconditioner { parts, right, term, unit } = self;
-        mix(parts, z, workspace, [right, term]);
-        let Some(contact) = carried_by else { return };
+        if right.is_empty() {
+            return extension.around(z, contact, |z| parts[0].inverse.apply_in_place(z, workspace));
+        }
+        extension.around(z, contact, |z| mix(parts, z, workspace, [right, term]));
+        if !by_force {
+            return;
+        }
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });
-        mix(parts, unit, workspace, [right, term]);
+        extension.around(unit, contact, |unit| mix(parts, unit, workspace, [right, term]));
         let sum = |values: &[T]| -> f64 {
             values.iter().zip(contact).map(|(value, &inside)| if inside { value.to_double() } else { 0.0 }).sum()
         };

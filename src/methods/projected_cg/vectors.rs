@@ -68,8 +68,7 @@ impl<T: Real> Operators<T> {
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
-    /// Where the preconditioner is one circulant.
-    pub(super) extension: Option<Extension<T>>,
+    pub(super) extension: Extension<T>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
@@ -92,7 +91,6 @@ impl<T: Real> Iteration<T> {
         let Operators { operator, preconditioner } = operators;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
-        let extension = extension(&preconditioner, None, grid, threads)?;
         let directions = || {
             let mut direction = Vec::new();
             reserve(&mut direction, n, "search directions").map(|()| direction)
@@ -103,7 +101,7 @@ impl<T: Real> Iteration<T> {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
-            extension,
+            extension: Extension::new(grid, threads)?,
             t: directions()?,
             q: directions()?,
             z: directions()?,
@@ -151,7 +149,6 @@ impl<T: Real> Iteration<T> {
         // What the one before held serves the next.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
-        self.extension = extension(&self.preconditioner, self.extension.take(), grid, &self.threads)?;
         if self.periods() != before {
             self.workspace = workspace(&self.operator, &self.preconditioner)?;
         }
@@ -167,13 +164,13 @@ impl<T: Real> Iteration<T> {
     /// It is not needed for a while.
     pub fn rest(&mut self) {
         self.workspace.rest();
-        self.extension.iter_mut().for_each(Extension::rest);
+        self.extension.rest();
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
     }
 
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
-        self.extension.iter_mut().for_each(|extension| extension.wake(n));
+        self.extension.wake(n);
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
     }
 
@@ -181,10 +178,9 @@ impl<T: Real> Iteration<T> {
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
         let n = self.operator.elements();
-        let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
         let directions = 3 * n * size_of::<T>();
         let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
-        products + extension + directions + self.known.bytes()
+        products + self.extension.bytes(n) + directions + self.known.bytes()
     }
 
     /// `u = A p` in the iteration's precision.
@@ -204,20 +200,6 @@ impl<T: Real> Iteration<T> {
 /// Memory for products by either.
 fn workspace<T: Real>(operator: &Operator<T>, preconditioner: &Option<Preconditioner<T>>) -> Result<Workspace<T>> {
     Workspace::new(once(operator).chain(preconditioner.as_ref().map(Preconditioner::inverse)))
-}
-
-/// That of a preconditioner, or the one there is.
-fn extension<T: Real>(
-    preconditioner: &Option<Preconditioner<T>>,
-    known: Option<Extension<T>>,
-    grid: &Grid,
-    threads: &Threads,
-) -> Result<Option<Extension<T>>> {
-    match (preconditioner, known) {
-        (Some(m), None) if !m.is_mixed() => Extension::new(grid, threads).map(Some),
-        (Some(m), known) if !m.is_mixed() => Ok(known),
-        _ => Ok(None),
-    }
 }
 
 fn preconditioner<T: Real>(
