@@ -29,24 +29,30 @@ fn differences(z: &[f64]) -> Vec<f64> {
 
 #[test]
 fn it_is_what_the_definition_says() {
-    // Rows without contact near them, pieces at the edges; grids narrower than a box.
-    for (mx, my) in [(23, 31), (5, 40), (1, 30), (30, 1), (64, 3)] {
+    // Rows without contact near them, pieces at the edges; grids narrower than a box, and several chunks wide.
+    for (mx, my) in [(23, 31), (5, 40), (1, 30), (30, 1), (64, 3), (130, 9), (200, 7)] {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
-        let contact: Vec<bool> = (0..mx * my).map(|i| i / mx < my.div_ceil(3) && (7 * i) % 11 < 3).collect();
-        let z: Vec<f64> =
-            contact.iter().enumerate().map(|(i, inside)| if *inside { (i as f64).sin() + 0.3 } else { 0.0 }).collect();
-        let expected = by_definition(&z, &contact, (mx, my));
         for threads in [Threads::One, Threads::new(2).unwrap()] {
+            let mut contact: Vec<bool> = (0..mx * my).map(|i| i / mx < my.div_ceil(3) && (7 * i) % 11 < 3).collect();
+            let mut segments = Segments::new(&grid, &threads).unwrap();
+            segments.change_all();
             let mut extension = Extension::<f64>::new(&grid, &threads).unwrap();
-            let mut result = z.clone();
-            // What was there before does not matter.
-            for _ in 0..2 {
-                result.clone_from(&z);
+            // As it is, changed in one place, and as it was: what was there before does not matter.
+            for _ in 0..3 {
+                segments.find(&contact);
+                let z = |i: usize| if contact[i] { (i as f64).sin() + 0.3 } else { 0.0 };
+                let z: Vec<f64> = (0..mx * my).map(z).collect();
+                let expected = by_definition(&z, &contact, (mx, my));
+                let mut result = z.clone();
                 extension.wake(mx * my);
-                extension.around(&mut result, &contact, |z| z.copy_from_slice(&differences(z)));
-            }
-            for i in (0..mx * my).filter(|&i| contact[i]) {
-                assert!((result[i] - expected[i]).abs() < 1e-13, "{mx} x {my}, {i}: {} {}", result[i], expected[i]);
+                let area = Area { contact: &contact, segments: &segments };
+                extension.around(&mut result, area, 1.0, |z| z.copy_from_slice(&differences(z)));
+                for i in (0..mx * my).filter(|&i| contact[i]) {
+                    assert!((result[i] - expected[i]).abs() < 1e-13, "{mx} x {my}, {i}: {} {}", result[i], expected[i]);
+                }
+                let last = mx * my - 1;
+                contact[last] = !contact[last];
+                segments.change(last);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The passes over the contact area, each over its segments.
 
+use super::extension::Area;
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
@@ -83,7 +84,8 @@ impl<T: Real> Iteration<T> {
     pub(super) fn precondition(&mut self, state: &State) {
         if let Some(m) = &mut self.preconditioner {
             let by_force = matches!(state.load, Load::Force(_));
-            m.apply(&mut self.z, (&state.contact, by_force), &mut self.extension, &mut self.workspace);
+            let area = Area { contact: &state.contact, segments: &self.runs };
+            m.apply(&mut self.z, (area, by_force), &mut self.extension, &mut self.workspace);
         }
     }
 

@@ -123,6 +123,7 @@ impl<T: Real> Iteration<T> {
         };
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
+        self.extension = Extension::new(grid, &self.threads)?;
         self.runs = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             reserve(values, n, "search directions")?;
