@@ -7,7 +7,7 @@
 //! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
 //! M is symmetric and positive definite. It is applied as E^T M E (module `extension`), with an E for each level.
 
-use super::extension::{Area, Extension};
+use super::extension::{extended, Area, Extension};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -67,14 +67,14 @@ impl<T: Real> Preconditioner<T> {
         &mut self,
         z: &mut Vec<T>,
         (area, by_force): (Area<'_>, bool),
-        extension: &mut Extension<T>,
+        extension: &mut Option<Extension<T>>,
         workspace: &mut Workspace<T>,
     ) {
         let Preconditioner { parts, right, term, unit } = self;
         let contact = area.contact;
         if let [Part { inverse, weights, compliance }] = &parts[..] {
             if weights.is_empty() {
-                return extension.around(z, area, *compliance, |z| inverse.apply_in_place(z, workspace));
+                return extended(extension, z, (area, *compliance), |z| inverse.apply_in_place(z, workspace));
             }
         }
         mix(parts, (z, area), extension, workspace, (right, term));
@@ -101,7 +101,7 @@ impl<T: Real> Preconditioner<T> {
 fn mix<T: Real>(
     parts: &[Part<T>],
     (z, area): (&mut [T], Area<'_>),
-    extension: &mut Extension<T>,
+    extension: &mut Option<Extension<T>>,
     workspace: &mut Workspace<T>,
     (right, term): (&mut [T], &mut Vec<T>),
 ) {
@@ -111,7 +111,7 @@ fn mix<T: Real>(
         for ((term, r), w) in term.iter_mut().zip(&*right).zip(weights) {
             *term = *r * *w;
         }
-        extension.around(term, area, *compliance, |term| inverse.apply_in_place(term, workspace));
+        extended(extension, term, (area, *compliance), |term| inverse.apply_in_place(term, workspace));
         for ((z, term), w) in z.iter_mut().zip(&*term).zip(weights) {
             *z += *term * *w;
         }

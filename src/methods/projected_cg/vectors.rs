@@ -68,7 +68,7 @@ impl<T: Real> Operators<T> {
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
-    pub(super) extension: Extension<T>,
+    pub(super) extension: Option<Extension<T>>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
@@ -101,7 +101,7 @@ impl<T: Real> Iteration<T> {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
-            extension: Extension::new(grid, threads)?,
+            extension: Extension::if_worthwhile(grid, threads)?,
             t: directions()?,
             q: directions()?,
             z: directions()?,
@@ -123,7 +123,7 @@ impl<T: Real> Iteration<T> {
         };
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
-        self.extension = Extension::new(grid, &self.threads)?;
+        self.extension = Extension::if_worthwhile(grid, &self.threads)?;
         self.runs = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             reserve(values, n, "search directions")?;
@@ -165,13 +165,13 @@ impl<T: Real> Iteration<T> {
     /// It is not needed for a while.
     pub fn rest(&mut self) {
         self.workspace.rest();
-        self.extension.rest();
+        self.extension.iter_mut().for_each(Extension::rest);
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
     }
 
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
-        self.extension.wake(n);
+        self.extension.iter_mut().for_each(|extension| extension.wake(n));
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
     }
 
@@ -181,7 +181,8 @@ impl<T: Real> Iteration<T> {
         let n = self.operator.elements();
         let directions = 3 * n * size_of::<T>();
         let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
-        products + self.extension.bytes(n) + directions + self.known.bytes()
+        let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
+        products + extension + directions + self.known.bytes()
     }
 
     /// `u = A p` in the iteration's precision.
