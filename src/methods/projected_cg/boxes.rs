@@ -28,7 +28,7 @@ impl pulp::NullaryFnOnce for Count<'_> {
         let mx = near.len();
         let here = contact[y * mx..][..mx].chunks(CHUNK);
         for (k, ((near, rim), inside)) in near.chunks_mut(CHUNK).zip(rim).zip(here).enumerate() {
-            let counts = box_sums(contact, (y, mx), k * CHUNK, |inside| u8::from(inside));
+            let counts = box_sums(contact, (y, mx), k * CHUNK, u8::from);
             let mut any = 0;
             for ((near, count), inside) in near.iter_mut().zip(counts).zip(inside) {
                 *near = count * u8::from(!inside);
@@ -61,7 +61,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
             if *rim {
                 let sums = box_sums(z, (y, mx), k * CHUNK, |z| z);
                 for ((value, near), sum) in values.iter_mut().zip(near).zip(sums) {
-                    *value = *value + share(*near, absent) * sum;
+                    *value += share(*near, absent) * sum;
                 }
             }
         }
@@ -117,7 +117,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
             let near = k.saturating_sub(1)..chunks.min(k + 2);
             if rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true)) {
                 let sums = box_sums(shares, (y, mx), k * CHUNK, |share| share);
-                values.iter_mut().zip(sums).for_each(|(value, sum)| *value = *value + sum);
+                values.iter_mut().zip(sums).for_each(|(value, sum)| *value += sum);
             }
         }
     }

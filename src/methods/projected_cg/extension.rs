@@ -29,9 +29,9 @@ use crate::threads::Threads;
 
 /// c, as a part of a box.
 const ABSENT: f64 = 0.125;
-/// Elements of a grid from which on the extension saves more than it takes. Processor times of cold calls with and without, measured in turns
-/// (`make bench`, table "cold"): windows of some 300, 1000, 2000 and 4000 elements (ellipse 16, 32, 64, wheel-rail y4_82kN) 1.2, 1.2, 1.08 and 1.15,
-/// of 14000 (wheel-rail y4_82kN x2) 0.87, of 60000 and more (rough surface 256, 512) 0.92 and 0.83.
+/// Elements of a grid from which on the extension saves more than it takes. Processor times of cold calls with it on all grids, by those
+/// without (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0 to 1.15
+/// at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
 const LEAST: usize = 8192;
 const WHAT: &str = "the extended residual";
 
