@@ -166,6 +166,11 @@ impl Coefficients {
         Ok(levels.map(|(layer, weights)| (self.clone().with_layer(layer), weights)).collect())
     }
 
+    /// An element's influence on itself with the typical layer, relative to that without a layer.
+    pub fn typical_compliance(&self) -> f64 {
+        1.0 + self.diagonal.as_ref().map_or(0.0, |layer| layer.typical / self.kernel.at(0, 0))
+    }
+
     /// The coefficients on a grid coarsened from `fine` to `coarse`.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Coefficients> {
         Ok(Coefficients {

@@ -27,6 +27,19 @@ const SPECTRUM: &str = "the operator's spectrum";
 /// Columns of complex numbers, or pairs of real ones, that are gathered at a time in a set-up: a cache line.
 const PAIRS: usize = 4;
 
+/// Columns of so many values stand apart by [`GAP`] more: at a distance of a power of two they would share few lines of the nearest cache.
+const LONG: usize = 512;
+const GAP: usize = 8;
+
+/// Values from the beginning of a column in a block to that of the next.
+pub(super) fn room_of_column(length: usize) -> usize {
+    if length < LONG {
+        length
+    } else {
+        length + GAP
+    }
+}
+
 /// The transform of the coefficients, with the normalisation `1/(px py)` folded in, one column of it per x bin.
 enum Spectrum<T: Real> {
     /// Even coefficients: real, `py/2 + 1` values a column.
@@ -140,13 +153,19 @@ impl<T: Real> Convolution<T> {
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
         let Product { bins, pieces } = product;
         let (nb, length) = (rows.transform.bins(), self.columns.length());
+        let room = room_of_column(length);
         for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
-            let columns = &mut piece.columns[..block.columns() * length];
-            block.gather(loaded.clone(), length, columns);
-            self.columns.forward(columns, &mut piece.scratch);
-            self.multiply(block.first(), columns);
-            self.columns.inverse(columns, &mut piece.scratch);
-            block.scatter(0..rows.my, length, columns);
+            let columns = &mut piece.columns[..block.columns() * room];
+            block.gather(loaded.clone(), room, columns);
+            // Long columns one by one, in the nearest cache.
+            let (together, used) = if room > length { (room, length) } else { (columns.len(), columns.len()) };
+            for (c, columns) in columns.chunks_exact_mut(together).enumerate() {
+                let columns = &mut columns[..used];
+                self.columns.forward(columns, &mut piece.scratch);
+                self.multiply(block.first() + c, columns);
+                self.columns.inverse(columns, &mut piece.scratch);
+            }
+            block.scatter(0..rows.my, room, columns);
         });
     }
 

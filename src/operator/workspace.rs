@@ -1,6 +1,7 @@
 //! The memory of products.
 
 use super::columns::BLOCK;
+use super::convolution::room_of_column;
 use super::fft::{Complex, Real};
 use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
@@ -86,7 +87,7 @@ impl<T: Real> Operator<T> {
 
     /// Values of a block of columns.
     fn column_room(&self) -> usize {
-        BLOCK * self.periods().1
+        BLOCK * room_of_column(self.periods().1)
     }
 
     /// Elements of a grid with patches.

@@ -206,6 +206,11 @@ impl Methods {
         Ok(())
     }
 
+    /// Lets go of what another admissible set needed.
+    pub fn forget_iterates(&mut self) {
+        self.best = Best::default();
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let multigrid = self.multigrid.as_ref().map_or(0, FullMultigrid::bytes);

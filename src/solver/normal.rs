@@ -61,6 +61,7 @@ impl Solver {
             // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
             monitor.ledger.rows.clear();
             monitor.enter_grid();
+            self.methods.forget_iterates();
             outcome = self.run(scene, NonNegative, options, guess, monitor);
             if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
                 monitor.ledger.rows.clear();

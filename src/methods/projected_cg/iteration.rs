@@ -164,13 +164,16 @@ impl<T: Real> Iteration<T> {
         } else if S::LIMITED {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
-        self.fit_approach(state, &update);
-        // What is owed moves the rim: who enters is seen when it is paid.
-        if self.debts.is_empty() || !self.known.is_there() {
-            self.update_displacements(state, set, &update);
+        // What a prediction owes is paid before its residual is looked at.
+        let products = u64::from(self.known.is_there() && self.owed() > 0.0);
+        if products > 0 {
+            self.settle();
+            update.settled = true;
         }
+        self.fit_approach(state, &update);
+        self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        let products = self.restrict_known(state);
+        let products = products + self.restrict_known(state);
         self.step_along_known(state);
         let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner the first forecast is missing.

@@ -1,8 +1,10 @@
 //! Projected, preconditioned conjugate gradients: the fastest way known to solve the whole problem on one grid, under nested
 //! iteration over the grids.
 
+mod boxes;
 mod coarse_grids;
 mod exchange;
+mod extension;
 mod inner;
 mod iteration;
 mod known;

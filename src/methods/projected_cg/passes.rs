@@ -1,5 +1,6 @@
 //! The passes over the contact area, each over its segments.
 
+use super::extension::Area;
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
@@ -79,11 +80,12 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = M r, r being what z holds.
+    /// z = E^T M E r, r being what z holds (module `extension`).
     pub(super) fn precondition(&mut self, state: &State) {
         if let Some(m) = &mut self.preconditioner {
             let by_force = matches!(state.load, Load::Force(_));
-            m.apply(&mut self.z, by_force.then_some(&state.contact[..]), &mut self.workspace);
+            let area = Area { contact: &state.contact, segments: &self.runs };
+            m.apply(&mut self.z, (area, by_force), &mut self.extension, &mut self.workspace);
         }
     }
 

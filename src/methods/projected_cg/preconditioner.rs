@@ -5,8 +5,9 @@
 //! ```
 //!
 //! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
-//! M is symmetric and positive definite.
+//! M is symmetric and positive definite. It is applied as E^T M E (module `extension`), with an E for each level.
 
+use super::extension::{extended, Area, Extension};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -19,6 +20,8 @@ use crate::threads::Threads;
 struct Part<T: Real> {
     inverse: Operator<T>,
     weights: Vec<T>,
+    /// An element's influence on itself, relative to that without a layer.
+    compliance: f64,
 }
 
 /// M, and the memory that a mix needs.
@@ -44,7 +47,8 @@ impl<T: Real> Preconditioner<T> {
             let Some(inverse) = Operator::scaled_inverse(&influence, factor, grid, period, threads)? else {
                 return Ok(None);
             };
-            parts.push(Part { inverse, weights: computed(weights.into_iter().map(T::of), "the preconditioner")? });
+            let weights = computed(weights.into_iter().map(T::of), "the preconditioner")?;
+            parts.push(Part { inverse, weights, compliance: influence.typical_compliance() });
         }
         let mixed = if parts[0].weights.is_empty() { 0 } else { grid.len() };
         let memory = || zeros(mixed, "the preconditioner");
@@ -56,17 +60,29 @@ impl<T: Real> Preconditioner<T> {
         &self.parts[0].inverse
     }
 
-    /// z = M z. With a prescribed force `carried_by` is the contact area: a mix is no multiple of 1 on a uniform residual, so that
-    /// the approach, that is the residual's constant, is chosen such that z has mean zero: `z = M z - (1, M z)/(1, M 1) M 1`.
-    pub fn apply(&mut self, z: &mut [T], carried_by: Option<&[bool]>, workspace: &mut Workspace<T>) {
-        if self.right.is_empty() {
-            return self.parts[0].inverse.apply_in_place(z, workspace);
-        }
+    /// z = E^T M E z, z being zero outside C. With a prescribed force a mix is no multiple of 1 on a uniform
+    /// residual, so that the approach, that is the residual's constant, is chosen such that z has mean zero:
+    /// `z = M z - (1, M z)/(1, M 1) M 1`.
+    pub fn apply(
+        &mut self,
+        z: &mut Vec<T>,
+        (area, by_force): (Area<'_>, bool),
+        extension: &mut Option<Extension<T>>,
+        workspace: &mut Workspace<T>,
+    ) {
         let Preconditioner { parts, right, term, unit } = self;
-        mix(parts, z, workspace, [right, term]);
-        let Some(contact) = carried_by else { return };
+        let contact = area.contact;
+        if let [Part { inverse, weights, compliance }] = &parts[..] {
+            if weights.is_empty() {
+                return extended(extension, z, (area, *compliance), |z| inverse.apply_in_place(z, workspace));
+            }
+        }
+        mix(parts, (z, area), extension, workspace, (right, term));
+        if !by_force {
+            return;
+        }
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });
-        mix(parts, unit, workspace, [right, term]);
+        mix(parts, (unit, area), extension, workspace, (right, term));
         let sum = |values: &[T]| -> f64 {
             values.iter().zip(contact).map(|(value, &inside)| if inside { value.to_double() } else { 0.0 }).sum()
         };
@@ -81,16 +97,22 @@ impl<T: Real> Preconditioner<T> {
     }
 }
 
-/// z = M z of a mix.
-fn mix<T: Real>(parts: &[Part<T>], z: &mut [T], workspace: &mut Workspace<T>, [right, term]: [&mut [T]; 2]) {
+/// z = M z of a mix, the terms of which are extended each for itself.
+fn mix<T: Real>(
+    parts: &[Part<T>],
+    (z, area): (&mut [T], Area<'_>),
+    extension: &mut Option<Extension<T>>,
+    workspace: &mut Workspace<T>,
+    (right, term): (&mut [T], &mut Vec<T>),
+) {
     right.copy_from_slice(z);
     z.fill(T::zero());
-    for part in parts {
-        for ((term, r), w) in term.iter_mut().zip(&*right).zip(&part.weights) {
+    for Part { inverse, weights, compliance } in parts {
+        for ((term, r), w) in term.iter_mut().zip(&*right).zip(weights) {
             *term = *r * *w;
         }
-        part.inverse.apply_in_place(term, workspace);
-        for ((z, term), w) in z.iter_mut().zip(&*term).zip(&part.weights) {
+        extended(extension, term, (area, *compliance), |term| inverse.apply_in_place(term, workspace));
+        for ((z, term), w) in z.iter_mut().zip(&*term).zip(weights) {
             *z += *term * *w;
         }
     }

@@ -28,6 +28,8 @@ pub struct Segments {
     found: Vec<Found>,
     /// Elements in contact.
     count: usize,
+    /// How often it was found anew.
+    version: u64,
     sums: Vec<[f64; MOST_SUMS]>,
     threads: Threads,
 }
@@ -40,6 +42,8 @@ struct Found {
     count: usize,
     /// Whether the runs are no longer true.
     changed: bool,
+    /// The version in which they were found.
+    version: u64,
 }
 
 impl Segments {
@@ -53,12 +57,24 @@ impl Segments {
             reserve(&mut block.runs, rows * grid.mx.div_ceil(2), "the contact area")?;
         }
         let sums = vec![[0.0; MOST_SUMS]; blocks];
-        Ok(Segments { mx: grid.mx, block: rows * grid.mx, found, count: 0, sums, threads: threads.clone() })
+        Ok(Segments { mx: grid.mx, block: rows * grid.mx, found, count: 0, version: 0, sums, threads: threads.clone() })
     }
 
     /// Number of elements in contact.
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// The version of the contact area: it rises with each change.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Whether elements in some rows may have changed sides since a version.
+    pub fn changed_since(&self, version: u64, elements: Range<usize>) -> bool {
+        self.found[elements.start / self.block..elements.end.div_ceil(self.block)]
+            .iter()
+            .any(|block| block.version > version)
     }
 
     /// Says that element `i` enters or leaves.
@@ -76,10 +92,12 @@ impl Segments {
         if !self.found.iter().any(|block| block.changed) {
             return;
         }
-        let (mx, length) = (self.mx, self.block);
+        self.version += 1;
+        let (mx, length, now) = (self.mx, self.block, self.version);
         self.threads.for_each_plain_row(&mut self.found, 1, |b, found| {
-            let Found { runs, count, changed } = &mut found[0];
+            let Found { runs, count, changed, version } = &mut found[0];
             if take(changed) {
+                *version = now;
                 runs.clear();
                 let elements = &contact[b * length..contact.len().min((b + 1) * length)];
                 for (iy, row) in elements.chunks_exact(mx).enumerate() {

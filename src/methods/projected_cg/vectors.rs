@@ -3,6 +3,7 @@
 use std::iter::once;
 use std::mem::replace;
 
+use super::extension::Extension;
 use super::known::Known;
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
@@ -67,6 +68,7 @@ impl<T: Real> Operators<T> {
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
+    pub(super) extension: Option<Extension<T>>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
@@ -99,6 +101,7 @@ impl<T: Real> Iteration<T> {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
+            extension: Extension::if_worthwhile(grid, threads)?,
             t: directions()?,
             q: directions()?,
             z: directions()?,
@@ -120,6 +123,7 @@ impl<T: Real> Iteration<T> {
         };
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
+        self.extension = Extension::if_worthwhile(grid, &self.threads)?;
         self.runs = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             reserve(values, n, "search directions")?;
@@ -161,19 +165,24 @@ impl<T: Real> Iteration<T> {
     /// It is not needed for a while.
     pub fn rest(&mut self) {
         self.workspace.rest();
+        self.extension.iter_mut().for_each(Extension::rest);
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
     }
 
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
+        self.extension.iter_mut().for_each(|extension| extension.wake(n));
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, Preconditioner::bytes);
-        let directions = 3 * self.operator.elements() * size_of::<T>();
-        self.operator.bytes() + preconditioner + self.workspace.bytes() + directions + self.known.bytes()
+        let n = self.operator.elements();
+        let directions = 3 * n * size_of::<T>();
+        let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
+        let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
+        products + extension + directions + self.known.bytes()
     }
 
     /// `u = A p` in the iteration's precision.
