@@ -29,10 +29,10 @@ use crate::threads::Threads;
 
 /// c, as a part of a box.
 const ABSENT: f64 = 0.125;
-/// Elements of a grid (a window) from which on the extension saves more than it takes. Processor times of cold calls with it by those without
-/// (table "cold" of `make bench`, programs in turns): 1.2 on the ellipse at 16 and 32, 1.0 to 1.1 at 64, 1.08 to 1.15 on the wheel-rail contact of
-/// 95 x 88 elements, 0.87 on that of 190 x 176, 0.92 and 0.83 on the rough surface at 256 and 512.
-const LEAST: usize = 16384;
+/// Elements of a grid from which on the extension saves more than it takes. Processor times of cold calls with it on all grids, by those
+/// without (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0 to 1.15
+/// at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
+const LEAST: usize = 8192;
 const WHAT: &str = "the extended residual";
 
 /// E, and the memory for it.
