@@ -45,7 +45,8 @@ fn main() {
                     return targets::solve_again(name, size(), what == "steps", seconds);
                 }
                 let case = if name == "rough" { friction::like_bodies(size()) } else { case::ellipse(size()) };
-                return friction::shift_again(&case, threads.len() + 1, seconds);
+                let threads = threads.first().map_or(1, |count| count.parse().expect("threads"));
+                return friction::shift_again(&case, threads, seconds);
             }
             _ => {}
         }

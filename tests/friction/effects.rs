@@ -1,24 +1,15 @@
-//! Friction beside the other effects: none is ignored, and what is not solved is refused by name. Threads and handles.
+//! Friction beside the other effects: none is ignored, and what is not solved is refused by name. Handles and precisions.
 
 use contact_normal::error::Error;
-use contact_normal::grid::Grid;
 use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{
     Bodies, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene,
 };
 use contact_normal::solver::{solve, ActiveSet, Guess, Options, Outcome, Progress, Solver};
 
-use super::support::residual;
+use super::support::{ball, residual};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
-
-fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
-    let centre = 0.5 * (m as f64 - 1.0);
-    let h = (0..m * m)
-        .map(|i| (((i % m) as f64 - centre).powi(2) + ((i / m) as f64 - centre).powi(2)) * d * d / 100.0)
-        .collect();
-    (Grid::new(m, m, d, d).unwrap(), h)
-}
 
 fn pushed() -> Friction<'static> {
     Friction { prescribed: [Prescribed::Creepage(-2e-3), Prescribed::Creepage(5e-4)], ..Friction::new(0.3) }
@@ -112,23 +103,6 @@ fn one_coefficient_is_as_many_alike() {
     let half: Vec<f64> = (0..grid.len()).map(|i| if i % 32 < 16 { 0.0 } else { 0.3 }).collect();
     let tractions = found(Coefficient::PerElement(&half));
     assert!((0..grid.len()).all(|i| i % 32 >= 16 || tractions[i] == [0.0; 2]));
-}
-
-#[test]
-fn any_number_of_threads_finds_the_same_bits() {
-    let (grid, h) = ball(160, 0.012);
-    for prescribed in [pushed().prescribed, [Prescribed::Force(150.0), Prescribed::Force(30.0)]] {
-        let friction = Friction { prescribed, spin: 1e-3, ..pushed() };
-        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Force(1000.0)) };
-        let found = |threads: usize| {
-            let (solver, stop, _) = solve(&scene, &Options { threads, ..Options::default() }).unwrap();
-            assert_eq!(stop, Outcome::Converged);
-            solver.friction().unwrap().traction.clone()
-        };
-        let one = found(1);
-        assert_eq!(one, found(2));
-        assert_eq!(one, found(3));
-    }
 }
 
 #[test]

@@ -6,6 +6,15 @@ use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed};
 use contact_normal::solver::Outcome;
 use contact_normal::threads::Threads;
 
+/// The distance of a ball of radius 50 from a plane, on m x m elements of side d.
+pub fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
+    let centre = 0.5 * (m as f64 - 1.0);
+    let h = (0..m * m)
+        .map(|i| (((i % m) as f64 - centre).powi(2) + ((i / m) as f64 - centre).powi(2)) * d * d / 100.0)
+        .collect();
+    (Grid::new(m, m, d, d).unwrap(), h)
+}
+
 /// `1/G = 1`.
 pub fn tangential(grid: &Grid, nu: f64) -> Tangential {
     Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0, poisson: nu, unlike: 0.0 })

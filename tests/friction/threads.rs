@@ -1,16 +1,9 @@
 //! Any number of threads finds the same bits: each motion, with and without coupling, creepages and forces, derivatives.
 
-use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
-    let centre = 0.5 * (m as f64 - 1.0);
-    let h = (0..m * m)
-        .map(|i| (((i % m) as f64 - centre).powi(2) + ((i / m) as f64 - centre).powi(2)) * d * d / 100.0)
-        .collect();
-    (Grid::new(m, m, d, d).unwrap(), h)
-}
+use super::support::ball;
 
 /// So many elements that each pass is shared between threads.
 const M: usize = 160;
@@ -42,6 +35,8 @@ fn any_number_of_threads_finds_the_same_bits_of_each_motion() {
     let forces = [Prescribed::Force(150.0), Prescribed::Force(30.0)];
     let shift = Friction { prescribed: creepages(-2e-3, 5e-4), ..Friction::new(0.3) };
     let rolling = Friction { motion: Motion::SteadyRolling, prescribed: creepages(-1e-3, 5e-4), ..shift };
+    check("a shift with spin", [0.28; 2], Friction { spin: 1e-3, ..shift });
+    check("a shift with spin, by forces", [0.28; 2], Friction { spin: 1e-3, prescribed: forces, ..shift });
     let along_x = [Prescribed::Creepage(-2e-3), Prescribed::Creepage(0.0)];
     check("a shift without coupling, from a smaller load", [0.0; 2], Friction { prescribed: along_x, ..shift });
     check("a shift without coupling", [0.0; 2], Friction { spin: 1e-3, ..shift });

@@ -39,7 +39,6 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
 }
 
 #[test]
-#[ignore = "575 x 647 elements"]
 fn a_shift_of_a_wheel_on_the_finest_grid_is_that_of_contact() {
     let report = solved(8, 1e-8, shift);
     let found = report.friction.unwrap();
