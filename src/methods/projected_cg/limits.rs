@@ -108,7 +108,6 @@ impl<T: Real> Iteration<T> {
             return 1.0;
         }
         self.scale(state, factor);
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
         factor
     }
 

@@ -2,7 +2,7 @@
 
 use super::extension::Area;
 use super::vectors::Iteration;
-use crate::contact::State;
+use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
@@ -83,17 +83,17 @@ impl<T: Real> Iteration<T> {
     /// z = E^T M E r, r being what z holds (module `extension`).
     pub(super) fn precondition(&mut self, state: &State) {
         if let Some(m) = &mut self.preconditioner {
-            let by_force = matches!(state.load, Load::Force(_));
+            let without_force = matches!(state.load, Load::Force(_)) || self.is_scaled;
             let area = Area { contact: &state.contact, segments: &self.runs };
-            m.apply(&mut self.z, (area, by_force), &mut self.extension, &mut self.workspace);
+            m.apply(&mut self.z, (area, without_force), &mut self.extension, &mut self.workspace);
         }
     }
 
-    /// t = z + beta t on C, 0 outside; with a prescribed force of mean zero over C, but for what is missing; held back by the forecast,
+    /// t = z + beta t on C, 0 outside; of mean zero over C, but for what is missing, where it need not carry force; held back by the forecast,
     /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
-        let by_force = matches!(state.load, Load::Force(_)) || self.known.is_there();
-        let (mean, beta) = self.conjugate(by_force, tq);
+        let without_force = matches!(state.load, Load::Force(_)) || self.known.is_there() || self.is_scaled;
+        let (mean, beta) = self.conjugate(without_force, tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
         let held = |p: f64, t: T| match forecast {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
@@ -104,12 +104,12 @@ impl<T: Real> Iteration<T> {
                 let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
                 sums.add(z.len(), |i| {
                     let direction = z[i] - mean + beta * t[i];
-                    t[i] = if by_force { direction } else { held(p[i], direction) };
+                    t[i] = if without_force { direction } else { held(p[i], direction) };
                     [direction.to_double()]
                 });
             }
         });
-        if by_force {
+        if without_force {
             let missing = self.limits.missing / forecast.unwrap_or(1.0);
             let mean = T::of((sum - missing) / self.runs.count() as f64);
             let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
@@ -122,9 +122,9 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// The mean of z over C with a prescribed force, else 0, and beta.
-    fn conjugate(&mut self, by_force: bool, tq: f64) -> (f64, f64) {
-        if !by_force && tq <= 0.0 {
+    /// The mean of z over C for directions without force, else 0, and beta.
+    fn conjugate(&mut self, without_force: bool, tq: f64) -> (f64, f64) {
+        if !without_force && tq <= 0.0 {
             return (0.0, 0.0);
         }
         let (z, q) = (&self.z, &self.q);
@@ -137,7 +137,7 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        let mean = if by_force { z1 / self.runs.count() as f64 } else { 0.0 };
+        let mean = if without_force { z1 / self.runs.count() as f64 } else { 0.0 };
         (mean, if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 })
     }
 
@@ -157,9 +157,17 @@ impl<T: Real> Iteration<T> {
         Step { rt, tq, tt, t1, pp }
     }
 
-    /// By approach, where nothing is owed: scales p to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it;
-    /// returns the factor, with which u is to be scaled. It costs no product.
-    pub(super) fn least_energy(&mut self, state: &mut State, update: &Update) -> f64 {
+    /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
+    /// the factor. It costs no product. Where p moves along a known change instead, or pressures have reached a limit, only a truncation that a
+    /// product has paid is followed by it.
+    pub(super) fn least_energy<S: AdmissibleSet>(&mut self, state: &mut State, _: S, update: &mut Update) {
+        self.is_scaled = false;
+        let limited = S::LIMITED && state.reached_limit;
+        let scales = !self.known.is_there() && !limited;
+        let may_scale = scales || update.settled && !(limited && state.has_limited());
+        if matches!(state.load, Load::Force(_)) || S::FIXED || !may_scale {
+            return;
+        }
         self.runs.find(&state.contact);
         let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
         let [work, energy] = self.runs.sum(|block, sums| {
@@ -174,15 +182,16 @@ impl<T: Real> Iteration<T> {
             }
         });
         let factor = work / energy;
-        if !(factor.is_finite() && factor > 0.0) {
-            return 1.0;
+        if factor.is_finite() && factor > 0.0 {
+            self.is_scaled = scales;
+            update.factor = factor;
+            self.scale(state, factor);
         }
-        self.scale(state, factor);
-        factor
     }
 
-    /// p = factor p on C.
+    /// p = factor p on C, and the debts likewise.
     pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
+        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (_, local) in block.runs() {
                 p[local].iter_mut().for_each(|p| *p *= factor);

@@ -60,13 +60,13 @@ impl<T: Real> Preconditioner<T> {
         &self.parts[0].inverse
     }
 
-    /// z = E^T M E z, z being zero outside C. With a prescribed force a mix is no multiple of 1 on a uniform
-    /// residual, so that the approach, that is the residual's constant, is chosen such that z has mean zero:
+    /// z = E^T M E z, z being zero outside C. For directions without force: a mix is no multiple of 1 on a uniform
+    /// residual, so that the residual's constant (with a prescribed force, the approach) is chosen such that z has mean zero:
     /// `z = M z - (1, M z)/(1, M 1) M 1`.
     pub fn apply(
         &mut self,
         z: &mut Vec<T>,
-        (area, by_force): (Area<'_>, bool),
+        (area, without_force): (Area<'_>, bool),
         extension: &mut Option<Extension<T>>,
         workspace: &mut Workspace<T>,
     ) {
@@ -78,7 +78,7 @@ impl<T: Real> Preconditioner<T> {
             }
         }
         mix(parts, (z, area), extension, workspace, (right, term));
-        if !by_force {
+        if !without_force {
             return;
         }
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });

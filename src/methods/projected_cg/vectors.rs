@@ -78,6 +78,8 @@ pub struct Iteration<T: Real> {
     pub(super) debts: Vec<(usize, f64)>,
     /// A direction that costs no product.
     pub(super) known: Known<T>,
+    /// By approach: whether p is scaled to the least energy after each step.
+    pub(super) is_scaled: bool,
     /// With limits.
     pub(super) limits: Beyond,
     /// Elements of each row that enter.
@@ -108,6 +110,7 @@ impl<T: Real> Iteration<T> {
             runs: Segments::new(grid, threads)?,
             debts,
             known: Known::default(),
+            is_scaled: false,
             limits: Beyond::default(),
             entering: vec![0; grid.my],
             threads: threads.clone(),
