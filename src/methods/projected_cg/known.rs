@@ -13,6 +13,7 @@
 //! is owed the difference.
 
 use super::scaling::Scaling;
+use super::segments::Sums;
 use super::vectors::Iteration;
 use super::Window;
 use crate::contact::State;
@@ -91,22 +92,23 @@ impl<T: Real> Iteration<T> {
         let Known { d, w, outside, .. } = &mut self.known;
         for values in [&mut *d, &mut *w] {
             reserve(values, state.p.len(), "the change of the last step")?;
-            values.clear();
+            values.resize(state.p.len(), T::zero());
         }
         outside.clear();
-        let (mut sum, mut absolute, mut all) = (0.0, 0.0, 0.0);
-        let rows = state.p.chunks_exact(window.x.len()).zip(state.u.chunks_exact(window.x.len()));
-        for ((p, u), y) in rows.zip(window.y.clone()) {
-            let whole = y * mx + window.x.start..y * mx + window.x.end;
-            d.extend(p.iter().zip(&last.p[whole.clone()]).map(|(now, last)| {
-                let change = now - units.pressure() * last;
-                sum += change;
-                absolute += change.abs();
-                all += now.abs();
-                T::of(change)
-            }));
-            w.extend(u.iter().zip(&last.u[whole]).map(|(now, last)| T::of(now - units.length * last)));
+        let mut sums = Sums::new();
+        let width = window.x.len();
+        let rows = d.chunks_exact_mut(width).zip(w.chunks_exact_mut(width)).zip(window.y.clone()).enumerate();
+        for (row, ((d, w), y)) in rows {
+            let (here, whole) = (row * width..(row + 1) * width, y * mx + window.x.start..y * mx + window.x.end);
+            pulp::Arch::new().dispatch(Change {
+                p: (&state.p[here.clone()], &last.p[whole.clone()], units.pressure()),
+                u: (&state.u[here], &last.u[whole], units.length),
+                d,
+                w,
+                sums: &mut sums,
+            });
         }
+        let [sum, absolute, all] = sums.values();
         if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
             self.known.measure();
         }
@@ -143,25 +145,42 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// p and u move along d to the least energy, if that is worth a pass over u.
-    pub(super) fn step_along_known(&mut self, state: &mut State) {
+    /// z = r = -e on C, 0 outside, after p and u have moved along d to the least energy, if that is worth a pass over u; the relative
+    /// residual.
+    pub(super) fn residual_beside_known(&mut self, state: &mut State) -> f64 {
         if !self.known.is_there() {
-            return;
+            return self.residual(state);
         }
-        let Known { d, w, energy, size, outside } = &self.known;
-        let [rd, rr] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
+        let Known { d, energy, size, .. } = &self.known;
+        let approach = state.approach;
+        let [rr, hh, rd] = self.runs.sum_changing(&mut self.z, |block, z, sums| {
+            z.fill(T::zero());
+            for (run, local) in block.runs() {
                 let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
+                let z = &mut z[local];
                 sums.add(h.len(), |i| {
-                    let e = h[i] - state.approach + u[i];
-                    [-e * d[i].to_double(), e * e]
+                    let distance = h[i] - approach;
+                    let e = distance + u[i];
+                    z[i] = T::of(-e);
+                    [e * e, distance * distance, -e * d[i].to_double()]
                 });
             }
         });
         let gamma = rd / energy;
-        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
-            return;
+        if gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr {
+            self.step_along_known(state, gamma);
+            return self.residual(state);
         }
+        self.limits.residual = rr;
+        if rr == 0.0 {
+            0.0
+        } else {
+            (rr / hh).sqrt()
+        }
+    }
+
+    fn step_along_known(&mut self, state: &mut State, gamma: f64) {
+        let Known { d, w, outside, .. } = &self.known;
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (run, local) in block.runs() {
                 p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
@@ -177,6 +196,34 @@ impl<T: Real> Iteration<T> {
             } else {
                 self.debts.push((i, -gamma * d));
             }
+        }
+    }
+}
+
+/// A row of d and w, from what there is now and what there was before with the factor of its units; compiled for the vectors of this
+/// machine, on which no bit depends.
+struct Change<'a, T> {
+    p: (&'a [f64], &'a [f64], f64),
+    u: (&'a [f64], &'a [f64], f64),
+    d: &'a mut [T],
+    w: &'a mut [T],
+    /// Of d, |d| and |p|.
+    sums: &'a mut Sums<3>,
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Change { p: (p, last_p, pressure), u: (u, last_u, length), d, w, sums } = self;
+        sums.add(p.len(), |i| {
+            let change = p[i] - pressure * last_p[i];
+            d[i] = T::of(change);
+            [change, change.abs(), p[i].abs()]
+        });
+        for ((w, now), last) in w.iter_mut().zip(u).zip(last_u) {
+            *w = T::of(now - length * last);
         }
     }
 }
