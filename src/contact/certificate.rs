@@ -284,9 +284,8 @@ impl Row<'_> {
             (self.low[0], self.high[0]) = (self.low[0].min(p), self.high[0].max(p));
         }
         for p in lanes {
-            for lane in 0..LANES {
-                self.low[lane] = if p[lane] < self.low[lane] { p[lane] } else { self.low[lane] };
-                self.high[lane] = if p[lane] > self.high[lane] { p[lane] } else { self.high[lane] };
+            for ((low, high), &p) in self.low.iter_mut().zip(&mut self.high).zip(p) {
+                (*low, *high) = (if p < *low { p } else { *low }, if p > *high { p } else { *high });
             }
         }
         for (terms, sums) in self.terms.iter_mut().zip(&mut self.sums) {

@@ -121,7 +121,7 @@ impl<T: Real> Iteration<T> {
         let (mut least, mut since_least) = (f64::INFINITY, 0);
         loop {
             // r = -e on C
-            let residual = self.residual_beside_known(state);
+            let residual = self.residual(state);
             if let Some(cycle) = &mut cycle {
                 cycle.residual = residual;
                 if !after_cycle(cycle) {
@@ -174,6 +174,7 @@ impl<T: Real> Iteration<T> {
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
         let products = products + self.restrict_known(state);
+        self.step_along_known(state);
         let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner the first forecast is missing.
         Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }
@@ -231,6 +232,7 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
+        self.step_along_known(state);
         Some(Cycle {
             changes: left + entered,
             update: alpha.abs() * (step.tt / count).sqrt(),

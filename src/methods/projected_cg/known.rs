@@ -145,42 +145,25 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = r = -e on C, 0 outside, after p and u have moved along d to the least energy, if that is worth a pass over u; the relative
-    /// residual.
-    pub(super) fn residual_beside_known(&mut self, state: &mut State) -> f64 {
+    /// p and u move along d to the least energy, if that is worth a pass over u.
+    pub(super) fn step_along_known(&mut self, state: &mut State) {
         if !self.known.is_there() {
-            return self.residual(state);
+            return;
         }
-        let Known { d, energy, size, .. } = &self.known;
-        let approach = state.approach;
-        let [rr, hh, rd] = self.runs.sum_changing(&mut self.z, |block, z, sums| {
-            z.fill(T::zero());
-            for (run, local) in block.runs() {
+        let Known { d, w, energy, size, outside } = &self.known;
+        let [rd, rr] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
                 let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
-                let z = &mut z[local];
                 sums.add(h.len(), |i| {
-                    let distance = h[i] - approach;
-                    let e = distance + u[i];
-                    z[i] = T::of(-e);
-                    [e * e, distance * distance, -e * d[i].to_double()]
+                    let e = h[i] - state.approach + u[i];
+                    [-e * d[i].to_double(), e * e]
                 });
             }
         });
         let gamma = rd / energy;
-        if gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr {
-            self.step_along_known(state, gamma);
-            return self.residual(state);
+        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+            return;
         }
-        self.limits.residual = rr;
-        if rr == 0.0 {
-            0.0
-        } else {
-            (rr / hh).sqrt()
-        }
-    }
-
-    fn step_along_known(&mut self, state: &mut State, gamma: f64) {
-        let Known { d, w, outside, .. } = &self.known;
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
             for (run, local) in block.runs() {
                 p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
