@@ -5,10 +5,10 @@ use std::process::Command;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
 use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Problem, Solver};
+use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Problem, Report, Solver};
 
 use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
-use crate::measure::{cold, in_turns, median, seconds, shown, size, Product};
+use crate::measure::{by_processor, cold, in_turns, median, seconds, shown, size, Product};
 use crate::summary;
 
 /// What the small grids may cost on top of their products.
@@ -343,19 +343,22 @@ pub fn memory(cases: &[(&str, usize, f64)]) {
 /// The argument that makes a process do nothing but [`solve_again`], for a profiler.
 pub const SOLVE_AGAIN: &str = "--solve-again";
 
-/// Cold solves, or time steps, for so many seconds.
-pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
+/// Cold solves, or time steps up and down again, for so many seconds and until all are done.
+pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64) {
+    by_processor(true);
     let case = by_name(name, m);
     let began = std::time::Instant::now();
     let next = Options { initial_guess: InitialGuess::Previous, ..options(1) };
     let approach = cold(&case.scene(), &options(1)).1.measures.approach;
     let mut solver = Solver::new(&case.scene(), &next).expect("a solver");
-    let (mut solves, mut iterations, mut work) = (0, 0, 0.0);
-    while began.elapsed().as_secs_f64() < seconds {
+    let (mut solves, mut iterations, mut work, mut took) = (0, 0, 0.0, 0.0);
+    while began.elapsed().as_secs_f64() < at_least || steps && solves % (2 * CLIMB) != 0 {
         if steps {
             let climbed = CLIMB - (solves % (2 * CLIMB) - CLIMB).abs();
             let scene = case.scene_with(Load::Approach(approach * 1.01f64.powi(climbed)));
-            let (_, report) = solver.solve(&scene, &next, None, None).expect("a solvable scene");
+            let mut solve = || solver.solve(&scene, &next, None, None).expect("a solvable scene").1;
+            let mut report = Report::default();
+            took += seconds(|| report = solve());
             iterations += report.count.active_set_steps;
             work += report.count.work_units;
         } else {
@@ -366,9 +369,10 @@ pub fn solve_again(name: &str, m: usize, steps: bool, seconds: f64) {
     if steps {
         let each = f64::from(solves);
         println!(
-            "{solves} steps, each {:.2} iterations, {:.2} products by elements",
+            "{solves} steps, each {:.2} iterations, {:.2} products by elements, {} of the processor",
             iterations as f64 / each,
-            work / each
+            work / each,
+            shown(took / each)
         );
     }
 }

@@ -198,18 +198,30 @@ impl Drop for State {
 
 /// The least of all distances; infinite if there is no surface.
 pub fn lowest(h: &[f64]) -> f64 {
-    // Several at a time: that the compiler can vectorise.
-    const LANES: usize = 8;
-    let lesser = |a: f64, b: f64| if a < b { a } else { b };
-    let mut least = [f64::INFINITY; LANES];
-    let lanes = h.chunks_exact(LANES);
-    let rest = lanes.remainder();
-    for values in lanes {
-        for (least, value) in least.iter_mut().zip(values) {
-            *least = lesser(*value, *least);
+    pulp::Arch::new().dispatch(Lowest(h))
+}
+
+/// Compiled for the vectors of this machine, on which no bit depends.
+struct Lowest<'a>(&'a [f64]);
+
+impl pulp::NullaryFnOnce for Lowest<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        // Several at a time: that the compiler can vectorise.
+        const LANES: usize = 8;
+        let lesser = |a: f64, b: f64| if a < b { a } else { b };
+        let mut least = [f64::INFINITY; LANES];
+        let lanes = self.0.chunks_exact(LANES);
+        let rest = lanes.remainder();
+        for values in lanes {
+            for (least, value) in least.iter_mut().zip(values) {
+                *least = lesser(*value, *least);
+            }
         }
+        rest.iter().chain(&least).fold(f64::INFINITY, |least, value| lesser(*value, least))
     }
-    rest.iter().chain(&least).fold(f64::INFINITY, |least, value| lesser(*value, least))
 }
 
 /// What a state had found, but for u: to go back to it.

@@ -43,11 +43,13 @@ pub fn iterate<S: AdmissibleSet>(
         let left = if habits.exchanged_by_loop { truncate(task.state, set) } else { 0 };
         let mut survey = certify(task, &change, left);
         let violation = survey.violation(set);
-        let mut entered = 0;
+        let (mut entered, mut last) = (0, survey);
         if habits.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
             entered = admit(task.state, set);
-            let before = survey.violation;
-            survey = Survey { violation: before, ..task.survey() };
+            if entered > 0 {
+                last = task.survey();
+            }
+            survey = Survey { violation: survey.violation, ..last };
         }
         let changes = change.changes + (left + entered) as u64;
         if habits.step_is_cycle {
@@ -60,7 +62,7 @@ pub fn iterate<S: AdmissibleSet>(
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
-                task.monitor.survey = Some(survey).filter(|_| entered == 0);
+                task.monitor.survey = Some(last);
                 return Ok(Outcome::Converged);
             }
         }

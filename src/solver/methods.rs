@@ -6,7 +6,7 @@ use super::estimates;
 use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
-use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
 use crate::methods::descent::Descent;
 use crate::methods::direct::Direct;
@@ -58,11 +58,12 @@ impl Methods {
         })
     }
 
-    /// Solves from what the state holds, as `from` says. An `error_ratio` of the options may raise the tolerance of the goal.
+    /// Solves from what the state holds, as `from` says, and the survey of it. An `error_ratio` of the options may raise the tolerance of
+    /// the goal.
     pub fn solve<S: AdmissibleSet>(
         &mut self,
         task: &mut Task<'_, '_, S>,
-        from: Start,
+        (from, survey): (Start, Option<Survey>),
         stages: &[Stage],
         error_ratio: f64,
     ) -> Result<Outcome> {
@@ -74,7 +75,7 @@ impl Methods {
             if i > 0 {
                 self.hand_over(stage, task);
             } else {
-                match self.take_over(stage, task, from)? {
+                match self.take_over(stage, task, (from, survey))? {
                     Some(true) => self.start(stage, task, from, error_ratio)?,
                     Some(false) => {}
                     None => return Ok(Outcome::Converged),
@@ -103,14 +104,12 @@ impl Methods {
         &mut self,
         stage: Stage,
         task: &mut Task<'_, '_, S>,
-        from: Start,
+        (from, survey): (Start, Option<Survey>),
     ) -> Result<Option<bool>> {
-        if from == Start::Nothing {
-            return Ok(Some(true));
-        }
-        let survey = task.survey();
+        let Some(survey) = survey else { return Ok(Some(true)) };
         let (state, set) = (&mut *task.state, task.set);
         if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries() {
+            task.monitor.survey = Some(survey);
             return Ok(None);
         }
         let violation = survey.violation(set);

@@ -93,12 +93,12 @@ impl Solver {
         if !solved {
             methods.projected_cg.forget_solutions();
         }
-        let from = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
+        let (from, survey) = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
         let mut task = Task { problem, state, set, goal: options.goal(), monitor };
         let stop = if take_over::is_without_contact(task.state, S::FIXED) {
             Outcome::Converged
         } else {
-            methods.solve(&mut task, from, stages, options.error_ratio)?
+            methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };
         let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
         *has_result = true;

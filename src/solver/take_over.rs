@@ -1,7 +1,7 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
 use super::{Guess, InitialGuess, Options};
-use crate::contact::{lowest, norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{lowest, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::Monitor;
@@ -11,7 +11,7 @@ use crate::scene::{Load, Scene};
 const WORSE_THAN_NONE: f64 = 1e3;
 
 /// Takes over the undeformed distance, the load and the start: then u is A p, or there is nothing. `solved`: whether `state` holds the
-/// solution before.
+/// solution before. Returns a survey, too, where there is something.
 pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
@@ -19,7 +19,8 @@ pub fn take_over<S: AdmissibleSet>(
     scene: &Scene<'_>,
     (options, guess, solved): (&Options, Option<Guess<'_>>, bool),
     monitor: &mut Monitor<'_>,
-) -> Result<Start> {
+) -> Result<(Start, Option<Survey>)> {
+    let nothing = (Start::Nothing, None);
     let from = take_pressures(state, options, guess, solved);
     let (given, mx) = (scene.undeformed_distance, state.grid.mx);
     problem.threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
@@ -37,29 +38,30 @@ pub fn take_over<S: AdmissibleSet>(
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
-        return Ok(from);
+        return Ok(nothing);
     }
     clean(state, set);
     // Pressures of zero are no guess.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
         state.forget();
-        return Ok(Start::Nothing);
+        return Ok(nothing);
     }
     balance(problem, state, set);
     monitor.count_products(problem.take_products(), 1.0);
     // A guess that is far worse than none costs time, or cannot be computed with.
-    let (residual, distance) = (residual_norm(state), norm_of_distance(state));
+    let survey = Survey::by(state, &problem.threads);
+    let Survey { residual, distance, .. } = survey;
     if residual.is_finite() && residual <= WORSE_THAN_NONE * distance || residual == 0.0 {
-        return Ok(from);
+        return Ok((from, Some(survey)));
     }
     if !S::FIXED {
         state.forget();
-        return Ok(Start::Nothing);
+        return Ok(nothing);
     }
     state.p.fill(0.0);
     problem.refresh(state, set);
     monitor.count_products(problem.take_products(), 1.0);
-    Ok(from)
+    Ok((from, Some(Survey::by(state, &problem.threads))))
 }
 
 /// The pressures and the contact area to start from.

@@ -13,6 +13,7 @@
 //! is owed the difference.
 
 use super::scaling::Scaling;
+use super::segments::Sums;
 use super::vectors::Iteration;
 use super::Window;
 use crate::contact::State;
@@ -91,22 +92,23 @@ impl<T: Real> Iteration<T> {
         let Known { d, w, outside, .. } = &mut self.known;
         for values in [&mut *d, &mut *w] {
             reserve(values, state.p.len(), "the change of the last step")?;
-            values.clear();
+            values.resize(state.p.len(), T::zero());
         }
         outside.clear();
-        let (mut sum, mut absolute, mut all) = (0.0, 0.0, 0.0);
-        let rows = state.p.chunks_exact(window.x.len()).zip(state.u.chunks_exact(window.x.len()));
-        for ((p, u), y) in rows.zip(window.y.clone()) {
-            let whole = y * mx + window.x.start..y * mx + window.x.end;
-            d.extend(p.iter().zip(&last.p[whole.clone()]).map(|(now, last)| {
-                let change = now - units.pressure() * last;
-                sum += change;
-                absolute += change.abs();
-                all += now.abs();
-                T::of(change)
-            }));
-            w.extend(u.iter().zip(&last.u[whole]).map(|(now, last)| T::of(now - units.length * last)));
+        let mut sums = Sums::new();
+        let width = window.x.len();
+        let rows = d.chunks_exact_mut(width).zip(w.chunks_exact_mut(width)).zip(window.y.clone()).enumerate();
+        for (row, ((d, w), y)) in rows {
+            let (here, whole) = (row * width..(row + 1) * width, y * mx + window.x.start..y * mx + window.x.end);
+            pulp::Arch::new().dispatch(Change {
+                p: (&state.p[here.clone()], &last.p[whole.clone()], units.pressure()),
+                u: (&state.u[here], &last.u[whole], units.length),
+                d,
+                w,
+                sums: &mut sums,
+            });
         }
+        let [sum, absolute, all] = sums.values();
         if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
             self.known.measure();
         }
@@ -177,6 +179,34 @@ impl<T: Real> Iteration<T> {
             } else {
                 self.debts.push((i, -gamma * d));
             }
+        }
+    }
+}
+
+/// A row of d and w, from what there is now and what there was before with the factor of its units; compiled for the vectors of this
+/// machine, on which no bit depends.
+struct Change<'a, T> {
+    p: (&'a [f64], &'a [f64], f64),
+    u: (&'a [f64], &'a [f64], f64),
+    d: &'a mut [T],
+    w: &'a mut [T],
+    /// Of d, |d| and |p|.
+    sums: &'a mut Sums<3>,
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Change { p: (p, last_p, pressure), u: (u, last_u, length), d, w, sums } = self;
+        sums.add(p.len(), |i| {
+            let change = p[i] - pressure * last_p[i];
+            d[i] = T::of(change);
+            [change, change.abs(), p[i].abs()]
+        });
+        for ((w, now), last) in w.iter_mut().zip(u).zip(last_u) {
+            *w = T::of(now - length * last);
         }
     }
 }

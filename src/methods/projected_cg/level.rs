@@ -189,12 +189,17 @@ impl Level {
         }
     }
 
-    fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
+    /// The window that an iteration from `state` works on.
+    pub fn window(&self, state: &State) -> Window {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
-        let window = match self.influence.depends_on_place() {
+        match self.influence.depends_on_place() {
             false => Window::around(state, current),
             true => Window::full(&self.grid),
-        };
+        }
+    }
+
+    fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
+        let window = self.window(state);
         self.choose_anew = false;
         let grid = window.grid(&self.grid);
         let units = match self.precision {

@@ -5,8 +5,12 @@
 //! `(p, A p)/2 + (p, h - approach)` (Fischer 1998 projects on earlier solutions so); as all u are known, they cost no product.
 //! With a prescribed force s_1 follows from the force, and d carries none.
 
+use std::mem::{swap, take};
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::known::Last;
 use super::segments::Sums;
+use super::Window;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
@@ -42,10 +46,15 @@ impl Predictor {
         Last { p: &self.p, u: &self.u }
     }
 
-    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then. p may be negative: the
-    /// iteration truncates it, and owes u the change.
-    pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<Freshness> {
-        let is_of_others = std::mem::take(&mut self.is_of_others);
+    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then, in the window that `window`
+    /// chooses for it; elsewhere u is not known. p may be negative: the iteration truncates it, and owes u the change.
+    pub fn predict(
+        &mut self,
+        state: &mut State,
+        window: impl FnOnce(&State) -> Window,
+        threads: &Threads,
+    ) -> Result<Freshness> {
+        let is_of_others = take(&mut self.is_of_others);
         let n = state.p.len();
         if self.p.is_empty() {
             // A change of nothing.
@@ -54,49 +63,44 @@ impl Predictor {
             self.u.copy_from_slice(&state.u);
         }
         let (now, before) = self.shares(state);
-        let mx = state.grid.mx;
-        let move_on = |values: &mut [f64], last: &mut [f64]| {
-            for (value, last) in values.iter_mut().zip(last) {
-                (*value, *last) = (now * *value - before * *last, *value);
+        // The last solution is kept where the one before it was, and the state moves on from that.
+        swap(&mut self.p, &mut state.p);
+        swap(&mut self.u, &mut state.u);
+        let (last_p, last_u, mx) = (&self.p[..], &self.u[..], state.grid.mx);
+        let State { h, p, contact, .. } = state;
+        let (threads, h, presses_on_nothing) = (threads.for_a_pass(n), &h[..], AtomicBool::new(false));
+        threads.for_each_row_pair((p, mx), (contact, mx), |y, p, contact| {
+            let row = y * mx..(y + 1) * mx;
+            let (last, h) = (&last_p[row.clone()], &h[row]);
+            if presses(p) | presses(last) {
+                p.iter_mut().zip(last).for_each(|(p, last)| *p = now * last - before * *p);
+                if touch(p, h, contact) {
+                    presses_on_nothing.store(true, Ordering::Relaxed);
+                }
+            } else {
+                contact.fill(false);
             }
-        };
-        let threads = threads.for_a_pass(n);
-        threads.for_each_row_pair((&mut state.p, mx), (&mut self.p, mx), |_, p, last| move_on(p, last));
-        threads.for_each_row_pair((&mut state.u, mx), (&mut self.u, mx), |_, u, last| move_on(u, last));
-        let mut displacement = if is_of_others && before != 0.0 { Freshness::Near } else { Freshness::Exact };
-        for ((p, inside), h) in state.p.iter_mut().zip(&mut state.contact).zip(&state.h) {
-            *inside = *p != 0.0;
-            if *inside && h.is_infinite() {
-                (*p, *inside) = (0.0, false);
-                displacement = Freshness::Stale;
-            }
-        }
-        Ok(displacement)
+        });
+        let Window { x, y: rows } = window(state);
+        let part = rows.start * mx..rows.end * mx;
+        threads.for_each_plain_row(&mut state.u[part.clone()], mx, |y, u| {
+            let last = &last_u[part.start + y * mx..][x.clone()];
+            u[x.clone()].iter_mut().zip(last).for_each(|(u, last)| *u = now * last - before * *u);
+        });
+        Ok(match presses_on_nothing.into_inner() {
+            true => Freshness::Stale,
+            false if is_of_others && before != 0.0 => Freshness::Near,
+            false => Freshness::Exact,
+        })
     }
 
     /// a and b of the start `a p_1 - b p_0`.
     fn shares(&self, state: &State) -> (f64, f64) {
         let by_force = matches!(state.load, Load::Force(_));
-        // (p, u), (p, e), (d, u), (d, A d), (d, e); without branches but for rows: h may be infinite where nothing presses.
-        let mut sums = Sums::<5>::new();
-        let rows = self.p.chunks_exact(state.grid.mx).zip(self.u.chunks_exact(state.grid.mx)).enumerate();
-        for (y, (p_0, u_0)) in rows {
-            let row = y * state.grid.mx..(y + 1) * state.grid.mx;
-            let (p, u, h) = (&state.p[row.clone()], &state.u[row.clone()], &state.h[row]);
-            if p.iter().zip(p_0).fold(true, |none, (p, p_0)| none & (*p == 0.0) & (*p_0 == 0.0)) {
-                continue;
-            }
-            sums.add(p.len(), |i| {
-                let (d, v) = (p[i] - p_0[i], u[i] - u_0[i]);
-                let e = if (p[i] != 0.0) | (d != 0.0) { h[i] - state.approach + u[i] } else { 0.0 };
-                [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e]
-            });
-        }
-        let [pu, pe, du, dv, de] = sums.values();
+        let [pu, pe, du, dv, de, sum, sum_before] = pulp::Arch::new().dispatch(Products { state, before: self.last() });
         let (mut scale, mut share) = (1.0 - pe / pu, du / pu);
         if by_force {
-            let sum = |p: &[f64]| p.iter().sum::<f64>();
-            (scale, share) = (1.0, 1.0 - sum(&self.p) / sum(&state.p));
+            (scale, share) = (1.0, 1.0 - sum_before / sum);
         }
         if !(scale.is_finite() && scale > 0.0) {
             scale = 1.0;
@@ -110,6 +114,60 @@ impl Predictor {
         } else {
             (scale, 0.0)
         }
+    }
+}
+
+/// Whether one of some pressures is not 0.
+#[inline(always)]
+fn presses(p: &[f64]) -> bool {
+    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
+}
+
+/// C is where p is not 0; what presses where there is no surface does not any more. Returns whether anything did.
+#[inline(always)]
+fn touch(p: &mut [f64], h: &[f64], contact: &mut [bool]) -> bool {
+    let mut none = false;
+    for ((p, h), inside) in p.iter().zip(h).zip(&mut *contact) {
+        *inside = *p != 0.0;
+        none |= *inside & h.is_infinite();
+    }
+    if none {
+        for ((p, _), inside) in p.iter_mut().zip(h).zip(contact).filter(|((_, h), _)| h.is_infinite()) {
+            (*p, *inside) = (0.0, false);
+        }
+    }
+    none
+}
+
+/// (p, u), (p, e), (d, u), (d, A d), (d, e), and the sums of p_1 and p_0; compiled for the vectors of this machine, on which no bit
+/// depends.
+struct Products<'a> {
+    state: &'a State,
+    before: Last<'a>,
+}
+
+impl pulp::NullaryFnOnce for Products<'_> {
+    type Output = [f64; 7];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 7] {
+        let Products { state, before } = self;
+        let mut sums = Sums::new();
+        for start in (0..state.p.len()).step_by(state.grid.mx) {
+            let row = start..start + state.grid.mx;
+            let (p, u, h) = (&state.p[row.clone()], &state.u[row.clone()], &state.h[row.clone()]);
+            let (p_0, u_0) = (&before.p[row.clone()], &before.u[row]);
+            if !(presses(p) | presses(p_0)) {
+                continue;
+            }
+            // Without branches: h may be infinite where nothing presses.
+            sums.add(p.len(), |i| {
+                let (d, v) = (p[i] - p_0[i], u[i] - u_0[i]);
+                let e = if (p[i] != 0.0) | (d != 0.0) { h[i] - state.approach + u[i] } else { 0.0 };
+                [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e, p[i], p_0[i]]
+            });
+        }
+        sums.values()
     }
 }
 

@@ -116,7 +116,8 @@ impl ProjectedCg {
 
     /// A step in time: moves `state` on from the last solution.
     pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<()> {
-        state.u_is = self.predictor.predict(state, threads)?;
+        let finest = &self.finest;
+        state.u_is = self.predictor.predict(state, |state| finest.window(state), threads)?;
         self.predicted = true;
         Ok(())
     }
