@@ -22,12 +22,7 @@
 //! punch on C, to which M does not come near in few products; p is nearer to its pressure. Measured, with directions that may carry force, and
 //! now (products to 1e-6, by approach): ellipse 16 11.5 and 8, 64 11 and 8, 512 4.9 and 4.3; rough surface 512 19 and 12.
 //!
-//! *Truncation without a product.* After step 4.1 u lacks `A d`, d being what the truncated elements gained. A product of its own
-//! would repair that, and costs as much as half an iteration. Two things avoid it. All eigenvalues of M A on C are at least 1 and few
-//! exceed 4, so alpha is known beforehand to within some ten percent: elements that the forecast step would truncate are held back
-//! before the product, and d is only what the forecast was wrong by. And where d is small against the step, it is owed: the next
-//! direction is `t + d/alpha'`, so that its product contains `A d`, and what `alpha /= alpha'` leaves, `d (1 - alpha/alpha')`, is owed
-//! on. Debts shrink by that factor at each iteration; what is left of them at the end the fresh product of the certificate settles.
+//! *Truncation without a product:* module `debts`.
 //!
 //! *After a large truncation.* What is truncated adds to the pressures; from pressures that are far too large (a coarse grid's h is a
 //! mean, which sees full contact of white noise) all of C may go and come back in turn, for ever. Scaling stops that: measured on 66 scenes
@@ -98,7 +93,7 @@ impl<T: Real> Iteration<T> {
             self.limits.forget();
             self.find_contact(state);
             let mut update = Update::default();
-            self.least_energy(state, set, &mut update);
+            self.least_energy(state, set, &mut update, None);
             if S::LIMITED && state.has_limited() {
                 state.fit_approach();
             } else {
@@ -178,7 +173,7 @@ impl<T: Real> Iteration<T> {
             self.settle();
             update.settled = true;
         }
-        self.least_energy(state, set, &mut update);
+        self.least_energy(state, set, &mut update, None);
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
@@ -201,7 +196,7 @@ impl<T: Real> Iteration<T> {
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-        let (step, count) = (self.step(state), self.runs.count() as f64);
+        let (mut step, count) = (self.step(state), self.runs.count() as f64);
         if !(step.tq > 0.0 && step.rt.is_finite()) {
             return None;
         }
@@ -211,7 +206,8 @@ impl<T: Real> Iteration<T> {
         if near {
             self.remember(state);
         }
-        self.pay(state, forecast, alpha);
+        self.pay(state, forecast, alpha, &mut step);
+        let paid = self.debts.len();
 
         // p = p + alpha t, 4.1
         let left = if S::LIMITED && !near {
@@ -224,6 +220,7 @@ impl<T: Real> Iteration<T> {
 
         // u = u + alpha q, 4.2
         let mut update = Update { alpha, ..Update::default() };
+        let sums = step.energy.map(|energy| self.after_truncation(state, energy.after(alpha), alpha, paid));
         let (limited, owed) = (S::LIMITED && state.has_limited(), self.owed());
         if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
             self.settle();
@@ -236,7 +233,8 @@ impl<T: Real> Iteration<T> {
         if let Load::Force(_) = state.load {
             update.factor = self.carry_force::<S>(state);
         }
-        self.least_energy(state, set, &mut update);
+        let sums = sums.filter(|_| !update.settled);
+        self.least_energy(state, set, &mut update, sums);
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
@@ -260,37 +258,6 @@ impl<T: Real> Iteration<T> {
             return search.forecast.unwrap_or(1.0);
         }
         alpha
-    }
-
-    /// The direction has what is owed, too: t + d/alpha'.
-    fn owe(&mut self, forecast: f64) {
-        for &(i, d) in &self.debts {
-            self.t[i] += T::of(d / forecast);
-        }
-    }
-
-    /// What alpha leaves of the debts, which are no part of the direction.
-    fn pay(&mut self, state: &State, forecast: f64, alpha: f64) {
-        for debt in &mut self.debts {
-            let owed = T::of(debt.1 / forecast);
-            self.t[debt.0] = if state.contact[debt.0] { self.t[debt.0] - owed } else { T::zero() };
-            debt.1 *= 1.0 - alpha / forecast;
-        }
-        self.debts.retain(|debt| debt.1 != 0.0);
-    }
-
-    /// The sum of |d|.
-    fn owed(&self) -> f64 {
-        self.debts.iter().map(|debt| debt.1.abs()).sum()
-    }
-
-    /// z = A d: a product pays all debts.
-    fn settle(&mut self) {
-        self.z.fill(T::zero());
-        for (i, d) in self.debts.drain(..) {
-            self.z[i] += T::of(d);
-        }
-        self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 }
 

@@ -3,6 +3,8 @@
 
 mod boxes;
 mod coarse_grids;
+mod debts;
+mod energy;
 mod exchange;
 mod extension;
 mod inner;

@@ -1,8 +1,9 @@
 //! The passes over the contact area, each over its segments.
 
+use super::energy::Energy;
 use super::extension::Area;
 use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
@@ -28,6 +29,7 @@ pub(super) struct Step {
     pub(super) tt: f64,
     pub(super) t1: f64,
     pub(super) pp: f64,
+    pub(super) energy: Option<Energy>,
 }
 
 impl<T: Real> Iteration<T> {
@@ -93,100 +95,73 @@ impl<T: Real> Iteration<T> {
     /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
         let without_force = matches!(state.load, Load::Force(_)) || self.known.is_there() || self.is_scaled;
-        let (mean, beta) = self.conjugate(without_force, tq);
+        let missing = self.limits.missing / forecast.unwrap_or(1.0);
+        let (mean, beta) = self.conjugate(without_force.then_some(missing), tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
         let held = |p: f64, t: T| match forecast {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
             _ => t,
         };
-        let [sum] = self.runs.sum_changing(&mut self.t, |block, t, sums| {
+        let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
             for (run, local) in block.runs() {
-                let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
-                sums.add(z.len(), |i| {
-                    let direction = z[i] - mean + beta * t[i];
-                    t[i] = if without_force { direction } else { held(p[i], direction) };
-                    [direction.to_double()]
-                });
+                let (p, z) = (&state.p[run.clone()], &z[run]);
+                for ((t, z), p) in t[local].iter_mut().zip(z).zip(p) {
+                    *t = held(*p, *z - mean + beta * *t);
+                }
             }
         });
-        if without_force {
-            let missing = self.limits.missing / forecast.unwrap_or(1.0);
-            let mean = T::of((sum - missing) / self.runs.count() as f64);
-            let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
-                for (run, local) in block.runs() {
-                    for (t, p) in t[local].iter_mut().zip(&state.p[run]) {
-                        *t = held(*p, *t - mean);
-                    }
-                }
-            });
-        }
     }
 
-    /// The mean of z over C for directions without force, else 0, and beta.
-    fn conjugate(&mut self, without_force: bool, tq: f64) -> (f64, f64) {
-        if !without_force && tq <= 0.0 {
+    /// The mean over C that is taken from z + beta t, and beta. Directions without force have the sum `missing`; others may have any.
+    fn conjugate(&mut self, missing: Option<f64>, tq: f64) -> (f64, f64) {
+        if missing.is_none() && tq <= 0.0 {
             return (0.0, 0.0);
         }
-        let (z, q) = (&self.z, &self.q);
-        let [z1, q1, zq] = self.runs.sum(|block, sums| {
+        let (t, z, q) = (&self.t, &self.z, &self.q);
+        let [t1, z1, q1, zq] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
-                let (z, q) = (&z[run.clone()], &q[run]);
+                let (t, z, q) = (&t[run.clone()], &z[run.clone()], &q[run]);
                 sums.add(z.len(), |i| {
                     let (z, q) = (z[i].to_double(), q[i].to_double());
-                    [z, q, z * q]
+                    [t[i].to_double(), z, q, z * q]
                 });
             }
         });
-        let mean = if without_force { z1 / self.runs.count() as f64 } else { 0.0 };
-        (mean, if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 })
+        let count = self.runs.count() as f64;
+        let mean = if missing.is_some() { z1 / count } else { 0.0 };
+        let beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
+        (missing.map_or(0.0, |missing| (z1 + beta * t1 - missing) / count), beta)
     }
 
-    /// The sums over C that the step length needs.
+    /// The sums over C that the step length needs, and those of the energy where p is scaled.
     pub(super) fn step(&mut self, state: &State) -> Step {
-        let (t, q) = (&self.t, &self.q);
-        let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
+        let (t, q, approach) = (&self.t, &self.q, state.approach);
+        if !self.is_scaled {
+            let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
+                for (run, _) in block.runs() {
+                    let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                    let (t, q) = (&t[run.clone()], &q[run]);
+                    sums.add(h.len(), |i| {
+                        let (t, e) = (t[i].to_double(), h[i] - approach + u[i]);
+                        [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                    });
+                }
+            });
+            return Step { rt, tq, tt, t1, pp, energy: None };
+        }
+        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                 let (t, q) = (&t[run.clone()], &q[run]);
                 sums.add(h.len(), |i| {
-                    let (t, e) = (t[i].to_double(), h[i] - state.approach + u[i]);
-                    [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                    let (p, t, q, depth) = (p[i], t[i].to_double(), q[i].to_double(), approach - h[i]);
+                    let r = depth - u[i];
+                    [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u[i], p * q]
                 });
             }
         });
-        Step { rt, tq, tt, t1, pp }
-    }
-
-    /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
-    /// the factor. It costs no product. Where p moves along a known change instead, or pressures have reached a limit, only a truncation that a
-    /// product has paid is followed by it.
-    pub(super) fn least_energy<S: AdmissibleSet>(&mut self, state: &mut State, _: S, update: &mut Update) {
-        self.is_scaled = false;
-        let limited = S::LIMITED && state.reached_limit;
-        let scales = !self.known.is_there() && !limited;
-        let may_scale = scales || update.settled && !(limited && state.has_limited());
-        if matches!(state.load, Load::Force(_)) || S::FIXED || !may_scale {
-            return;
-        }
-        self.runs.find(&state.contact);
-        let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
-        let [work, energy] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (q, z) = (&q[run.clone()], &z[run]);
-                sums.add(h.len(), |i| {
-                    let repair = if settled { z[i].to_double() } else { 0.0 };
-                    let u = u[i] + alpha * q[i].to_double() + repair;
-                    [p[i] * (state.approach - h[i]), p[i] * u]
-                });
-            }
-        });
-        let factor = work / energy;
-        if factor.is_finite() && factor > 0.0 {
-            self.is_scaled = scales;
-            update.factor = factor;
-            self.scale(state, factor);
-        }
+        let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
+        Step { rt, tq, tt, t1, pp, energy: Some(energy) }
     }
 
     /// p = factor p on C, and the debts likewise.

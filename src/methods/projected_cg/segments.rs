@@ -16,7 +16,7 @@ use crate::threads::Threads;
 const BLOCKS: usize = 64;
 const LEAST: usize = 512;
 /// Sums at most that a pass takes.
-const MOST_SUMS: usize = 5;
+const MOST_SUMS: usize = 9;
 /// Parts of each sum of a block: an addition does not wait for the one before.
 const LANES: usize = 4;
 

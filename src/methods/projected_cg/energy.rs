@@ -1,0 +1,109 @@
+//! By approach: p scaled to the least energy.
+//!
+//! ```text
+//! p = c p, u = c u,  c = (p, approach - h)/(p, u)
+//! ```
+//!
+//! The sums after a step are known before it, from sums over C that the step length needs anyway, but for the few elements that are truncated:
+//!
+//! ```text
+//! (p + alpha t, approach - h) = (p, approach - h) + alpha (t, approach - h)
+//! (p + alpha t, u + alpha q)  = (p, u) + alpha ((p, q) + (t, u)) + alpha^2 (t, q)
+//! ```
+
+use super::passes::Update;
+use super::vectors::Iteration;
+use crate::contact::{AdmissibleSet, State};
+use crate::operator::fft::Real;
+use crate::scene::Load;
+
+/// Sums over C for the energy of p + alpha t: (p, d), (t, d), d = approach - h, (p, u), (p, q) + (t, u), (t, q).
+#[derive(Clone, Copy)]
+pub(super) struct Energy {
+    pub(super) pd: f64,
+    pub(super) td: f64,
+    pub(super) pu: f64,
+    pub(super) pq_tu: f64,
+    pub(super) tq: f64,
+}
+
+impl Energy {
+    /// What is owed, t on an element of C, is no part of the step.
+    pub(super) fn leave_out(&mut self, owed: f64, (depth, u, q): (f64, f64, f64)) {
+        self.td -= owed * depth;
+        self.pq_tu -= owed * u;
+        self.tq -= owed * q;
+    }
+
+    /// `(p, d)` and `(p, u)` after a step of length alpha.
+    pub(super) fn after(&self, alpha: f64) -> (f64, f64) {
+        (self.pd + alpha * self.td, self.pu + alpha * (self.pq_tu + alpha * self.tq))
+    }
+}
+
+impl<T: Real> Iteration<T> {
+    /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
+    /// the factor. It costs no product. Where p moves along a known change instead, or pressures have reached a limit, only a truncation that a
+    /// product has paid is followed by it. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
+    pub(super) fn least_energy<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        _: S,
+        update: &mut Update,
+        sums: Option<(f64, f64)>,
+    ) {
+        self.is_scaled = false;
+        let limited = S::LIMITED && state.reached_limit;
+        let scales = !self.known.is_there() && !limited;
+        let may_scale = scales || update.settled && !(limited && state.has_limited());
+        if matches!(state.load, Load::Force(_)) || S::FIXED || !may_scale {
+            return;
+        }
+        self.runs.find(&state.contact);
+        debug_assert!(sums.is_none_or(|sums| near(sums, self.work_and_energy(state, update))), "the sums after a step");
+        let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
+        let factor = work / energy;
+        if factor.is_finite() && factor > 0.0 {
+            self.is_scaled = scales;
+            update.factor = factor;
+            self.scale(state, factor);
+        }
+    }
+
+    /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
+    fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
+        let (q, z, Update { alpha, settled, .. }) = (&self.q, &self.z, *update);
+        let [work, energy] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                let (q, z) = (&q[run.clone()], &z[run]);
+                sums.add(h.len(), |i| {
+                    let repair = if settled { z[i].to_double() } else { 0.0 };
+                    let u = u[i] + alpha * q[i].to_double() + repair;
+                    [p[i] * (state.approach - h[i]), p[i] * u]
+                });
+            }
+        });
+        (work, energy)
+    }
+
+    /// `(p, approach - h)` and `(p, u)` after a step that truncated the debts from the first `paid` on.
+    pub(super) fn after_truncation(
+        &self,
+        state: &State,
+        (work, energy): (f64, f64),
+        alpha: f64,
+        paid: usize,
+    ) -> (f64, f64) {
+        self.debts[paid..].iter().fold((work, energy), |(work, energy), &(i, d)| {
+            let u = state.u[i] + alpha * self.q[i].to_double();
+            (work + d * (state.approach - state.h[i]), energy + d * u)
+        })
+    }
+}
+
+/// Whether sums that were predicted are those of a pass, to the rounding of what they are sums of.
+fn near((a, b): (f64, f64), (c, d): (f64, f64)) -> bool {
+    let near = |x: f64, y: f64| !((x - y).abs() > 1e-6 * y.abs());
+    near(a, c) && near(b, d)
+}
