@@ -288,11 +288,12 @@ impl Row<'_> {
                 (*low, *high) = (if p < *low { p } else { *low }, if p > *high { p } else { *high });
             }
         }
-        for (terms, sums) in self.terms.iter_mut().zip(&mut self.sums) {
-            let whole = n.next_multiple_of(LANES);
-            terms[n..whole].fill(0.0);
-            for terms in terms[..whole].chunks_exact(LANES) {
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        let whole = n.next_multiple_of(LANES);
+        self.terms.iter_mut().for_each(|terms| terms[n..whole].fill(0.0));
+        // All sums together: none waits for its last addition.
+        for start in (0..whole).step_by(LANES) {
+            for (sums, terms) in self.sums.iter_mut().zip(&*self.terms) {
+                sums.iter_mut().zip(&terms[start..start + LANES]).for_each(|(sum, term)| *sum += term);
             }
         }
     }
