@@ -45,7 +45,7 @@ const MOST_KEPT: usize = 1024;
 
 /// Offsets in each direction of which all coefficients are kept, once a grid of so many elements asks for them: to compute them takes
 /// as long as a product or more, and operators of the grid, of its windows and coarser grids, preconditioners and the next solver need
-/// the same ones. At most 2.8 MiB a thread: a quadrant that is within a kept one is not kept.
+/// the same ones. At most 4.4 MB a thread; none is computed that is part of one there is.
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 
 /// Coefficients of the half-space for one element size.
@@ -112,19 +112,19 @@ impl Shape {
         let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
         let (size, quadrant) = known.or_else(|| {
             let (size, quadrant) = large_enough().next()?;
-            let computed = self.quadrant(*size)?;
-            Some((size, quadrant.get_or_init(|| computed)))
+            Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
         })?;
-        Some(&quadrant[ky * size..][..end])
+        quadrant.get(ky * size..)?.get(..end)
     }
 
-    /// None where there is no memory for it.
-    fn quadrant(&self, size: usize) -> Option<Vec<f64>> {
+    /// Empty where there is no memory for it.
+    fn quadrant(&self, size: usize) -> Vec<f64> {
         let mut quadrant = Vec::new();
-        quadrant.try_reserve_exact(size * size).ok()?;
-        quadrant.resize(size * size, 0.0);
-        quadrant.chunks_exact_mut(size).enumerate().for_each(|(ky, row)| self.fill_row(0, ky, row));
-        Some(quadrant)
+        if quadrant.try_reserve_exact(size * size).is_ok() {
+            quadrant.resize(size * size, 0.0);
+            quadrant.chunks_exact_mut(size).enumerate().for_each(|(ky, row)| self.fill_row(0, ky, row));
+        }
+        quadrant
     }
 
     /// Those at the offsets `(kx.., ky)`.
