@@ -1,0 +1,267 @@
+//! How a spectrum is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
+//! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
+
+use std::ops::Range;
+
+use super::fft::{ColumnTransform, Complex, Real};
+use super::row_transform::RowTransform;
+use super::spectrum::SPECTRUM;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::{keep, unwritten};
+use crate::threads::Threads;
+
+/// What memory is for.
+const COEFFICIENTS: &str = "the influence coefficients";
+/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: a cache line.
+const PAIRS: usize = 4;
+/// Rows that are gathered at a time.
+const TILE: usize = 8;
+
+/// Even coefficients of both directions.
+pub(super) struct Even<F, G> {
+    /// Coefficients that are not zero: offsets less than that.
+    pub given: (usize, usize),
+    /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
+    pub fill: F,
+    /// What is kept of each value of the spectrum, but for the normalisation.
+    pub finish: G,
+}
+
+/// Memory that a spectrum is computed in. An operator whose coefficients change often keeps it.
+#[derive(Default)]
+pub struct SetUp {
+    real: Vec<f64>,
+    complex: Vec<Complex<f64>>,
+    pieces: Vec<Piece>,
+}
+
+impl Drop for SetUp {
+    fn drop(&mut self) {
+        keep([&mut self.real]);
+        keep([&mut self.complex]);
+    }
+}
+
+/// That of one piece of the work.
+#[derive(Default)]
+struct Piece {
+    row: Vec<f64>,
+    column: Vec<Complex<f64>>,
+    rows: Vec<Complex<f64>>,
+    columns: Vec<Complex<f64>>,
+}
+
+impl Drop for Piece {
+    fn drop(&mut self) {
+        keep([&mut self.column]);
+    }
+}
+
+/// The transforms of both directions, and who does them.
+pub(super) struct Transforms<'a> {
+    rows: RowTransform<f64>,
+    columns: ColumnTransform<f64>,
+    threads: &'a Threads,
+}
+
+impl<'a> Transforms<'a> {
+    /// Of a period.
+    pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Transforms<'a> {
+        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), threads }
+    }
+
+    fn period(&self) -> (usize, usize) {
+        (self.rows.length(), self.columns.length())
+    }
+
+    fn scale(&self) -> f64 {
+        let (px, py) = self.period();
+        1.0 / (px as f64 * py as f64)
+    }
+
+    /// Pieces that suit transforms of both directions.
+    fn suit(&self, pieces: &mut Vec<Piece>) -> Result<()> {
+        let (px, py) = self.period();
+        pieces.resize_with(self.threads.count(), Piece::default);
+        for piece in pieces {
+            piece.row.resize(self.rows.at_a_time() * px, 0.0);
+            let length = self.rows.bins().max(PAIRS * py);
+            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS)?;
+            self.rows.fit(&mut piece.rows);
+            self.columns.fit(&mut piece.columns);
+        }
+        Ok(())
+    }
+
+    /// The spectrum of even coefficients, of the period that there is.
+    pub fn of_even<T: Real, F, G>(
+        &self,
+        even: &Even<F, G>,
+        SetUp { real: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS)?;
+        self.suit(pieces)?;
+        self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
+            let row = &mut piece.row[..px];
+            row.fill(0.0);
+            (even.fill)(ky as i64, &mut row[..row_given]);
+            for kx in 1..row_given {
+                row[px - kx] = row[kx];
+            }
+            self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
+            out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
+        });
+        let (half, scale) = (py / 2 + 1, self.scale());
+        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
+        self.threads.for_each_row(spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
+            let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
+            let block = &mut piece.column[..pairs * py];
+            block.fill(Complex::default());
+            for ky in 0..rows_given {
+                let row = &in_x[ky * nb..(ky + 1) * nb];
+                for (pair, column) in block.chunks_exact_mut(py).enumerate() {
+                    let bin = 2 * (first + pair);
+                    let value = Complex::new(row[bin], row[(bin + 1).min(nb - 1)]);
+                    column[ky] = value;
+                    if ky > 0 {
+                        column[py - ky] = value;
+                    }
+                }
+            }
+            self.columns.forward(block, &mut piece.columns);
+            for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
+                let (re, im) = out.split_at_mut(half);
+                for ((bin, re), im) in column.iter().zip(re).zip(im) {
+                    *re = T::of(scale * (even.finish)(bin.re));
+                    *im = T::of(scale * (even.finish)(bin.im));
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// The transforms in x of some rows; `fill(i, row)` fills one, which is zero before.
+    fn of_rows(
+        &self,
+        count: usize,
+        in_x: &mut Vec<Complex<f64>>,
+        pieces: &mut [Piece],
+        fill: impl Fn(usize, &mut [f64]) + Sync + Send,
+    ) -> Result<()> {
+        let (px, nb, together) = (self.rows.length(), self.rows.bins(), self.rows.at_a_time());
+        unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
+        self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
+            let rows = &mut piece.row[..out.len() / nb * px];
+            rows.fill(0.0);
+            for (i, row) in rows.chunks_exact_mut(px).enumerate() {
+                fill(k * together + i, row);
+            }
+            self.rows.forward_together(rows, px, out, &mut piece.rows);
+        });
+        Ok(())
+    }
+
+    /// The spectrum of the symmetric part of coefficients. The transform of row -ky is the conjugate of that of row ky.
+    pub fn of_symmetric<T: Real>(
+        &self,
+        (coefficients, factor): (&Coefficients, f64),
+        grid: &Grid,
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()> {
+        let ((px, py), nb, Grid { mx, my, .. }) = (self.period(), self.rows.bins(), *grid);
+        self.suit(pieces)?;
+        self.of_rows(my, in_x, pieces, |ky, row| {
+            coefficients.fill_symmetric_row(0, ky as i64, &mut row[..mx]);
+            coefficients.fill_symmetric_row(1 - mx as i64, ky as i64, &mut row[px - (mx - 1)..]);
+        })?;
+        unwritten(spectrum, (nb + nb % 2) * py, T::nan(), SPECTRUM)?;
+        let scale = factor * self.scale();
+        self.threads.for_each_row(spectrum, PAIRS * 2 * py, pieces, |block, out, piece| {
+            let (first, pairs) = (PAIRS * 2 * block, out.len() / (2 * py));
+            let block = &mut piece.column[..pairs * py];
+            for_each_tile(in_x, nb, 0..my, first..(first + 2 * pairs).min(nb), |ky, rows| {
+                for (pair, column) in block.chunks_exact_mut(py).enumerate() {
+                    let (a, b) = (2 * pair, (2 * pair + 1).min(rows[0].len() - 1));
+                    for (ky, row) in ky.clone().zip(rows) {
+                        let (a, b) = (row[a], row[b]);
+                        column[if ky == 0 { 0 } else { py - ky }] = Complex::new(a.re + b.im, b.re - a.im);
+                        column[ky] = Complex::new(a.re - b.im, a.im + b.re);
+                    }
+                }
+            });
+            for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(2 * py)) {
+                column[my..py + 1 - my].fill(Complex::default());
+                self.columns.forward(column, &mut piece.columns);
+                let (re, im) = out.split_at_mut(py);
+                for ((bin, re), im) in column.iter().zip(re).zip(im) {
+                    (*re, *im) = (T::of(scale * bin.re), T::of(scale * bin.im));
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// The spectrum of any coefficients.
+    pub fn of_general<T: Real>(
+        &self,
+        (coefficients, factor): (&Coefficients, f64),
+        grid: &Grid,
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<Complex<T>>,
+    ) -> Result<()> {
+        let ((px, py), nb, Grid { mx, my, .. }) = (self.period(), self.rows.bins(), *grid);
+        self.suit(pieces)?;
+        // Rows 0..my, then 1-my..=-1, as they stand in a period.
+        self.of_rows(2 * my - 1, in_x, pieces, |i, row| {
+            let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
+            coefficients.fill_row(0, ky, &mut row[..mx]);
+            coefficients.fill_row(1 - mx as i64, ky, &mut row[px - (mx - 1)..]);
+        })?;
+        unwritten(spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
+        let (scale, gap) = (factor * self.scale(), py - (2 * my - 1));
+        self.threads.for_each_row(spectrum, PAIRS * py, pieces, |block, out, piece| {
+            let (first, count) = (PAIRS * block, out.len() / py);
+            let block = &mut piece.column[..count * py];
+            for (rows, shift) in [(0..my, 0), (my..2 * my - 1, gap)] {
+                for_each_tile(in_x, nb, rows, first..first + count, |i, rows| {
+                    let to = i.start + shift..i.end + shift;
+                    for (c, column) in block.chunks_exact_mut(py).enumerate() {
+                        column[to.clone()].iter_mut().zip(rows).for_each(|(value, row)| *value = row[c]);
+                    }
+                });
+            }
+            for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(py)) {
+                column[my..my + gap].fill(Complex::default());
+                self.columns.forward(column, &mut piece.columns);
+                for (value, bin) in out.iter_mut().zip(&*column) {
+                    *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+                }
+            }
+        });
+        Ok(())
+    }
+}
+
+/// Calls `work(which, rows)` on the part `columns` of rows `rows` of a matrix, `width` columns wide, up to [`TILE`] rows at a time: then
+/// the writes to each column are neighbours. The last of fewer rows is there more than once.
+fn for_each_tile(
+    matrix: &[Complex<f64>],
+    width: usize,
+    rows: Range<usize>,
+    columns: Range<usize>,
+    mut work: impl FnMut(Range<usize>, &[&[Complex<f64>]; TILE]),
+) {
+    for first in rows.clone().step_by(TILE) {
+        let end = (first + TILE).min(rows.end);
+        work(first..end, &std::array::from_fn(|k| &matrix[(first + k).min(end - 1) * width..][columns.clone()]));
+    }
+}
