@@ -36,13 +36,13 @@ impl Given<'_> {
 
     /// Offsets `0.., 0..` of the grid, scaled.
     pub fn quarter(&self, grid: &Grid, scale: f64) -> Result<(Vec<f64>, Extremes)> {
-        let (mut kept, mut extremes) = (Vec::new(), Extremes::default());
+        let (mut kept, mut extremes) = (Vec::new(), Extremes::NONE);
         reserve(&mut kept, grid.len(), TABLE)?;
         for ky in 0..grid.my as i64 {
             kept.extend(self.after(ky, grid.mx).iter().map(|value| scale * value));
             extremes = extremes.and(Extremes::of_even(&kept[kept.len() - grid.mx..]));
         }
-        match extremes.are_finite() {
+        match extremes.finite {
             true => Ok((kept, extremes)),
             false => Err(self.not_finite(grid, scale, true)),
         }
@@ -51,7 +51,7 @@ impl Given<'_> {
     /// All offsets of the grid, scaled. Opposite rows are filled together, and compared while they are near.
     pub fn whole(&self, grid: &Grid, scale: f64) -> Result<(Vec<f64>, Extremes)> {
         let Grid { mx, my, .. } = *grid;
-        let (columns, mut extremes) = (width(mx, false), Extremes::default());
+        let (columns, mut extremes) = (width(mx, false), Extremes::NONE);
         let mut kept = blank(columns * width(my, false), f64::NAN, TABLE)?;
         let (negative, rest) = kept.split_at_mut((my - 1) * columns);
         let fill = |out: &mut [f64], ky: i64| {
@@ -64,14 +64,15 @@ impl Given<'_> {
         };
         let (zero, positive) = rest.split_at_mut(columns);
         fill(zero, 0);
-        extremes = extremes.and(Extremes::of_opposite(zero, zero));
+        let large = zero[mx - 1];
+        extremes = extremes.and(Extremes::of_opposite(zero, zero, large));
         let pairs = positive.chunks_exact_mut(columns).zip(negative.rchunks_exact_mut(columns));
         for ((row, opposite), ky) in pairs.zip(1..) {
             fill(row, ky);
             fill(opposite, -ky);
-            extremes = extremes.and(Extremes::of_opposite(row, opposite));
+            extremes = extremes.and(Extremes::of_opposite(row, opposite, large));
         }
-        match extremes.are_finite() {
+        match extremes.finite {
             true => Ok((kept, extremes)),
             false => Err(self.not_finite(grid, scale, false)),
         }

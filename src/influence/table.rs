@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::extremes::{largest, Extremes};
+use super::extremes::{are_symmetric, largest, Extremes};
 use super::given::Given;
 use super::Kernel;
 use crate::error::{invalid, require, Error, Result};
@@ -184,12 +184,11 @@ impl Kernel for Table {
     }
 
     fn is_symmetric(&self, grid: &Grid) -> bool {
-        if self.even || self.extremes.are_symmetric_beside(self.at(0, 0)) {
+        if self.even || self.extremes.symmetric {
             return true;
         }
-        let of_grid = || Extremes::of_rows(self.rows_of(grid), grid.my);
-        let extremes = if self.is_of(grid) { self.extremes } else { of_grid() };
-        extremes.are_symmetric_beside(extremes.largest)
+        let (rows, large) = (self.rows_of(grid), self.largest(grid));
+        rows.clone().zip(rows.rev()).take(grid.my).all(|(row, opposite)| are_symmetric(row, opposite, large))
     }
 
     fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
@@ -210,7 +209,7 @@ impl Kernel for Table {
             }
             coarsen_row(&joined, self.cx, even, half_x, out);
         }
-        let of_rows = || Extremes::of_rows(values.chunks_exact(columns), cy);
+        let of_rows = || Extremes::of_rows(values.chunks_exact(columns), cy, values[values.len() / 2]);
         let extremes = if even { Extremes::of_even(&values) } else { of_rows() };
         Ok(Arc::new(Table { cx, cy, even, values: Arc::new(values.into()), extremes }))
     }

@@ -16,8 +16,6 @@ use crate::threads::Threads;
 const COEFFICIENTS: &str = "the influence coefficients";
 /// Columns of complex numbers, or pairs of real ones, that are gathered at a time: a cache line.
 const PAIRS: usize = 4;
-/// Rows that are gathered at a time.
-const TILE: usize = 8;
 
 /// Even coefficients of both directions.
 pub(super) struct Even<F, G> {
@@ -124,18 +122,7 @@ impl<'a> Transforms<'a> {
         self.threads.for_each_row(spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
             let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
             let block = &mut piece.column[..pairs * py];
-            block.fill(Complex::default());
-            for ky in 0..rows_given {
-                let row = &in_x[ky * nb..(ky + 1) * nb];
-                for (pair, column) in block.chunks_exact_mut(py).enumerate() {
-                    let bin = 2 * (first + pair);
-                    let value = Complex::new(row[bin], row[(bin + 1).min(nb - 1)]);
-                    column[ky] = value;
-                    if ky > 0 {
-                        column[py - ky] = value;
-                    }
-                }
-            }
+            fill_pairs((in_x, nb), rows_given, 2 * first, (block, py), |re, im| [Complex::new(re, im); 2]);
             self.columns.forward(block, &mut piece.columns);
             for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
                 let (re, im) = out.split_at_mut(half);
@@ -148,21 +135,24 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The transforms in x of some rows; `fill(i, row)` fills one, which is zero before.
+    /// The transforms in x of some rows of coefficients; `fill(kx, i, values)` gives those of row i from offset kx on.
     fn of_rows(
         &self,
         count: usize,
         in_x: &mut Vec<Complex<f64>>,
         pieces: &mut [Piece],
-        fill: impl Fn(usize, &mut [f64]) + Sync + Send,
+        mx: usize,
+        fill: impl Fn(i64, usize, &mut [f64]) + Sync + Send,
     ) -> Result<()> {
         let (px, nb, together) = (self.rows.length(), self.rows.bins(), self.rows.at_a_time());
         unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
         self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
             let rows = &mut piece.row[..out.len() / nb * px];
-            rows.fill(0.0);
             for (i, row) in rows.chunks_exact_mut(px).enumerate() {
-                fill(k * together + i, row);
+                let i = k * together + i;
+                fill(0, i, &mut row[..mx]);
+                row[mx..px - (mx - 1)].fill(0.0);
+                fill(1 - mx as i64, i, &mut row[px - (mx - 1)..]);
             }
             self.rows.forward_together(rows, px, out, &mut piece.rows);
         });
@@ -177,34 +167,22 @@ impl<'a> Transforms<'a> {
         SetUp { complex: in_x, pieces, .. }: &mut SetUp,
         spectrum: &mut Vec<T>,
     ) -> Result<()> {
-        let ((px, py), nb, Grid { mx, my, .. }) = (self.period(), self.rows.bins(), *grid);
+        let (py, nb, Grid { mx, my, .. }) = (self.columns.length(), self.rows.bins(), *grid);
         self.suit(pieces)?;
-        self.of_rows(my, in_x, pieces, |ky, row| {
-            coefficients.fill_symmetric_row(0, ky as i64, &mut row[..mx]);
-            coefficients.fill_symmetric_row(1 - mx as i64, ky as i64, &mut row[px - (mx - 1)..]);
-        })?;
+        self.of_rows(my, in_x, pieces, mx, |kx, ky, row| coefficients.fill_symmetric_row(kx, ky as i64, row))?;
         unwritten(spectrum, (nb + nb % 2) * py, T::nan(), SPECTRUM)?;
         let scale = factor * self.scale();
         self.threads.for_each_row(spectrum, PAIRS * 2 * py, pieces, |block, out, piece| {
-            let (first, pairs) = (PAIRS * 2 * block, out.len() / (2 * py));
-            let block = &mut piece.column[..pairs * py];
-            for_each_tile(in_x, nb, 0..my, first..(first + 2 * pairs).min(nb), |ky, rows| {
-                for (pair, column) in block.chunks_exact_mut(py).enumerate() {
-                    let (a, b) = (2 * pair, (2 * pair + 1).min(rows[0].len() - 1));
-                    for (ky, row) in ky.clone().zip(rows) {
-                        let (a, b) = (row[a], row[b]);
-                        column[if ky == 0 { 0 } else { py - ky }] = Complex::new(a.re + b.im, b.re - a.im);
-                        column[ky] = Complex::new(a.re - b.im, a.im + b.re);
-                    }
-                }
+            let first = PAIRS * 2 * block;
+            let block = &mut piece.column[..out.len() / 2];
+            // a + i b, and what its rows -ky hold.
+            fill_pairs((in_x, nb), my, first, (block, py), |a: Complex<f64>, b: Complex<f64>| {
+                [Complex::new(a.re - b.im, a.im + b.re), Complex::new(a.re + b.im, b.re - a.im)]
             });
             for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(2 * py)) {
-                column[my..py + 1 - my].fill(Complex::default());
                 self.columns.forward(column, &mut piece.columns);
                 let (re, im) = out.split_at_mut(py);
-                for ((bin, re), im) in column.iter().zip(re).zip(im) {
-                    (*re, *im) = (T::of(scale * bin.re), T::of(scale * bin.im));
-                }
+                pulp::Arch::new().dispatch(Parts { column, scale, re, im });
             }
         });
         Ok(())
@@ -218,50 +196,127 @@ impl<'a> Transforms<'a> {
         SetUp { complex: in_x, pieces, .. }: &mut SetUp,
         spectrum: &mut Vec<Complex<T>>,
     ) -> Result<()> {
-        let ((px, py), nb, Grid { mx, my, .. }) = (self.period(), self.rows.bins(), *grid);
+        let (py, nb, Grid { mx, my, .. }) = (self.columns.length(), self.rows.bins(), *grid);
         self.suit(pieces)?;
         // Rows 0..my, then 1-my..=-1, as they stand in a period.
-        self.of_rows(2 * my - 1, in_x, pieces, |i, row| {
+        self.of_rows(2 * my - 1, in_x, pieces, mx, |kx, i, row| {
             let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
-            coefficients.fill_row(0, ky, &mut row[..mx]);
-            coefficients.fill_row(1 - mx as i64, ky, &mut row[px - (mx - 1)..]);
+            coefficients.fill_row(kx, ky, row);
         })?;
         unwritten(spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
         let (scale, gap) = (factor * self.scale(), py - (2 * my - 1));
         self.threads.for_each_row(spectrum, PAIRS * py, pieces, |block, out, piece| {
-            let (first, count) = (PAIRS * block, out.len() / py);
-            let block = &mut piece.column[..count * py];
-            for (rows, shift) in [(0..my, 0), (my..2 * my - 1, gap)] {
-                for_each_tile(in_x, nb, rows, first..first + count, |i, rows| {
-                    let to = i.start + shift..i.end + shift;
-                    for (c, column) in block.chunks_exact_mut(py).enumerate() {
-                        column[to.clone()].iter_mut().zip(rows).for_each(|(value, row)| *value = row[c]);
-                    }
-                });
+            let first = PAIRS * block;
+            let block = &mut piece.column[..out.len()];
+            for (rows, to) in [(0..my, 0), (my..2 * my - 1, my + gap)] {
+                gather((in_x, nb), rows, first, (block, py), to);
             }
             for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(py)) {
                 column[my..my + gap].fill(Complex::default());
                 self.columns.forward(column, &mut piece.columns);
-                for (value, bin) in out.iter_mut().zip(&*column) {
-                    *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
-                }
+                pulp::Arch::new().dispatch(Scaled { column, scale, out });
             }
         });
         Ok(())
     }
 }
 
-/// Calls `work(which, rows)` on the part `columns` of rows `rows` of a matrix, `width` columns wide, up to [`TILE`] rows at a time: then
-/// the writes to each column are neighbours. The last of fewer rows is there more than once.
-fn for_each_tile(
-    matrix: &[Complex<f64>],
-    width: usize,
+/// A column times a factor, in another precision. Compiled for the vectors of this machine, as the next.
+struct Scaled<'a, T> {
+    column: &'a [Complex<f64>],
+    scale: f64,
+    out: &'a mut [Complex<T>],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Scaled { column, scale, out } = self;
+        for (value, bin) in out.iter_mut().zip(column) {
+            *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Its real and its imaginary parts.
+struct Parts<'a, T> {
+    column: &'a [Complex<f64>],
+    scale: f64,
+    re: &'a mut [T],
+    im: &'a mut [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Parts<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Parts { column, scale, re, im } = self;
+        for ((bin, re), im) in column.iter().zip(re).zip(im) {
+            (*re, *im) = (T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Copies the columns from `first` on of rows `rows` of a matrix, `nb` columns wide, to those of a block, each `py` long, from row `to` on.
+fn gather<V: Copy>(matrix: (&[V], usize), rows: Range<usize>, first: usize, (block, py): (&mut [V], usize), to: usize) {
+    // Of a known number the compiler makes one step.
+    match block.len() / py {
+        PAIRS => copy_columns(matrix, rows, (first, PAIRS), (block, py), to),
+        count => copy_columns(matrix, rows, (first, count), (block, py), to),
+    }
+}
+
+#[inline(always)]
+fn copy_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
     rows: Range<usize>,
-    columns: Range<usize>,
-    mut work: impl FnMut(Range<usize>, &[&[Complex<f64>]; TILE]),
+    (first, count): (usize, usize),
+    (block, py): (&mut [V], usize),
+    to: usize,
 ) {
-    for first in rows.clone().step_by(TILE) {
-        let end = (first + TILE).min(rows.end);
-        work(first..end, &std::array::from_fn(|k| &matrix[(first + k).min(end - 1) * width..][columns.clone()]));
+    for (row, y) in rows.zip(to..) {
+        let row = &matrix[row * nb + first..][..count];
+        for c in 0..count {
+            block[c * py + y] = row[c];
+        }
+    }
+}
+
+/// Fills columns of a block, each `py` long, with pairs of columns from `first` on of a matrix of rows ky >= 0, `nb` columns wide:
+/// `values(a, b)` of the pair's values in row ky are those at ky and -ky, zero beyond. The last column of an odd number is its own pair.
+fn fill_pairs<V: Copy>(
+    matrix: (&[V], usize),
+    rows: usize,
+    first: usize,
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for column in block.chunks_exact_mut(py) {
+        column[rows..(py + 1 - rows).max(rows)].fill(Complex::default());
+    }
+    match (block.len() / py, (matrix.1 - first).min(2 * PAIRS)) {
+        (PAIRS, count) if count == 2 * PAIRS => join_columns(matrix, rows, (first, 2 * PAIRS), (block, py), values),
+        (_, count) => join_columns(matrix, rows, (first, count), (block, py), values),
+    }
+}
+
+#[inline(always)]
+fn join_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
+    rows: usize,
+    (first, count): (usize, usize),
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for ky in 0..rows {
+        let (row, opposite) = (&matrix[ky * nb + first..][..count], if ky == 0 { 0 } else { py - ky });
+        for pair in 0..count.div_ceil(2) {
+            let [here, there] = values(row[2 * pair], row[(2 * pair + 1).min(count - 1)]);
+            block[pair * py + opposite] = there;
+            block[pair * py + ky] = here;
+        }
     }
 }
