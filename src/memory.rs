@@ -12,6 +12,7 @@
 use std::any::{Any, TypeId};
 use std::collections::VecDeque;
 use std::mem::{replace, take};
+use std::ops::Deref;
 use std::sync::Mutex;
 
 use crate::error::{Error, Result};
@@ -176,6 +177,30 @@ fn keep_one<A: Copy + Send + 'static>(values: Vec<A>) {
     while shelf.bytes > MOST_KEPT {
         let Some(oldest) = shelf.blocks.pop_front() else { return };
         shelf.bytes -= oldest.bytes;
+    }
+}
+
+/// Values that several hold: when the last of them is gone, their memory is kept.
+#[derive(Debug, PartialEq)]
+pub struct Held(Vec<f64>);
+
+impl From<Vec<f64>> for Held {
+    fn from(values: Vec<f64>) -> Held {
+        Held(values)
+    }
+}
+
+impl Deref for Held {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        keep([&mut self.0]);
     }
 }
 

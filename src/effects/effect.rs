@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Kernel};
+use crate::memory::Held;
 use crate::scene::Plain;
 
 /// A value of an effect.
@@ -17,7 +18,7 @@ pub enum Value<'a> {
     /// One per element, whole.
     Integers(&'a [i32]),
     /// Many, which the coefficients hold, too.
-    Shared(&'a Arc<Vec<f64>>),
+    Shared(&'a Arc<Held>),
 }
 
 /// An effect. What is not said is that of one that changes nothing and goes with everything.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::effect::{Effect, Value};
 use super::list::{effects, list, replace_bodies, COUNT};
+use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
 
 /// What is kept of a value.
@@ -16,7 +17,7 @@ use crate::scene::{Bodies, Scene};
 enum Kept {
     Number(f64),
     Hash(usize, [u64; 2]),
-    Shared(Arc<Vec<f64>>),
+    Shared(Arc<Held>),
 }
 
 impl Kept {
@@ -113,7 +114,7 @@ impl Named {
             }
             // Of tables that are even less is kept.
             (Some(Kept::Shared(kept)), Value::Shared(values)) if kept.len() == values.len() => {
-                let other = kept.iter().zip(&**values).find(|(kept, now)| kept != now);
+                let other = kept.iter().zip(values.iter()).find(|(kept, now)| kept != now);
                 let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
                 Some(format!(
                     "{name} holds other coefficients: {now} where those of this solver have {kept}; leave them out, or set them first (for influence: \

@@ -85,8 +85,18 @@ impl Coefficients {
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
     pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         self.kernel.fill_row(kx, ky, out);
-        if ky == 0 && kx <= 0 && -kx < out.len() as i64 {
-            out[-kx as usize] += self.least();
+        self.add_layer(kx, ky, out);
+    }
+
+    /// The same of what is symmetric of the coefficients.
+    pub fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        self.kernel.fill_symmetric_row(kx, ky, out);
+        self.add_layer(kx, ky, out);
+    }
+
+    fn add_layer(&self, kx: i64, ky: i64, row: &mut [f64]) {
+        if ky == 0 && kx <= 0 && -kx < row.len() as i64 {
+            row[-kx as usize] += self.least();
         }
     }
 

@@ -13,6 +13,8 @@
 mod coated;
 mod coefficients;
 mod diagonal;
+mod extremes;
+mod given;
 mod half_space;
 mod images;
 pub(crate) mod means;
@@ -28,6 +30,7 @@ use std::sync::Arc;
 pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
+pub(crate) use extremes::SYMMETRY;
 pub(crate) use half_space::gauss;
 pub use half_space::HalfSpace;
 pub use patches::Patches;
@@ -51,6 +54,12 @@ pub trait Kernel: Debug + Send + Sync {
     /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
     fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
+    }
+
+    /// Fills `out[k]` with the mean of the coefficients at offsets `(kx + k, ky)` and `(-kx - k, -ky)`, within the table: what is symmetric of
+    /// them.
+    fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        self.fill_row(kx, ky, out);
     }
 
     /// Fills `out[k]` with the mean of the coefficients at offsets `(+-k, +-ky)`: what is even of them, for preconditioners. A

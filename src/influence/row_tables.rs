@@ -20,11 +20,12 @@
 
 use std::sync::Arc;
 
-use super::table::{are_finite, check_scale, coarsen_row, largest, place, width, SYMMETRY};
+use super::extremes::{are_finite, largest, SYMMETRY};
+use super::table::{check_scale, coarsen_row, place, width};
 use super::Kernel;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::memory::{blank, reserve};
+use crate::memory::{blank, reserve, Held};
 
 /// What memory is for.
 const TABLES: &str = "the tables of coefficients";
@@ -38,7 +39,7 @@ pub struct RowTables {
     /// The largest, whatever its sign.
     largest: f64,
     /// `[jy][iy][width]`, shared by all that hold the tables.
-    pub(crate) values: Arc<Vec<f64>>,
+    pub(crate) values: Arc<Held>,
 }
 
 /// Whether all tables are even in x, after a check of their coefficients.
@@ -103,7 +104,7 @@ impl RowTables {
             let row = &row[if even { cx } else { cx + 1 - mx }..cx + mx];
             kept.extend(row.iter().map(|value| scale * value));
         }
-        Ok(RowTables { mx, my, even, largest: largest(&kept), values: Arc::new(kept) })
+        Ok(RowTables { mx, my, even, largest: largest(&kept), values: Arc::new(kept.into()) })
     }
 
     /// Whether all tables are even in x.
@@ -224,7 +225,7 @@ impl Kernel for RowTables {
             }
             coarsen_row(&joined, self.mx, self.even, half_x, out);
         }
-        Ok(Arc::new(RowTables { mx, my, even: self.even, largest: largest(&values), values: Arc::new(values) }))
+        Ok(Arc::new(RowTables { mx, my, even: self.even, largest: largest(&values), values: Arc::new(values.into()) }))
     }
 
     fn bytes(&self) -> usize {

@@ -9,16 +9,15 @@
 
 use std::sync::Arc;
 
+use super::extremes::{are_symmetric, largest, Extremes};
+use super::given::Given;
 use super::Kernel;
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
-use crate::memory::{blank, reserve};
+use crate::memory::{blank, Held};
 
 /// What memory is for.
-const TABLE: &str = "the influence coefficients";
-
-/// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
-pub(super) const SYMMETRY: f64 = 1e-7;
+pub(super) const TABLE: &str = "the influence coefficients";
 
 /// Refuses a scale that turns coefficients around or away.
 pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
@@ -33,7 +32,9 @@ pub struct Table {
     pub(crate) cy: usize,
     even: bool,
     /// `[ky][kx]`, x fastest, from offset 0 or `1 - c` on; shared by all that hold the table.
-    pub(crate) values: Arc<Vec<f64>>,
+    pub(crate) values: Arc<Held>,
+    /// Of all values.
+    extremes: Extremes,
 }
 
 /// Coefficients of one direction that are kept.
@@ -42,39 +43,6 @@ pub(super) fn width(c: usize, even: bool) -> usize {
         c
     } else {
         2 * c - 1
-    }
-}
-
-/// Whether all are finite, looked at many at a time.
-pub(super) fn are_finite(values: &[f64], scale: f64) -> bool {
-    values.iter().fold(true, |all, value| all & (scale * value).is_finite())
-}
-
-/// A table as it is given: `values[ky + cy][kx + cx]`.
-struct Given<'a> {
-    cx: usize,
-    cy: usize,
-    values: &'a [f64],
-}
-
-impl Given<'_> {
-    /// Offsets `0..mx` of row ky.
-    fn after(&self, ky: i64, mx: usize) -> &[f64] {
-        &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx..][..mx]
-    }
-
-    /// Offsets `1 - mx..=0` of row ky.
-    fn before(&self, ky: i64, mx: usize) -> &[f64] {
-        &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx + 1 - mx..][..mx]
-    }
-
-    fn is_even(&self, grid: &Grid) -> bool {
-        let mx = grid.mx;
-        (0..grid.my as i64).all(|ky| {
-            let rows = self.after(ky, mx).iter().zip(self.after(-ky, mx));
-            let before = self.before(ky, mx).iter().rev().zip(self.before(-ky, mx).iter().rev());
-            rows.zip(before).fold(true, |all, ((a, b), (c, d))| all & (a == b) & (a == c) & (a == d))
-        })
     }
 }
 
@@ -102,19 +70,8 @@ impl Table {
         // Only the offsets of the grid matter, so only they are kept: the table may be far larger.
         let (Grid { mx, my, .. }, given) = (*grid, Given { cx, cy, values });
         let even = given.is_even(grid);
-        let (first_x, first_y) = if even { (0, 0) } else { (1 - mx as i64, 1 - my as i64) };
-        let mut kept = Vec::new();
-        reserve(&mut kept, width(mx, even) * width(my, even), TABLE)?;
-        for ky in first_y..my as i64 {
-            let row = &given.before(ky, mx)[..(-first_x) as usize];
-            for (row, first) in [(row, first_x), (given.after(ky, mx), 0)] {
-                if !are_finite(row, scale) {
-                    return Err(not_finite(row, scale, (first, ky)));
-                }
-                kept.extend(row.iter().map(|value| scale * value));
-            }
-        }
-        let table = Table { cx: mx, cy: my, even, values: Arc::new(kept) };
+        let (values, extremes) = if even { given.quarter(grid, scale)? } else { given.whole(grid, scale)? };
+        let table = Table { cx: mx, cy: my, even, values: Arc::new(values.into()), extremes };
         if table.at(0, 0) <= 0.0 {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence.coefficients at offset (0, 0) is {}; a pressure must displace its own element inwards",
@@ -124,6 +81,11 @@ impl Table {
         Ok(table)
     }
 
+    /// Whether it is that of a grid of this size, not of a larger one.
+    fn is_of(&self, grid: &Grid) -> bool {
+        (self.cx, self.cy) == (grid.mx, grid.my)
+    }
+
     /// Row ky, the outermost one where the table ends.
     fn row(&self, ky: i64) -> &[f64] {
         let (y, width) = (place(ky, self.cy, self.even), width(self.cx, self.even));
@@ -131,20 +93,11 @@ impl Table {
     }
 
     /// The rows of `grid`, each as far as the grid reaches.
-    fn rows_of<'a>(&'a self, grid: &Grid) -> impl DoubleEndedIterator<Item = &'a [f64]> {
+    fn rows_of<'a>(&'a self, grid: &Grid) -> impl DoubleEndedIterator<Item = &'a [f64]> + Clone {
         let (mx, last, even, cx) = (grid.mx, grid.my as i64 - 1, self.even, self.cx);
         let first = if even { 0 } else { -last };
         (first..=last).map(move |ky| &self.row(ky)[if even { 0 } else { cx - mx }..][..width(mx, even)])
     }
-}
-
-/// The error of a row, offset `(kx, ky)` first, of which some are not finite.
-fn not_finite(row: &[f64], scale: f64, (kx, ky): (i64, i64)) -> Error {
-    let (kx, value) = (kx..).zip(row).find(|(_, value)| !(scale * *value).is_finite()).unwrap_or((kx, &f64::NAN));
-    Error::NotFinite(format!(
-        "influence.coefficients at offset ({kx}, {ky}) is {}; coefficients must be finite",
-        scale * value
-    ))
 }
 
 /// A row of the coefficients of c elements, on a grid coarsened in x or as it is. The outer two are added first: so what is even stays so
@@ -167,22 +120,6 @@ pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: 
             *value = three[1] + 0.5 * (three[0] + three[2]);
         }
     }
-}
-
-/// The largest of some values, whatever their sign.
-pub(super) fn largest(values: &[f64]) -> f64 {
-    // Several at a time: that the compiler can vectorise.
-    const LANES: usize = 8;
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let mut largest = [0.0; LANES];
-    let blocks = values.chunks_exact(LANES);
-    let rest = blocks.remainder().iter().fold(0.0, |largest, value| larger(value.abs(), largest));
-    for block in blocks {
-        for lane in 0..LANES {
-            largest[lane] = larger(block[lane].abs(), largest[lane]);
-        }
-    }
-    largest.into_iter().fold(rest, larger)
 }
 
 /// Where an offset stands among those kept, the outermost one where they end.
@@ -229,42 +166,52 @@ impl Kernel for Table {
         self.even
     }
 
+    fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        if self.even {
+            return self.fill_row(kx, ky, out);
+        }
+        let (row, opposite) = (self.row(ky), self.row(-ky));
+        let (first, behind) = (place(kx, self.cx, false), place(-kx, self.cx, false) + 1);
+        let pairs = row[first..].iter().zip(opposite[..behind].iter().rev());
+        out.iter_mut().zip(pairs).for_each(|(value, (a, b))| *value = 0.5 * (a + b));
+    }
+
     fn largest(&self, grid: &Grid) -> f64 {
+        if self.is_of(grid) {
+            return self.extremes.largest;
+        }
         self.rows_of(grid).map(largest).fold(0.0, f64::max)
     }
 
     fn is_symmetric(&self, grid: &Grid) -> bool {
-        if self.even {
+        if self.even || self.extremes.symmetric {
             return true;
         }
-        let (allowed, rows) = (SYMMETRY * self.largest(grid), 2 * grid.my - 1);
-        let alike = |(row, turned): (&[f64], &[f64])| {
-            let pairs = row.iter().zip(turned.iter().rev());
-            pairs.fold(true, |all, (a, b)| all & ((a - b).abs() <= allowed))
-        };
-        self.rows_of(grid).zip(self.rows_of(grid).rev()).take(rows.div_ceil(2)).all(alike)
+        let (rows, large) = (self.rows_of(grid), self.largest(grid));
+        rows.clone().zip(rows.rev()).take(grid.my).all(|(row, opposite)| are_symmetric(row, opposite, large))
     }
 
     fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
-        let (half_y, even, (cx, cy)) = (coarse.my < fine.my, self.even, (coarse.mx, coarse.my));
+        let (half_x, half_y) = (coarse.mx < fine.mx, coarse.my < fine.my);
+        let (even, cx, cy) = (self.even, coarse.mx, coarse.my);
         let (columns, rows) = (width(cx, even), width(cy, even));
-        let mut in_x = blank(3 * columns, f64::NAN, TABLE)?;
-        let mut values = Vec::new();
-        reserve(&mut values, columns * rows, TABLE)?;
-        for ky in (if even { 0 } else { 1 - cy as i64 })..cy as i64 {
-            let joined = if half_y { [2 * ky - 1, 2 * ky, 2 * ky + 1] } else { [ky; 3] };
-            for (out, ky) in in_x.chunks_exact_mut(columns).zip(joined) {
-                coarsen_row(self.row(ky), self.cx, even, coarse.mx < fine.mx, out);
+        let mut joined = blank(if half_y { width(self.cx, even) } else { 0 }, f64::NAN, TABLE)?;
+        let mut values = blank(columns * rows, f64::NAN, TABLE)?;
+        let first = if even { 0 } else { 1 - cy as i64 };
+        for (ky, out) in (first..).zip(values.chunks_exact_mut(columns)) {
+            if !half_y {
+                coarsen_row(self.row(ky), self.cx, even, half_x, out);
+                continue;
             }
-            let (before, rest) = in_x.split_at(columns);
-            let (at, after) = rest.split_at(columns);
-            match half_y {
-                true => values
-                    .extend(at.iter().zip(before).zip(after).map(|((at, before), after)| at + 0.5 * (before + after))),
-                false => values.extend_from_slice(at),
+            let [before, at, after] = [-1, 0, 1].map(|k| self.row(2 * ky + k));
+            for (value, (at, (before, after))) in joined.iter_mut().zip(at.iter().zip(before.iter().zip(after))) {
+                *value = at + 0.5 * (before + after);
             }
+            coarsen_row(&joined, self.cx, even, half_x, out);
         }
-        Ok(Arc::new(Table { cx, cy, even, values: Arc::new(values) }))
+        let of_rows = || Extremes::of_rows(values.chunks_exact(columns), cy, values[values.len() / 2]);
+        let extremes = if even { Extremes::of_even(&values) } else { of_rows() };
+        Ok(Arc::new(Table { cx, cy, even, values: Arc::new(values.into()), extremes }))
     }
 
     fn bytes(&self) -> usize {

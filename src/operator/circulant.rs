@@ -7,9 +7,9 @@
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::convolution::{Even, SetUp};
 use super::fft::{good_length, Real};
 use super::operator::Operator;
+use super::set_up::{Even, SetUp};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;

@@ -12,6 +12,18 @@ pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
 const TILE: usize = 8;
 
+/// The real and imaginary parts of complex values, in turns.
+pub fn parts<T: Real>(values: &[Complex<T>]) -> &[T] {
+    // SAFETY: a Complex is two values of T in the order of C (`repr(C)`), so the slice holds twice as many of them.
+    unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), 2 * values.len()) }
+}
+
+/// The same, to be written.
+pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
+    // SAFETY: as above; the values are borrowed mutably.
+    unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
+}
+
 /// One block of columns of a row-major matrix: no two of them overlap.
 pub struct Block<'a, T> {
     data: *mut Complex<T>,

@@ -17,6 +17,7 @@ pub trait Real: FftNum + Float + FromPrimitive + ToPrimitive + Default + std::it
     fn with_plans<R>(use_it: impl FnOnce(&mut Plans<Self>) -> R) -> R;
 
     /// The nearest value of this precision.
+    #[inline(always)]
     fn of(value: f64) -> Self {
         Self::from_f64(value).unwrap_or_default()
     }

@@ -11,11 +11,13 @@ mod operator;
 mod row_tables;
 pub mod row_transform;
 mod rows;
+mod set_up;
+mod spectrum;
 mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};
-pub use convolution::SetUp;
 pub use operator::Operator;
+pub use set_up::SetUp;
 pub use workspace::Workspace;
 
 /// Arithmetic of the inner work; results are always computed in double precision.

@@ -10,11 +10,12 @@
 use std::iter::once;
 use std::ops::Range;
 
-use super::convolution::{Convolution, Even, SetUp};
+use super::convolution::Convolution;
 use super::fft::{good_length, Complex, Real};
 use super::row_tables::PerRow;
 use super::row_transform::RowTransform;
 use super::rows::{Product, Rows};
+use super::set_up::{Even, SetUp};
 use super::workspace::Workspace;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -138,7 +139,7 @@ impl<T: Real> Operator<T> {
             return self.set_even(&even, set_up);
         }
         let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        convolution.set_general(coefficients, grid, (rows.transform.length(), factor), &rows.threads, set_up)
+        convolution.set_uneven((coefficients, factor), grid, rows.transform.length(), &rows.threads, set_up)
     }
 
     /// Computes a spectrum of even coefficients, of the period that there is.

@@ -12,6 +12,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::columns::{parts, parts_mut};
 use super::fft::{twiddles, ColumnTransform, Complex, Real};
 
 /// Lengths of short rows, and how many are transformed together.
@@ -106,13 +107,9 @@ impl<T: Real> RowTransform<T> {
             return;
         }
         for (k, packed) in packed.chunks_exact_mut(length).enumerate() {
-            let (given, rest) = packed.split_at_mut(width.div_ceil(2));
-            let pairs = rows[k * width..(k + 1) * width].chunks_exact(2);
-            if let ([x], Some(last)) = (pairs.remainder(), given.last_mut()) {
-                *last = Complex::new(*x, T::zero());
-            }
-            given.iter_mut().zip(pairs).for_each(|(value, x)| *value = Complex::new(x[0], x[1]));
-            rest.fill(Complex::default());
+            let (given, rest) = parts_mut(packed).split_at_mut(width);
+            given.copy_from_slice(&rows[k * width..(k + 1) * width]);
+            rest.fill(T::zero());
         }
         if self.at_a_time() == 1 {
             self.complex.forward_to(packed, &mut bins[..length], scratch);
@@ -162,13 +159,7 @@ impl<T: Real> RowTransform<T> {
             self.complex.inverse(packed, scratch);
         }
         for (k, packed) in packed.chunks_exact(length).enumerate() {
-            let mut pairs = rows[k * width..(k + 1) * width].chunks_exact_mut(2);
-            for (x, value) in pairs.by_ref().zip(packed) {
-                (x[0], x[1]) = (value.re, value.im);
-            }
-            if let ([x], Some(last)) = (pairs.into_remainder(), packed.get(width / 2)) {
-                *x = last.re;
-            }
+            rows[k * width..(k + 1) * width].copy_from_slice(&parts(packed)[..width]);
         }
     }
 }

@@ -158,6 +158,47 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
     }
 }
 
+/// Beside the largest coefficient within the grid, not beside that of the table or of an element on itself.
+#[test]
+fn symmetry_is_judged_beside_the_largest_coefficient_of_the_grid() {
+    let (grid, part) = (Grid::new(9, 6, 1.0, 1.0).unwrap(), Grid::new(4, 6, 1.0, 1.0).unwrap());
+    for (large, skew, whole, of_part) in
+        [(1.0, 4e-8, true, true), (100.0, 4e-8, true, true), (100.0, 4e-6, true, false), (1.0, 4e-6, false, false)]
+    {
+        let mut values = vec![0.5; 18 * 12];
+        let place = |kx: i64, ky: i64| ((ky + 6) * 18 + kx + 9) as usize;
+        values[place(0, 0)] = 1.0;
+        values[place(1, 2)] += skew;
+        for (kx, ky) in [(-6, 3), (6, -3), (-6, -3), (6, 3)] {
+            values[place(kx, ky)] = -large;
+        }
+        let influence = Coefficients::from(Table::new(9, 6, &values, &grid).unwrap());
+        let found = [&grid, &part].map(|grid| (influence.is_symmetric(grid), influence.largest(grid)));
+        assert_eq!(found, [(whole, large.max(1.0)), (of_part, 1.0)], "{large} {skew}");
+    }
+}
+
+/// The first in the order of the table is named, whether it is even or not.
+#[test]
+fn a_coefficient_that_is_not_finite_is_named() {
+    let grid = Grid::new(5, 4, 1.0, 1.0).unwrap();
+    let place = |kx: i64, ky: i64| ((ky + 4) * 10 + kx + 5) as usize;
+    for (bad, first) in [
+        (&[(1, 2)][..], "(1, 2)"),
+        (&[(3, 1), (-2, -3), (4, -3)], "(-2, -3)"),
+        (&[(2, 3), (-2, 3), (2, -3), (-2, -3)], "(-2, -3)"),
+    ] {
+        for value in [f64::NAN, f64::INFINITY, 1e308] {
+            let mut values = vec![1.0; 10 * 8];
+            bad.iter().for_each(|(kx, ky)| values[place(*kx, *ky)] = value);
+            let error = Table::scaled(5, 4, &values, 1e10, &grid).unwrap_err().to_string();
+            // An even table is looked at in its quarter.
+            let first = if bad.len() == 4 && !value.is_nan() { "(2, 3)" } else { first };
+            assert!(error.contains(first) && error.contains("finite"), "{error}, not {first}");
+        }
+    }
+}
+
 /// Coefficients of small grids are kept, others are not: an element's are the same, to the last bit, whoever asks, and on a grid of
 /// elements twice as large they are twice as large.
 #[test]

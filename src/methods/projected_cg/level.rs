@@ -193,7 +193,7 @@ impl Level {
     pub fn window(&self, state: &State) -> Window {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
         match self.influence.depends_on_place() {
-            false => Window::around(state, current),
+            false => Window::around(state, current, self.influence.is_even(&self.grid)),
             true => Window::full(&self.grid),
         }
     }

@@ -39,8 +39,9 @@ impl Window {
         self.x.len() == grid.mx && self.y.len() == grid.my
     }
 
-    /// The window for a contact area, with a margin of a part of its size; the whole grid where a window is not worthwhile.
-    pub fn around(state: &State, current: Option<&Window>) -> Window {
+    /// The window for a contact area, with a margin of a part of its size; the whole grid where a window is not worthwhile. `even`: whether the
+    /// kernel is.
+    pub fn around(state: &State, current: Option<&Window>, even: bool) -> Window {
         let grid = &state.grid;
         let full = Window::full(grid);
         if grid.len() < SMALLEST_GRID {
@@ -53,8 +54,9 @@ impl Window {
         let span = |range: &Range<usize>, m: usize| {
             let margin = MARGIN + range.len() / 32;
             let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
-            // An even kernel of k elements has the period 2k - 2: fill it.
-            let length = (good_length(2 * (end - start) - 2) / 2 + 1).min(m);
+            // An even kernel of k elements has the period 2k - 2, another one 2k - 1: fill it.
+            let less = if even { 2 } else { 1 };
+            let length = ((good_length(2 * (end - start) - less) + less) / 2).min(m);
             let start = start.saturating_sub((length - (end - start)) / 2).min(m - length);
             start..start + length
         };

@@ -1,0 +1,322 @@
+//! How a spectrum is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
+//! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
+
+use std::ops::Range;
+
+use super::fft::{ColumnTransform, Complex, Real};
+use super::row_transform::RowTransform;
+use super::spectrum::SPECTRUM;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::{keep, unwritten};
+use crate::threads::Threads;
+
+/// What memory is for.
+const COEFFICIENTS: &str = "the influence coefficients";
+/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: a cache line.
+const PAIRS: usize = 4;
+
+/// Even coefficients of both directions.
+pub(super) struct Even<F, G> {
+    /// Coefficients that are not zero: offsets less than that.
+    pub given: (usize, usize),
+    /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
+    pub fill: F,
+    /// What is kept of each value of the spectrum, but for the normalisation.
+    pub finish: G,
+}
+
+/// Memory that a spectrum is computed in. An operator whose coefficients change often keeps it.
+#[derive(Default)]
+pub struct SetUp {
+    real: Vec<f64>,
+    complex: Vec<Complex<f64>>,
+    pieces: Vec<Piece>,
+}
+
+impl Drop for SetUp {
+    fn drop(&mut self) {
+        keep([&mut self.real]);
+        keep([&mut self.complex]);
+    }
+}
+
+/// That of one piece of the work.
+#[derive(Default)]
+struct Piece {
+    row: Vec<f64>,
+    column: Vec<Complex<f64>>,
+    rows: Vec<Complex<f64>>,
+    columns: Vec<Complex<f64>>,
+}
+
+impl Drop for Piece {
+    fn drop(&mut self) {
+        keep([&mut self.column]);
+    }
+}
+
+/// The transforms of both directions, and who does them.
+pub(super) struct Transforms<'a> {
+    rows: RowTransform<f64>,
+    columns: ColumnTransform<f64>,
+    threads: &'a Threads,
+}
+
+impl<'a> Transforms<'a> {
+    /// Of a period.
+    pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Transforms<'a> {
+        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), threads }
+    }
+
+    fn period(&self) -> (usize, usize) {
+        (self.rows.length(), self.columns.length())
+    }
+
+    fn scale(&self) -> f64 {
+        let (px, py) = self.period();
+        1.0 / (px as f64 * py as f64)
+    }
+
+    /// Pieces that suit transforms of both directions.
+    fn suit(&self, pieces: &mut Vec<Piece>) -> Result<()> {
+        let (px, py) = self.period();
+        pieces.resize_with(self.threads.count(), Piece::default);
+        for piece in pieces {
+            piece.row.resize(self.rows.at_a_time() * px, 0.0);
+            let length = self.rows.bins().max(PAIRS * py);
+            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS)?;
+            self.rows.fit(&mut piece.rows);
+            self.columns.fit(&mut piece.columns);
+        }
+        Ok(())
+    }
+
+    /// The spectrum of even coefficients, of the period that there is.
+    pub fn of_even<T: Real, F, G>(
+        &self,
+        even: &Even<F, G>,
+        SetUp { real: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS)?;
+        self.suit(pieces)?;
+        self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
+            let row = &mut piece.row[..px];
+            row.fill(0.0);
+            (even.fill)(ky as i64, &mut row[..row_given]);
+            for kx in 1..row_given {
+                row[px - kx] = row[kx];
+            }
+            self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
+            out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
+        });
+        let (half, scale) = (py / 2 + 1, self.scale());
+        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
+        self.threads.for_each_row(spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
+            let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
+            let block = &mut piece.column[..pairs * py];
+            fill_pairs((in_x, nb), rows_given, 2 * first, (block, py), |re, im| [Complex::new(re, im); 2]);
+            self.columns.forward(block, &mut piece.columns);
+            for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
+                let (re, im) = out.split_at_mut(half);
+                for ((bin, re), im) in column.iter().zip(re).zip(im) {
+                    *re = T::of(scale * (even.finish)(bin.re));
+                    *im = T::of(scale * (even.finish)(bin.im));
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// The transforms in x of some rows of coefficients; `fill(kx, i, values)` gives those of row i from offset kx on.
+    fn of_rows(
+        &self,
+        count: usize,
+        in_x: &mut Vec<Complex<f64>>,
+        pieces: &mut [Piece],
+        mx: usize,
+        fill: impl Fn(i64, usize, &mut [f64]) + Sync + Send,
+    ) -> Result<()> {
+        let (px, nb, together) = (self.rows.length(), self.rows.bins(), self.rows.at_a_time());
+        unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
+        self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
+            let rows = &mut piece.row[..out.len() / nb * px];
+            for (i, row) in rows.chunks_exact_mut(px).enumerate() {
+                let i = k * together + i;
+                fill(0, i, &mut row[..mx]);
+                row[mx..px - (mx - 1)].fill(0.0);
+                fill(1 - mx as i64, i, &mut row[px - (mx - 1)..]);
+            }
+            self.rows.forward_together(rows, px, out, &mut piece.rows);
+        });
+        Ok(())
+    }
+
+    /// The spectrum of the symmetric part of coefficients. The transform of row -ky is the conjugate of that of row ky.
+    pub fn of_symmetric<T: Real>(
+        &self,
+        (coefficients, factor): (&Coefficients, f64),
+        grid: &Grid,
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()> {
+        let (py, nb, Grid { mx, my, .. }) = (self.columns.length(), self.rows.bins(), *grid);
+        self.suit(pieces)?;
+        self.of_rows(my, in_x, pieces, mx, |kx, ky, row| coefficients.fill_symmetric_row(kx, ky as i64, row))?;
+        unwritten(spectrum, (nb + nb % 2) * py, T::nan(), SPECTRUM)?;
+        let scale = factor * self.scale();
+        self.threads.for_each_row(spectrum, PAIRS * 2 * py, pieces, |block, out, piece| {
+            let first = PAIRS * 2 * block;
+            let block = &mut piece.column[..out.len() / 2];
+            // a + i b, and what its rows -ky hold.
+            fill_pairs((in_x, nb), my, first, (block, py), |a: Complex<f64>, b: Complex<f64>| {
+                [Complex::new(a.re - b.im, a.im + b.re), Complex::new(a.re + b.im, b.re - a.im)]
+            });
+            for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(2 * py)) {
+                self.columns.forward(column, &mut piece.columns);
+                let (re, im) = out.split_at_mut(py);
+                pulp::Arch::new().dispatch(Parts { column, scale, re, im });
+            }
+        });
+        Ok(())
+    }
+
+    /// The spectrum of any coefficients.
+    pub fn of_general<T: Real>(
+        &self,
+        (coefficients, factor): (&Coefficients, f64),
+        grid: &Grid,
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        spectrum: &mut Vec<Complex<T>>,
+    ) -> Result<()> {
+        let (py, nb, Grid { mx, my, .. }) = (self.columns.length(), self.rows.bins(), *grid);
+        self.suit(pieces)?;
+        // Rows 0..my, then 1-my..=-1, as they stand in a period.
+        self.of_rows(2 * my - 1, in_x, pieces, mx, |kx, i, row| {
+            let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
+            coefficients.fill_row(kx, ky, row);
+        })?;
+        unwritten(spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
+        let (scale, gap) = (factor * self.scale(), py - (2 * my - 1));
+        self.threads.for_each_row(spectrum, PAIRS * py, pieces, |block, out, piece| {
+            let first = PAIRS * block;
+            let block = &mut piece.column[..out.len()];
+            for (rows, to) in [(0..my, 0), (my..2 * my - 1, my + gap)] {
+                gather((in_x, nb), rows, first, (block, py), to);
+            }
+            for (column, out) in block.chunks_exact_mut(py).zip(out.chunks_exact_mut(py)) {
+                column[my..my + gap].fill(Complex::default());
+                self.columns.forward(column, &mut piece.columns);
+                pulp::Arch::new().dispatch(Scaled { column, scale, out });
+            }
+        });
+        Ok(())
+    }
+}
+
+/// A column times a factor, in another precision. Compiled for the vectors of this machine, as the next.
+struct Scaled<'a, T> {
+    column: &'a [Complex<f64>],
+    scale: f64,
+    out: &'a mut [Complex<T>],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Scaled { column, scale, out } = self;
+        for (value, bin) in out.iter_mut().zip(column) {
+            *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Its real and its imaginary parts.
+struct Parts<'a, T> {
+    column: &'a [Complex<f64>],
+    scale: f64,
+    re: &'a mut [T],
+    im: &'a mut [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Parts<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Parts { column, scale, re, im } = self;
+        for ((bin, re), im) in column.iter().zip(re).zip(im) {
+            (*re, *im) = (T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Copies the columns from `first` on of rows `rows` of a matrix, `nb` columns wide, to those of a block, each `py` long, from row `to` on.
+fn gather<V: Copy>(matrix: (&[V], usize), rows: Range<usize>, first: usize, (block, py): (&mut [V], usize), to: usize) {
+    // Of a known number the compiler makes one step.
+    match block.len() / py {
+        PAIRS => copy_columns(matrix, rows, (first, PAIRS), (block, py), to),
+        count => copy_columns(matrix, rows, (first, count), (block, py), to),
+    }
+}
+
+#[inline(always)]
+fn copy_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
+    rows: Range<usize>,
+    (first, count): (usize, usize),
+    (block, py): (&mut [V], usize),
+    to: usize,
+) {
+    for (row, y) in rows.zip(to..) {
+        let row = &matrix[row * nb + first..][..count];
+        for c in 0..count {
+            block[c * py + y] = row[c];
+        }
+    }
+}
+
+/// Fills columns of a block, each `py` long, with pairs of columns from `first` on of a matrix of rows ky >= 0, `nb` columns wide:
+/// `values(a, b)` of the pair's values in row ky are those at ky and -ky, zero beyond. The last column of an odd number is its own pair.
+fn fill_pairs<V: Copy>(
+    matrix: (&[V], usize),
+    rows: usize,
+    first: usize,
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for column in block.chunks_exact_mut(py) {
+        column[rows..(py + 1 - rows).max(rows)].fill(Complex::default());
+    }
+    match (block.len() / py, (matrix.1 - first).min(2 * PAIRS)) {
+        (PAIRS, count) if count == 2 * PAIRS => join_columns(matrix, rows, (first, 2 * PAIRS), (block, py), values),
+        (_, count) => join_columns(matrix, rows, (first, count), (block, py), values),
+    }
+}
+
+#[inline(always)]
+fn join_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
+    rows: usize,
+    (first, count): (usize, usize),
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for ky in 0..rows {
+        let (row, opposite) = (&matrix[ky * nb + first..][..count], if ky == 0 { 0 } else { py - ky });
+        for pair in 0..count.div_ceil(2) {
+            let [here, there] = values(row[2 * pair], row[(2 * pair + 1).min(count - 1)]);
+            block[pair * py + opposite] = there;
+            block[pair * py + ky] = here;
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The transform of the coefficients, by which a product multiplies.
+//!
+//! ```text
+//! S = F c / (px py),   one column of it per x bin,    k an offset (kx, ky)
+//!
+//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: a half of each column is kept
+//! c(k) = c(-k)                           S real
+//! any other c                            S complex
+//! ```
+//!
+//! A table may be symmetric to within round-off only ([`is_symmetric`](crate::influence::Coefficients::is_symmetric)). In single precision, the rounding of which
+//! is as large, its symmetric part `(c(k) + c(-k))/2`, the spectrum of which is the real part of S, serves in its place.
+
+use std::mem::take;
+
+use super::fft::{Complex, Real};
+use crate::error::Result;
+use crate::influence::SYMMETRY;
+use crate::memory::{computed, keep};
+
+/// What memory is for.
+pub(super) const SPECTRUM: &str = "the operator's spectrum";
+
+/// The spectrum, the normalisation folded in. Real ones have an even number of columns: the last may be there twice.
+pub(super) enum Spectrum<T: Real> {
+    /// `py/2 + 1` values a column.
+    Even(Vec<T>),
+    /// `py` values a column.
+    Symmetric(Vec<T>),
+    /// `py` complex values a column, and whether their imaginary parts are no more than the round-off of a symmetric table.
+    General(Vec<Complex<T>>, bool),
+}
+
+impl<T: Real> Drop for Spectrum<T> {
+    fn drop(&mut self) {
+        match self {
+            Spectrum::Even(values) | Spectrum::Symmetric(values) => keep([values]),
+            Spectrum::General(values, _) => keep([values]),
+        }
+    }
+}
+
+/// Whether what a table may lack of symmetry is less than the rounding of T.
+pub(super) fn is_coarse<T: Real>() -> bool {
+    T::epsilon().to_double() >= SYMMETRY
+}
+
+impl<T: Real> Spectrum<T> {
+    /// The same in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Spectrum<S>> {
+        let convert = |value: T| S::of(factor * value.to_double());
+        let real = |from: &[T]| computed(from.iter().map(|from| convert(*from)), SPECTRUM);
+        Ok(match self {
+            Spectrum::Even(from) => Spectrum::Even(real(from)?),
+            Spectrum::Symmetric(from) => Spectrum::Symmetric(real(from)?),
+            Spectrum::General(from, true) if is_coarse::<S>() => {
+                Spectrum::Symmetric(computed(from.iter().map(|from| convert(from.re)), SPECTRUM)?)
+            }
+            Spectrum::General(from, symmetric) => {
+                let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
+                Spectrum::General(computed(from.iter().map(convert), SPECTRUM)?, *symmetric)
+            }
+        })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Spectrum::Even(s) | Spectrum::Symmetric(s) => size_of_val(&s[..]),
+            Spectrum::General(s, _) => size_of_val(&s[..]),
+        }
+    }
+
+    /// Memory for another real one.
+    pub fn take_real(&mut self) -> Vec<T> {
+        match self {
+            Spectrum::Even(values) | Spectrum::Symmetric(values) => take(values),
+            Spectrum::General(..) => Vec::new(),
+        }
+    }
+
+    /// Memory for another complex one.
+    pub fn take_complex(&mut self) -> Vec<Complex<T>> {
+        match self {
+            Spectrum::Even(_) | Spectrum::Symmetric(_) => Vec::new(),
+            Spectrum::General(values, _) => take(values),
+        }
+    }
+
+    /// Multiplies transformed columns of length py, the first of which has x bin `first`.
+    pub fn multiply(&self, first: usize, columns: &mut [Complex<T>], py: usize) {
+        for (c, column) in columns.chunks_exact_mut(py).enumerate() {
+            let bin = first + c;
+            match self {
+                Spectrum::Even(s) => {
+                    let s = &s[bin * (py / 2 + 1)..(bin + 1) * (py / 2 + 1)];
+                    let (lower, upper) = column.split_at_mut(py / 2 + 1);
+                    pulp::Arch::new().dispatch(Multiply { lower, upper, s });
+                }
+                Spectrum::Symmetric(s) => {
+                    let s = &s[bin * py..(bin + 1) * py];
+                    pulp::Arch::new().dispatch(Multiply { lower: column, upper: &mut [], s });
+                }
+                Spectrum::General(s, _) => {
+                    for (value, &factor) in column.iter_mut().zip(&s[bin * py..]) {
+                        *value = *value * factor;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A column times its spectrum: bins of which that is kept, and those beyond, mirrored. Compiled for the vectors of this machine; no bit
+/// depends on them.
+struct Multiply<'a, T: Real> {
+    lower: &'a mut [Complex<T>],
+    upper: &'a mut [Complex<T>],
+    s: &'a [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
+    type Output = ();
+
+    // Loops over slices of one length, which the compiler can vectorise.
+    #[inline(always)]
+    fn call(self) {
+        let Multiply { lower, upper, s } = self;
+        let (n, m) = (lower.len(), upper.len());
+        for (value, &factor) in lower.iter_mut().zip(&s[..n]) {
+            *value = Complex::new(value.re * factor, value.im * factor);
+        }
+        if m == 0 {
+            return;
+        }
+        let mirrored = &s[1..=m];
+        for k in 0..m {
+            let (value, factor) = (upper[k], mirrored[m - 1 - k]);
+            upper[k] = Complex::new(value.re * factor, value.im * factor);
+        }
+    }
+}
