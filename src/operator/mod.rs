@@ -12,6 +12,7 @@ mod row_tables;
 pub mod row_transform;
 mod rows;
 mod set_up;
+mod set_up_columns;
 mod spectrum;
 mod workspace;
 

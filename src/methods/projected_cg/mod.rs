@@ -12,6 +12,7 @@ mod iteration;
 mod known;
 mod level;
 mod limits;
+mod part;
 mod passes;
 mod preconditioner;
 mod predictor;
