@@ -45,8 +45,11 @@ const MOST_KEPT: usize = 1024;
 
 /// Offsets in each direction of which all coefficients are kept, once a grid of so many elements asks for them: to compute them takes
 /// as long as a product or more, and operators of the grid, of its windows and coarser grids, preconditioners and the next solver need
-/// the same ones. At most 4.4 MB a thread; none is computed that is part of one there is.
+/// the same ones. At most 4.4 MB for a shape; none is computed that is part of one there is.
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
+
+/// Quadrants that are computed whichever part of them is asked for.
+const SMALL: usize = 64;
 
 /// Coefficients of the half-space for one element size.
 #[derive(Clone, Debug)]
@@ -111,7 +114,9 @@ impl Shape {
         let large_enough = || QUADRANTS.iter().zip(&self.quadrants).filter(|(size, _)| **size >= end.max(ky + 1));
         let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
         let (size, quadrant) = known.or_else(|| {
-            let (size, quadrant) = large_enough().next()?;
+            // A large one takes more than it saves where only a part of it is asked for: a long grid, or one coefficient.
+            let worthwhile = |size: usize| size <= SMALL || end.min(ky + 1) >= size / 4;
+            let (size, quadrant) = large_enough().next().filter(|(size, _)| worthwhile(**size))?;
             Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
         })?;
         quadrant.get(ky * size..)?.get(..end)

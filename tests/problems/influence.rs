@@ -94,7 +94,7 @@ fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
 fn reported_bytes_hold_the_coefficients() {
     let (mx, my) = (40, 36);
     let grid = Grid::new(mx, my, 0.5, 0.5).expect("a grid");
-    // All of it is in contact: a window would be kept beside it, and the two may meet different ones.
+    // All of it is in contact, so that both converge at their first certificate: neither keeps an iterate beside.
     let h: Vec<f64> = (0..grid.len()).map(|i| 1e-4 * ((i % mx) as f64 - 20.0).powi(2)).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.5));
     let half_space = plain.coefficients().unwrap();

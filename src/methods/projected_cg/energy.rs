@@ -64,7 +64,8 @@ impl<T: Real> Iteration<T> {
         let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
         let factor = work / energy;
         if factor.is_finite() && factor > 0.0 {
-            self.is_scaled = scales;
+            // On one element that is the solution, and no direction is left.
+            self.is_scaled = scales && self.runs.count() > 1;
             update.factor = factor;
             self.scale(state, factor);
         }

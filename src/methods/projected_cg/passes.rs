@@ -82,10 +82,15 @@ impl<T: Real> Iteration<T> {
         }
     }
 
+    /// Whether directions need not carry force: p is scaled to it, or to the least energy, or moves along a known change.
+    fn is_without_force(&self, state: &State) -> bool {
+        matches!(state.load, Load::Force(_)) || self.known.is_there() || self.is_scaled
+    }
+
     /// z = E^T M E r, r being what z holds (module `extension`).
     pub(super) fn precondition(&mut self, state: &State) {
+        let without_force = self.is_without_force(state);
         if let Some(m) = &mut self.preconditioner {
-            let without_force = matches!(state.load, Load::Force(_)) || self.is_scaled;
             let area = Area { contact: &state.contact, segments: &self.runs };
             m.apply(&mut self.z, (area, without_force), &mut self.extension, &mut self.workspace);
         }
@@ -94,7 +99,7 @@ impl<T: Real> Iteration<T> {
     /// t = z + beta t on C, 0 outside; of mean zero over C, but for what is missing, where it need not carry force; held back by the forecast,
     /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
-        let without_force = matches!(state.load, Load::Force(_)) || self.known.is_there() || self.is_scaled;
+        let without_force = self.is_without_force(state);
         let missing = self.limits.missing / forecast.unwrap_or(1.0);
         let (mean, beta) = self.conjugate(without_force.then_some(missing), tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
