@@ -42,21 +42,35 @@ impl Energy {
 }
 
 impl<T: Real> Iteration<T> {
+    /// After a step: p carries the prescribed force, or is scaled to the least energy; `update` takes the factor. `limited`: whether an element was
+    /// at its limit, for then p is not scaled by approach; `sums` as below.
+    pub(super) fn scale_to_load<S: AdmissibleSet>(
+        &mut self,
+        state: &mut State,
+        update: &mut Update,
+        limited: bool,
+        sums: Option<(f64, f64)>,
+    ) {
+        self.is_scaled = false;
+        match state.load {
+            Load::Force(_) => update.factor = self.carry_force::<S>(state),
+            Load::Approach(_) if limited => {}
+            Load::Approach(_) => self.least_energy::<S>(state, update, sums.filter(|_| !update.settled)),
+        }
+    }
+
     /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
     /// the factor. It costs no product. Where p moves along a known change instead, or pressures have reached a limit, only a truncation that a
     /// product has paid is followed by it. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
-        _: S,
         update: &mut Update,
         sums: Option<(f64, f64)>,
     ) {
         self.is_scaled = false;
-        let limited = S::LIMITED && state.reached_limit;
-        let scales = !self.known.is_there() && !limited;
-        let may_scale = scales || update.settled && !(limited && state.has_limited());
-        if matches!(state.load, Load::Force(_)) || S::FIXED || !may_scale {
+        let scales = !(self.known.is_there() || S::LIMITED && state.reached_limit);
+        if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.settled) {
             return;
         }
         self.runs.find(&state.contact);

@@ -39,7 +39,6 @@ use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
-use crate::scene::Load;
 
 /// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
@@ -90,7 +89,7 @@ impl<T: Real> Iteration<T> {
             self.limits.forget();
             self.find_contact(state);
             let mut update = Update::default();
-            self.least_energy(state, set, &mut update, None);
+            self.least_energy::<S>(state, &mut update, None);
             if S::LIMITED && state.has_limited() {
                 state.fit_approach();
             } else {
@@ -170,7 +169,7 @@ impl<T: Real> Iteration<T> {
             self.settle();
             update.settled = true;
         }
-        self.least_energy(state, set, &mut update, None);
+        self.least_energy::<S>(state, &mut update, None);
         self.fit_approach(state, &update);
         self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
@@ -227,15 +226,7 @@ impl<T: Real> Iteration<T> {
                 search.tq = 0.0;
             }
         }
-        if let Load::Force(_) = state.load {
-            update.factor = self.carry_force::<S>(state);
-        }
-        if limited {
-            self.is_scaled = false;
-        } else {
-            let sums = sums.filter(|_| !update.settled);
-            self.least_energy(state, set, &mut update, sums);
-        }
+        self.scale_to_load::<S>(state, &mut update, limited, sums);
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
