@@ -11,35 +11,37 @@ pub(super) const HELD_BACK: f64 = 1e-6;
 const CHUNK: usize = 64;
 
 impl<T: Real> Iteration<T> {
-    /// p = p + alpha t on C, and 4.1: elements beyond a bound, and those held back by the forecast, leave for it; what they gain is
-    /// owed. Returns how many.
+    /// p = p + alpha t + gamma d on C, and 4.1: elements beyond a bound, and those held back by the forecast, leave for it; what they gain
+    /// is owed. Returns how many.
     pub(super) fn update_pressures<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
         set: S,
-        alpha: f64,
+        (alpha, gamma): (f64, f64),
         forecast: Option<f64>,
     ) -> u64 {
         let t = &self.t;
-        let leaves = |i: usize, p: f64, t: T| {
+        let d = self.known.d(gamma, t);
+        let to = |p: f64, t: T, d: T| p + (alpha * t.to_double() + gamma * d.to_double());
+        let leaves = |i: usize, p: f64, t: T, d: T| {
             let held_back = forecast.is_some_and(|forecast| {
                 let to = p + forecast * t.to_double();
                 to <= HELD_BACK * p || S::LIMITED && to >= set.limit(i) * (1.0 - HELD_BACK)
             });
-            set.leaves(i, p + alpha * t.to_double()) | (held_back & !S::FIXED)
+            set.leaves(i, to(p, t, d)) | (held_back & !S::FIXED)
         };
         // Blocks that no element leaves; the others have a sum of 1.
         let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
             let some_leave = block.runs().any(|(run, local)| {
-                let elements = p[local].iter().zip(&t[run.clone()]).zip(run);
-                elements.fold(false, |some, ((p, t), i)| some | leaves(i, *p, *t))
+                let elements = p[local].iter().zip(&t[run.clone()]).zip(&d[run.clone()]).zip(run);
+                elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d))
             });
             if some_leave {
                 sums.add(1, |_| [1.0]);
                 return;
             }
             for (run, local) in block.runs() {
-                p[local].iter_mut().zip(&t[run]).for_each(|(p, t)| *p += alpha * t.to_double());
+                p[local].iter_mut().zip(&t[run.clone()]).zip(&d[run]).for_each(|((p, t), d)| *p = to(*p, *t, *d));
             }
         });
         let before = self.debts.len();
@@ -49,39 +51,40 @@ impl<T: Real> Iteration<T> {
             .of_blocks_with_sum()
             .flat_map(|run| run.clone().step_by(CHUNK).map(move |start| start..run.end.min(start + CHUNK)));
         for chunk in chunks {
-            let (p, t) = (&mut state.p[chunk.clone()], &self.t[chunk.clone()]);
-            let some_leave = |some, ((p, t), i): ((&f64, &T), usize)| some | leaves(i, *p, *t);
-            if !p.iter().zip(t).zip(chunk.clone()).fold(false, some_leave) {
-                p.iter_mut().zip(t).for_each(|(p, t)| *p += alpha * t.to_double());
+            let (p, t, d) = (&mut state.p[chunk.clone()], &t[chunk.clone()], &d[chunk.clone()]);
+            let some_leave = |some, (((p, t), d), i): (((&f64, &T), &T), usize)| some | leaves(i, *p, *t, *d);
+            if !p.iter().zip(t).zip(d).zip(chunk.clone()).fold(false, some_leave) {
+                p.iter_mut().zip(t).zip(d).for_each(|((p, t), d)| *p = to(*p, *t, *d));
                 continue;
             }
-            for i in chunk {
-                let (p, t) = (state.p[i], self.t[i]);
-                state.p[i] = p + alpha * t.to_double();
-                if leaves(i, p, t) {
-                    self.debts.push((i, leave(state, set, i, t > T::zero())));
-                    self.t[i] = T::zero();
+            for (i, (t, d)) in chunk.zip(t.iter().zip(d)) {
+                let p = state.p[i];
+                state.p[i] = to(p, *t, *d);
+                if leaves(i, p, *t, *d) {
+                    self.debts.push((i, leave(state, set, i, *t > T::zero())));
                 }
             }
         }
+        self.debts[before..].iter().for_each(|debt| self.t[debt.0] = T::zero());
         for debt in &self.debts[before..] {
             self.runs.change(debt.0);
         }
         (self.debts.len() - before) as u64
     }
 
-    /// u = factor (u + alpha q + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
+    /// u = factor (u + alpha q + gamma w + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
     /// than the caches.
     pub(super) fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &Update) -> u64 {
         let limited = S::LIMITED && state.has_limited();
         let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
-        let Update { alpha, settled, factor } = *update;
+        let Update { alpha, gamma, settled, factor } = *update;
+        let w = self.known.w(gamma, q);
         self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
-            for (u, q) in u.iter_mut().zip(&q[row.clone()]) {
-                *u += alpha * q.to_double();
+            for ((u, q), w) in u.iter_mut().zip(&q[row.clone()]).zip(&w[row.clone()]) {
+                *u += alpha * q.to_double() + gamma * w.to_double();
             }
             if settled {
                 u.iter_mut().zip(&z[row.clone()]).for_each(|(u, z)| *u += z.to_double());

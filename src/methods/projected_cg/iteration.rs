@@ -100,7 +100,7 @@ impl<T: Real> Iteration<T> {
             self.residual(state);
             self.precondition(state);
             self.direct(state, 0.0, None);
-            self.update_pressures(state, set, FIRST_STEP, None);
+            self.update_pressures(state, set, (FIRST_STEP, 0.0), None);
             self.debts.clear();
             state.carry_force(set);
         }
@@ -120,8 +120,14 @@ impl<T: Real> Iteration<T> {
         let (mut least, mut since_least) = (f64::INFINITY, 0);
         loop {
             // r = -e on C
-            let residual = self.residual(state);
+            let mut residual = self.residual(state);
             if let Some(cycle) = &mut cycle {
+                let seems_met = !S::LIMITED && !goal.by_update() && residual <= goal.tolerance;
+                if seems_met && self.owes_too_much(residual, goal) {
+                    self.pay_all(state, set);
+                    cycle.products += 1;
+                    residual = self.residual(state);
+                }
                 cycle.residual = residual;
                 if !after_cycle(cycle) {
                     return End::Cancelled;
@@ -158,7 +164,7 @@ impl<T: Real> Iteration<T> {
         self.find_contact(state);
         let mut update = Update::default();
         self.limits.forget();
-        if self.update_pressures(state, set, 0.0, None) > 0 {
+        if self.update_pressures(state, set, (0.0, 0.0), None) > 0 {
             update.factor = self.carry_force::<S>(state);
         } else if S::LIMITED {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
@@ -205,17 +211,18 @@ impl<T: Real> Iteration<T> {
         self.pay(state, forecast, alpha, &mut step);
         let paid = self.debts.len();
 
-        // p = p + alpha t, 4.1
+        // p = p + alpha t + gamma d, 4.1
+        let gamma = self.gamma(&step, alpha);
         let left = if S::LIMITED && !near {
-            self.update_pressures(state, NonNegative, alpha, held_back)
+            self.update_pressures(state, NonNegative, (alpha, gamma), held_back)
         } else {
-            self.update_pressures(state, set, alpha, held_back)
+            self.update_pressures(state, set, (alpha, gamma), held_back)
         };
-        self.leave_known();
+        self.leave_known(state, gamma);
         search.expect(alpha, self.preconditioner.is_some());
 
-        // u = u + alpha q, 4.2
-        let mut update = Update { alpha, ..Update::default() };
+        // u = u + alpha q + gamma w, 4.2
+        let mut update = Update { alpha, gamma, ..Update::default() };
         let sums = step.energy.map(|energy| self.after_truncation(state, energy.after(alpha), alpha, paid));
         let (limited, owed) = (S::LIMITED && state.has_limited(), self.owed());
         if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
@@ -230,15 +237,27 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        self.step_along_known(state);
+        // At most that: the sum of what the step and the scaling change.
+        let moved = alpha.abs() * step.tt.sqrt() + gamma.abs() * self.known.norm();
+        let scaled = (update.factor - 1.0).abs() * step.pp.sqrt();
         Some(Cycle {
             changes: left + entered,
-            // At most that: the sum of what the step and the scaling change.
-            update: alpha.abs() * (step.tt / count).sqrt() + (update.factor - 1.0).abs() * (step.pp / count).sqrt(),
+            update: (moved + scaled) / count.sqrt(),
             pressure: (step.pp / count).sqrt(),
             residual: f64::INFINITY,
             products: 1 + u64::from(update.settled) + std::mem::take(&mut search.products),
         })
+    }
+
+    /// A product pays all that is owed.
+    fn pay_all<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+        self.settle();
+        let mut update = Update { settled: true, ..Update::default() };
+        self.scale_to_load::<S>(state, &mut update, false, None);
+        self.fit_approach(state, &update);
+        self.update_displacements(state, set, &update);
+        self.runs.find(&state.contact);
+        self.step_along_known(state);
     }
 
     /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.

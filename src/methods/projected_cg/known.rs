@@ -6,12 +6,13 @@
 //!
 //! ```text
 //! t has mean zero over C, as under a prescribed force
-//! gamma = (r, d)/(d, w),  p = p + gamma d,  u = u + gamma w      after each step along t
+//! gamma = (r - alpha q, d)/(d, w),  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
 //! ```
 //!
 //! Elements that are not in C at the start are taken out of d, and by one product out of w. Of those that leave later the pressure stays 0, and u
 //! is owed the difference.
 
+use super::passes::Step;
 use super::scaling::Scaling;
 use super::segments::Sums;
 use super::vectors::Iteration;
@@ -37,6 +38,15 @@ pub struct Last<'a> {
     pub u: &'a [f64],
 }
 
+/// Sums over C for gamma: (r, d), (q, d), and of the residual after a step along t.
+pub(super) struct AlongChange {
+    rd: f64,
+    qd: f64,
+    rr: f64,
+    rq: f64,
+    qq: f64,
+}
+
 /// d and w = A d.
 #[derive(Default)]
 pub(super) struct Known<T> {
@@ -44,7 +54,8 @@ pub(super) struct Known<T> {
     pub(super) w: Vec<T>,
     /// (d, w); 0 while there is no such direction.
     energy: f64,
-    /// The sum of w^2 over the elements of d.
+    /// The sums of d^2, and of w^2 over the elements of d.
+    length: f64,
     size: f64,
     /// Elements that left C, which are 0 in d but not in what w is of.
     outside: Vec<(usize, f64)>,
@@ -68,10 +79,45 @@ impl<T> Known<T> {
 }
 
 impl<T: Real> Known<T> {
+    /// `(r, d)/(d, w)`; 0 where that changes e by little beside the residual, the sum of squares of which is `rr`.
+    fn worthwhile(&self, rd: f64, rr: f64) -> f64 {
+        let gamma = rd / self.energy;
+        let is_worthwhile = gamma.is_finite() && gamma * gamma * self.size > WORTHWHILE * WORTHWHILE * rr;
+        if is_worthwhile {
+            gamma
+        } else {
+            0.0
+        }
+    }
+
+    /// d; t where gamma is 0, so that nothing else is read.
+    pub(super) fn d<'a>(&'a self, gamma: f64, t: &'a [T]) -> &'a [T] {
+        if gamma == 0.0 {
+            t
+        } else {
+            &self.d
+        }
+    }
+
+    /// w; q where gamma is 0, likewise.
+    pub(super) fn w<'a>(&'a self, gamma: f64, q: &'a [T]) -> &'a [T] {
+        if gamma == 0.0 {
+            q
+        } else {
+            &self.w
+        }
+    }
+
+    /// The 2-norm of d.
+    pub(super) fn norm(&self) -> f64 {
+        self.length.sqrt()
+    }
+
     fn measure(&mut self) {
-        (self.energy, self.size) = (0.0, 0.0);
+        (self.energy, self.length, self.size) = (0.0, 0.0, 0.0);
         for (d, w) in self.d.iter().zip(&self.w).filter(|(d, _)| **d != T::zero()) {
             self.energy += d.to_double() * w.to_double();
+            self.length += d.to_double() * d.to_double();
             self.size += w.to_double() * w.to_double();
         }
     }
@@ -131,12 +177,37 @@ impl<T: Real> Iteration<T> {
         1
     }
 
-    /// Elements that have just left C leave d, too; A of their part of it will be owed.
-    pub(super) fn leave_known(&mut self) {
-        let Known { d, outside, energy, .. } = &mut self.known;
-        if *energy <= 0.0 {
+    /// The sums of a step, and those of gamma.
+    pub(super) fn step_beside_change(&mut self, state: &State) -> Step {
+        let (t, q, d, approach) = (&self.t, &self.q, &self.known.d, state.approach);
+        let [rt, tq, tt, t1, pp, rd, qd, rq, qq] = self.runs.sum(|block, sums| {
+            for (run, _) in block.runs() {
+                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
+                sums.add(h.len(), |i| {
+                    let (t, q, d) = (t[i].to_double(), q[i].to_double(), d[i].to_double());
+                    let r = approach - h[i] - u[i];
+                    [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d, r * q, q * q]
+                });
+            }
+        });
+        let rr = self.limits.residual;
+        Step { rt, tq, tt, t1, pp, energy: None, change: Some(AlongChange { rd, qd, rr, rq, qq }) }
+    }
+
+    /// gamma after a step of length alpha; 0 where it is not worth its pass.
+    pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
+        let Some(AlongChange { rd, qd, rr, rq, qq }) = step.change else { return 0.0 };
+        self.known.worthwhile(rd - alpha * qd, rr - alpha * (2.0 * rq - alpha * qq))
+    }
+
+    /// Elements that left C before the step of length gamma owe their part of it; those that have just left leave d, too.
+    pub(super) fn leave_known(&mut self, state: &mut State, gamma: f64) {
+        if !self.known.is_there() {
             return;
         }
+        self.owe_known(state, gamma);
+        let Known { d, outside, .. } = &mut self.known;
         for &(i, _) in &self.debts {
             if d[i] != T::zero() {
                 outside.push((i, d[i].to_double()));
@@ -145,12 +216,12 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// p and u move along d to the least energy, if that is worth a pass over u.
+    /// Outside a step: p and u move along d to the least energy, if that is worth a pass over u.
     pub(super) fn step_along_known(&mut self, state: &mut State) {
         if !self.known.is_there() {
             return;
         }
-        let Known { d, w, energy, size, outside } = &self.known;
+        let Known { d, w, .. } = &self.known;
         let [rd, rr] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
@@ -160,8 +231,8 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        let gamma = rd / energy;
-        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+        let gamma = self.known.worthwhile(rd, rr);
+        if gamma == 0.0 {
             return;
         }
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
@@ -173,7 +244,12 @@ impl<T: Real> Iteration<T> {
         self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
             u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());
         });
-        for &(i, d) in outside {
+        self.owe_known(state, gamma);
+    }
+
+    /// Elements that left C have no part of gamma d, but u has.
+    fn owe_known(&mut self, state: &mut State, gamma: f64) {
+        for &(i, d) in self.known.outside.iter().filter(|_| gamma != 0.0) {
             if state.contact[i] {
                 state.p[i] += gamma * d;
             } else {

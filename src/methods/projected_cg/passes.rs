@@ -2,15 +2,17 @@
 
 use super::energy::Energy;
 use super::extension::Area;
+use super::known::AlongChange;
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
-/// What becomes of u: factor (u + alpha q + A d).
+/// What becomes of u: factor (u + alpha q + gamma w + A d), w of the known change.
 #[derive(Clone, Copy)]
 pub(super) struct Update {
     pub(super) alpha: f64,
+    pub(super) gamma: f64,
     /// Whether z holds A d.
     pub(super) settled: bool,
     pub(super) factor: f64,
@@ -18,7 +20,7 @@ pub(super) struct Update {
 
 impl Default for Update {
     fn default() -> Update {
-        Update { alpha: 0.0, settled: false, factor: 1.0 }
+        Update { alpha: 0.0, gamma: 0.0, settled: false, factor: 1.0 }
     }
 }
 
@@ -30,6 +32,7 @@ pub(super) struct Step {
     pub(super) t1: f64,
     pub(super) pp: f64,
     pub(super) energy: Option<Energy>,
+    pub(super) change: Option<AlongChange>,
 }
 
 impl<T: Real> Iteration<T> {
@@ -44,7 +47,7 @@ impl<T: Real> Iteration<T> {
         if matches!(state.load, Load::Approach(_)) {
             return;
         }
-        let (q, z, Update { alpha, settled, factor }) = (&self.q, &self.z, *update);
+        let (q, z, Update { alpha, settled, factor, .. }) = (&self.q, &self.z, *update);
         let [sum] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
@@ -74,7 +77,7 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        self.limits.residual = rr;
+        (self.limits.residual, self.distance) = (rr, hh.sqrt());
         if rr == 0.0 {
             0.0
         } else {
@@ -141,6 +144,9 @@ impl<T: Real> Iteration<T> {
     /// The sums over C that the step length needs, and those of the energy where p is scaled.
     pub(super) fn step(&mut self, state: &State) -> Step {
         let (t, q, approach) = (&self.t, &self.q, state.approach);
+        if self.known.is_there() {
+            return self.step_beside_change(state);
+        }
         if !self.is_scaled {
             let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
                 for (run, _) in block.runs() {
@@ -152,7 +158,7 @@ impl<T: Real> Iteration<T> {
                     });
                 }
             });
-            return Step { rt, tq, tt, t1, pp, energy: None };
+            return Step { rt, tq, tt, t1, pp, energy: None, change: None };
         }
         let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
@@ -166,7 +172,7 @@ impl<T: Real> Iteration<T> {
             }
         });
         let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
-        Step { rt, tq, tt, t1, pp, energy: Some(energy) }
+        Step { rt, tq, tt, t1, pp, energy: Some(energy), change: None }
     }
 
     /// p = factor p on C, and the debts likewise.
