@@ -38,13 +38,10 @@ pub struct Last<'a> {
     pub u: &'a [f64],
 }
 
-/// Sums over C for gamma: (r, d), (q, d), and of the residual after a step along t.
+/// Sums over C for gamma: (r, d), (q, d).
 pub(super) struct AlongChange {
     rd: f64,
     qd: f64,
-    rr: f64,
-    rq: f64,
-    qq: f64,
 }
 
 /// d and w = A d.
@@ -79,17 +76,6 @@ impl<T> Known<T> {
 }
 
 impl<T: Real> Known<T> {
-    /// `(r, d)/(d, w)`; 0 where that changes e by little beside the residual, the sum of squares of which is `rr`.
-    fn worthwhile(&self, rd: f64, rr: f64) -> f64 {
-        let gamma = rd / self.energy;
-        let is_worthwhile = gamma.is_finite() && gamma * gamma * self.size > WORTHWHILE * WORTHWHILE * rr;
-        if is_worthwhile {
-            gamma
-        } else {
-            0.0
-        }
-    }
-
     /// d; t where gamma is 0, so that nothing else is read.
     pub(super) fn d<'a>(&'a self, gamma: f64, t: &'a [T]) -> &'a [T] {
         if gamma == 0.0 {
@@ -180,25 +166,29 @@ impl<T: Real> Iteration<T> {
     /// The sums of a step, and those of gamma.
     pub(super) fn step_beside_change(&mut self, state: &State) -> Step {
         let (t, q, d, approach) = (&self.t, &self.q, &self.known.d, state.approach);
-        let [rt, tq, tt, t1, pp, rd, qd, rq, qq] = self.runs.sum(|block, sums| {
+        let [rt, tq, tt, t1, pp, rd, qd] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                 let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
                 sums.add(h.len(), |i| {
                     let (t, q, d) = (t[i].to_double(), q[i].to_double(), d[i].to_double());
                     let r = approach - h[i] - u[i];
-                    [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d, r * q, q * q]
+                    [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d]
                 });
             }
         });
-        let rr = self.limits.residual;
-        Step { rt, tq, tt, t1, pp, energy: None, change: Some(AlongChange { rd, qd, rr, rq, qq }) }
+        Step { rt, tq, tt, t1, pp, energy: None, change: Some(AlongChange { rd, qd }) }
     }
 
-    /// gamma after a step of length alpha; 0 where it is not worth its pass.
+    /// gamma beside a step of length alpha.
     pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
-        let Some(AlongChange { rd, qd, rr, rq, qq }) = step.change else { return 0.0 };
-        self.known.worthwhile(rd - alpha * qd, rr - alpha * (2.0 * rq - alpha * qq))
+        let Some(AlongChange { rd, qd }) = step.change else { return 0.0 };
+        let gamma = (rd - alpha * qd) / self.known.energy;
+        if gamma.is_finite() {
+            gamma
+        } else {
+            0.0
+        }
     }
 
     /// Elements that left C before the step of length gamma owe their part of it; those that have just left leave d, too.
@@ -221,7 +211,7 @@ impl<T: Real> Iteration<T> {
         if !self.known.is_there() {
             return;
         }
-        let Known { d, w, .. } = &self.known;
+        let Known { d, w, energy, size, .. } = &self.known;
         let [rd, rr] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
@@ -231,8 +221,8 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        let gamma = self.known.worthwhile(rd, rr);
-        if gamma == 0.0 {
+        let gamma = rd / energy;
+        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
             return;
         }
         let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
