@@ -39,17 +39,18 @@ impl<T: Real> Iteration<T> {
     }
 
     /// Whether the certificate would hardly hold for what is owed, where the residual by u is `residual`. What is owed adds to e, in the 2-norm over
-    /// C, as much as its sum on one element at the rim would where its signs agree, and as each element alone does where they do not; and most to e
-    /// of the element that owes it.
-    pub(super) fn owes_too_much(&self, residual: f64, goal: &Goal) -> bool {
-        let [sum, squares, most] = self
-            .debts
-            .iter()
-            .fold([0.0, 0.0, 0.0_f64], |[sum, squares, most], &(_, d)| [sum + d, squares + d * d, most.max(d.abs())]);
-        let relative = self.self_influence / self.distance;
-        let owed = relative * f64::max(TOGETHER * f64::abs(sum), f64::sqrt(squares));
-        let deepest = relative * most * (self.runs.count() as f64).sqrt();
-        residual.hypot(owed) > ALLOWED * goal.tolerance || deepest > goal.tolerance
+    /// C, as much as its sum on one element at the rim would where its signs agree, and as each element alone does where they do not. Outside C,
+    /// most is added to e of the element that owes it.
+    pub(super) fn owes_too_much(&self, state: &State, residual: f64, goal: &Goal) -> bool {
+        let (itself, allowed) = (self.self_influence, ALLOWED * goal.tolerance * self.distance);
+        let deepest = -allowed / (self.runs.count() as f64).sqrt();
+        let (mut sum, mut squares, mut penetrates) = (0.0, 0.0, false);
+        for &(i, d) in &self.debts {
+            (sum, squares) = (sum + d, squares + d * d);
+            penetrates |= !state.contact[i] && state.deformed_distance(i) + itself * d < deepest;
+        }
+        let owed = itself * f64::max(TOGETHER * f64::abs(sum), f64::sqrt(squares));
+        penetrates || (residual * self.distance).hypot(owed) > allowed
     }
 
     /// The sum of |d|.

@@ -79,20 +79,14 @@ impl<T: Real> Iteration<T> {
         let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
-        let Update { alpha, gamma, settled, factor } = *update;
-        let w = self.known.w(gamma, q);
+        let w = self.known.w(update.gamma, q);
         self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
-            for ((u, q), w) in u.iter_mut().zip(&q[row.clone()]).zip(&w[row.clone()]) {
-                *u += alpha * q.to_double() + gamma * w.to_double();
-            }
-            if settled {
-                u.iter_mut().zip(&z[row.clone()]).for_each(|(u, z)| *u += z.to_double());
-            }
-            if factor != 1.0 {
-                u.iter_mut().for_each(|u| *u *= factor);
-            }
-            let mut any = any_enters(set, &h[row.clone()], u, &contact[row.clone()], approach);
+            let z = if update.settled { &z[row.clone()] } else { &[] };
+            let (h_of_row, contact) = (&h[row.clone()], &contact[row.clone()]);
+            let products = (&q[row.clone()], &w[row.clone()], z);
+            let moves = Moves { u, products, update: *update, contact, h: h_of_row, approach, set };
+            let mut any = pulp::Arch::new().dispatch(moves);
             if limited {
                 for ((h, u), at_limit) in h[row.clone()].iter().zip(&*u).zip(&at_limit[row]) {
                     any |= set.enters(true, h - approach + *u) & at_limit;
@@ -131,7 +125,38 @@ impl<T: Real> Iteration<T> {
     }
 }
 
+/// A row of u moves; returns whether an element enters. Compiled for the vectors of this machine, on which no bit depends.
+struct Moves<'a, T, S> {
+    u: &'a mut [f64],
+    /// q, w, and A d or nothing.
+    products: (&'a [T], &'a [T], &'a [T]),
+    update: Update,
+    contact: &'a [bool],
+    h: &'a [f64],
+    approach: f64,
+    set: S,
+}
+
+impl<T: Real, S: AdmissibleSet> pulp::NullaryFnOnce for Moves<'_, T, S> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Moves { u, products: (q, w, z), update, contact, h, approach, set } = self;
+        let Update { alpha, gamma, factor, .. } = update;
+        for ((u, q), w) in u.iter_mut().zip(q).zip(w) {
+            *u += alpha * q.to_double() + gamma * w.to_double();
+        }
+        u.iter_mut().zip(z).for_each(|(u, z)| *u += z.to_double());
+        if factor != 1.0 {
+            u.iter_mut().for_each(|u| *u *= factor);
+        }
+        any_enters(set, h, u, contact, approach)
+    }
+}
+
 /// Whether an element enters. Of most blocks none does, because all are in contact or none penetrates: both the compiler can vectorise.
+#[inline(always)]
 fn any_enters<S: AdmissibleSet>(set: S, h: &[f64], u: &[f64], contact: &[bool], approach: f64) -> bool {
     const BLOCK: usize = 8;
     let exactly = |h: &[f64], u: &[f64], contact: &[bool]| {

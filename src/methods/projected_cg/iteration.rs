@@ -123,7 +123,7 @@ impl<T: Real> Iteration<T> {
             let mut residual = self.residual(state);
             if let Some(cycle) = &mut cycle {
                 let seems_met = !S::LIMITED && !goal.by_update() && residual <= goal.tolerance;
-                if seems_met && self.owes_too_much(residual, goal) {
+                if seems_met && self.owes_too_much(state, residual, goal) {
                     self.pay_all(state, set);
                     cycle.products += 1;
                     residual = self.residual(state);
