@@ -529,6 +529,26 @@ fn time_steps_by_approach_take_as_many_iterations_as_by_force() {
     assert!(by_approach <= 1.15 * by_force, "{by_approach} iterations by approach, {by_force} by force");
 }
 
+/// Where C shrinks, a step takes three products beside its iterations: of what the prediction truncates, of what leaves C with the last change, and
+/// of one certificate. Without a step along that change in each iteration the first certificate does not hold: then it takes five.
+#[test]
+fn a_step_in_time_needs_one_certificate() {
+    let grid = Grid::new(1024, 1024, 20.0 / 1024.0, 12.0 / 1024.0).unwrap();
+    let place = |k: usize, d: f64| (k as f64 - 511.5) * d;
+    let height = |i: usize| (place(i % 1024, grid.dx).powi(2), place(i / 1024, grid.dy).powi(2));
+    let h: Vec<f64> = (0..grid.len()).map(height).map(|(x2, y2)| 0.0016681 * x2 + 0.0030671 * y2).collect();
+    let bodies = || Bodies::same(82000.0, 0.28);
+    let next = Options { initial_guess: InitialGuess::Previous, ..Options::default() };
+    let at = |step: i32| Scene::new(grid, &h, bodies(), Load::Approach(0.1091 * 1.01f64.powi(12 - step)));
+    let mut solver = Solver::new(&at(0), &next).unwrap();
+    for step in 0..8 {
+        let (stop, report) = solver.solve(&at(step), &next, None, None).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        let others = report.count.matrix_products - report.count.cycles;
+        assert!(step < 2 || others <= 3, "step {step}: {others} products beside {} iterations", report.count.cycles);
+    }
+}
+
 #[test]
 fn time_steps_begin_with_what_the_last_ones_changed() {
     let grid = Grid::new(120, 130, 0.5, 0.25).unwrap();

@@ -25,8 +25,8 @@ impl<T: Real> Iteration<T> {
         let to = |p: f64, t: T, d: T| p + (alpha * t.to_double() + gamma * d.to_double());
         let leaves = |i: usize, p: f64, t: T, d: T| {
             let held_back = forecast.is_some_and(|forecast| {
-                let to = p + forecast * t.to_double();
-                to <= HELD_BACK * p || S::LIMITED && to >= set.limit(i) * (1.0 - HELD_BACK)
+                let forecast = p + forecast * t.to_double();
+                forecast <= HELD_BACK * p || S::LIMITED && forecast >= set.limit(i) * (1.0 - HELD_BACK)
             });
             set.leaves(i, to(p, t, d)) | (held_back & !S::FIXED)
         };
@@ -65,9 +65,9 @@ impl<T: Real> Iteration<T> {
                 }
             }
         }
-        self.debts[before..].iter().for_each(|debt| self.t[debt.0] = T::zero());
-        for debt in &self.debts[before..] {
-            self.runs.change(debt.0);
+        for &(i, _) in &self.debts[before..] {
+            self.t[i] = T::zero();
+            self.runs.change(i);
         }
         (self.debts.len() - before) as u64
     }

@@ -120,14 +120,8 @@ impl<T: Real> Iteration<T> {
         let (mut least, mut since_least) = (f64::INFINITY, 0);
         loop {
             // r = -e on C
-            let mut residual = self.residual(state);
+            let residual = self.residual(state);
             if let Some(cycle) = &mut cycle {
-                let seems_met = !S::LIMITED && !goal.by_update() && residual <= goal.tolerance;
-                if seems_met && self.owes_too_much(state, residual, goal) {
-                    self.pay_all(state, set);
-                    cycle.products += 1;
-                    residual = self.residual(state);
-                }
                 cycle.residual = residual;
                 if !after_cycle(cycle) {
                     return End::Cancelled;
@@ -218,7 +212,7 @@ impl<T: Real> Iteration<T> {
         } else {
             self.update_pressures(state, set, (alpha, gamma), held_back)
         };
-        self.leave_known(state, gamma);
+        self.leave_known(gamma);
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q + gamma w, 4.2
@@ -247,17 +241,6 @@ impl<T: Real> Iteration<T> {
             residual: f64::INFINITY,
             products: 1 + u64::from(update.settled) + std::mem::take(&mut search.products),
         })
-    }
-
-    /// A product pays all that is owed.
-    fn pay_all<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
-        self.settle();
-        let mut update = Update { settled: true, ..Update::default() };
-        self.scale_to_load::<S>(state, &mut update, false, None);
-        self.fit_approach(state, &update);
-        self.update_displacements(state, set, &update);
-        self.runs.find(&state.contact);
-        self.step_along_known(state);
     }
 
     /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.

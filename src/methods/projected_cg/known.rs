@@ -9,8 +9,8 @@
 //! gamma = (r - alpha q, d)/(d, w),  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
 //! ```
 //!
-//! Elements that are not in C at the start are taken out of d, and by one product out of w. Of those that leave later the pressure stays 0, and u
-//! is owed the difference.
+//! Elements that are not in C at the start are taken out of d, and by one product out of w. Those that leave later have no part of d any more, but
+//! of w and of (d, w): u is owed the difference.
 
 use super::passes::Step;
 use super::scaling::Scaling;
@@ -24,7 +24,7 @@ use crate::operator::fft::Real;
 
 /// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
 const CARRIES: f64 = 0.5;
-/// A step along d that changes e by less than this part of the residual waits.
+/// A first step along d that changes e by less than this part of the residual waits for the next.
 const WORTHWHILE: f64 = 0.1;
 /// A change of less than this part of the pressures is their rounding.
 const LEAST: f64 = 1e-6;
@@ -191,13 +191,17 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Elements that left C before the step of length gamma owe their part of it; those that have just left leave d, too.
-    pub(super) fn leave_known(&mut self, state: &mut State, gamma: f64) {
+    /// After a step of length gamma: elements that left d before are owed their part of it, which u has and p has not; those that have just left
+    /// C leave d, too.
+    pub(super) fn leave_known(&mut self, gamma: f64) {
         if !self.known.is_there() {
             return;
         }
-        self.owe_known(state, gamma);
         let Known { d, outside, .. } = &mut self.known;
+        if gamma != 0.0 && !outside.is_empty() {
+            self.debts.extend(outside.iter().map(|&(i, d)| (i, -gamma * d)));
+            merge(&mut self.debts);
+        }
         for &(i, _) in &self.debts {
             if d[i] != T::zero() {
                 outside.push((i, d[i].to_double()));
@@ -206,7 +210,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Outside a step: p and u move along d to the least energy, if that is worth a pass over u.
+    /// Before the first step: p and u move along d to the least energy, if that is worth a pass over u.
     pub(super) fn step_along_known(&mut self, state: &mut State) {
         if !self.known.is_there() {
             return;
@@ -234,19 +238,19 @@ impl<T: Real> Iteration<T> {
         self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
             u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());
         });
-        self.owe_known(state, gamma);
     }
+}
 
-    /// Elements that left C have no part of gamma d, but u has.
-    fn owe_known(&mut self, state: &mut State, gamma: f64) {
-        for &(i, d) in self.known.outside.iter().filter(|_| gamma != 0.0) {
-            if state.contact[i] {
-                state.p[i] += gamma * d;
-            } else {
-                self.debts.push((i, -gamma * d));
-            }
+/// One debt for each element.
+fn merge(debts: &mut Vec<(usize, f64)>) {
+    debts.sort_unstable_by_key(|debt| debt.0);
+    debts.dedup_by(|next, debt| {
+        let same = next.0 == debt.0;
+        if same {
+            debt.1 += next.1;
         }
-    }
+        same
+    });
 }
 
 /// A row of d and w, from what there is now and what there was before with the factor of its units; compiled for the vectors of this

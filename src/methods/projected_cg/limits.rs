@@ -160,6 +160,7 @@ impl<T: Real> Iteration<T> {
     /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
     /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
     pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
+        debug_assert!(update.gamma == 0.0, "with limits nothing is predicted");
         let (mut work, mut energy) = (0.0, 0.0);
         for i in 0..state.p.len() {
             let d = state.p[i] - self.limits.known[i];

@@ -42,7 +42,7 @@ impl<T: Real> Iteration<T> {
         self.runs.find(&state.contact);
     }
 
-    /// With a prescribed force: the approach is the mean over C of h + u, u as `update` will leave it.
+    /// With a prescribed force, where no change is known: the approach is the mean over C of h + u, u as `update` will leave it.
     pub(super) fn fit_approach(&mut self, state: &mut State, update: &Update) {
         if matches!(state.load, Load::Approach(_)) {
             return;
@@ -77,7 +77,7 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        (self.limits.residual, self.distance) = (rr, hh.sqrt());
+        self.limits.residual = rr;
         if rr == 0.0 {
             0.0
         } else {

@@ -43,8 +43,6 @@ impl Beyond {
 pub struct Operators<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
-    /// An element's influence on itself.
-    pub(super) self_influence: f64,
 }
 
 impl<T: Real> Operators<T> {
@@ -57,8 +55,7 @@ impl<T: Real> Operators<T> {
         grid: &Grid,
         threads: &Threads,
     ) -> Result<Operators<T>> {
-        let self_influence = factor * influence.at(0, 0);
-        Ok(Operators { operator, preconditioner: preconditioner(influence, factor, grid, threads)?, self_influence })
+        Ok(Operators { operator, preconditioner: preconditioner(influence, factor, grid, threads)? })
     }
 
     /// Bytes held.
@@ -71,7 +68,6 @@ impl<T: Real> Operators<T> {
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
-    pub(super) self_influence: f64,
     pub(super) extension: Option<Extension<T>>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
@@ -80,8 +76,6 @@ pub struct Iteration<T: Real> {
     pub(super) runs: Segments,
     /// Truncated elements and the pressures that u still lacks.
     pub(super) debts: Vec<(usize, f64)>,
-    /// 2-norm over C of `h - approach`, of the last residual.
-    pub(super) distance: f64,
     /// A direction that costs no product.
     pub(super) known: Known<T>,
     /// By approach: whether p is scaled to the least energy after each step.
@@ -96,7 +90,7 @@ pub struct Iteration<T: Real> {
 impl<T: Real> Iteration<T> {
     /// Sets up the iteration on `grid`.
     pub fn new(operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
-        let Operators { operator, preconditioner, self_influence } = operators;
+        let Operators { operator, preconditioner } = operators;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
         let directions = || {
@@ -109,14 +103,12 @@ impl<T: Real> Iteration<T> {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
-            self_influence,
             extension: Extension::if_worthwhile(grid, threads)?,
             t: directions()?,
             q: directions()?,
             z: directions()?,
             runs: Segments::new(grid, threads)?,
             debts,
-            distance: 0.0,
             known: Known::default(),
             is_scaled: false,
             limits: Beyond::default(),
@@ -131,7 +123,6 @@ impl<T: Real> Iteration<T> {
         let left = Operators {
             operator: replace(&mut self.operator, operators.operator),
             preconditioner: replace(&mut self.preconditioner, operators.preconditioner),
-            self_influence: replace(&mut self.self_influence, operators.self_influence),
         };
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
@@ -159,7 +150,6 @@ impl<T: Real> Iteration<T> {
             Some(whole) => self.operator = whole.in_precision(factor)?,
             None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
         }
-        self.self_influence = factor * influence.at(0, 0);
         // What the one before held serves the next.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
