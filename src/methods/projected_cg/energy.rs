@@ -88,7 +88,7 @@ impl<T: Real> Iteration<T> {
     /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
         let (q, z, Update { alpha, gamma, settled, .. }) = (&self.q, &self.z, *update);
-        let w = self.known.w(gamma, q);
+        let (_, w) = self.known.beside(gamma, &self.t, q);
         let [work, energy] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
                 let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);

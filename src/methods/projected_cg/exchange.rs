@@ -21,12 +21,12 @@ impl<T: Real> Iteration<T> {
         forecast: Option<f64>,
     ) -> u64 {
         let t = &self.t;
-        let d = self.known.d(gamma, t);
+        let (d, _) = self.known.beside(gamma, t, &self.q);
         let to = |p: f64, t: T, d: T| p + (alpha * t.to_double() + gamma * d.to_double());
         let leaves = |i: usize, p: f64, t: T, d: T| {
             let held_back = forecast.is_some_and(|forecast| {
-                let forecast = p + forecast * t.to_double();
-                forecast <= HELD_BACK * p || S::LIMITED && forecast >= set.limit(i) * (1.0 - HELD_BACK)
+                let foreseen = p + forecast * t.to_double();
+                foreseen <= HELD_BACK * p || S::LIMITED && foreseen >= set.limit(i) * (1.0 - HELD_BACK)
             });
             set.leaves(i, to(p, t, d)) | (held_back & !S::FIXED)
         };
@@ -79,7 +79,7 @@ impl<T: Real> Iteration<T> {
         let State { h, u, contact, at_limit, approach, grid, .. } = state;
         let (mx, approach) = (grid.mx, *approach);
         let (q, z) = (&self.q, &self.z);
-        let w = self.known.w(update.gamma, q);
+        let (_, w) = self.known.beside(update.gamma, &self.t, q);
         self.threads.for_each_row_pair((u, mx), (&mut self.entering, 1), |iy, u, entering| {
             let row = iy * mx..(iy + 1) * mx;
             let z = if update.settled { &z[row.clone()] } else { &[] };

@@ -231,12 +231,9 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         let entered = self.update_displacements(state, set, &update);
         self.runs.find(&state.contact);
-        // At most that: the sum of what the step and the scaling change.
-        let moved = alpha.abs() * step.tt.sqrt() + gamma.abs() * self.known.norm();
-        let scaled = (update.factor - 1.0).abs() * step.pp.sqrt();
         Some(Cycle {
             changes: left + entered,
-            update: (moved + scaled) / count.sqrt(),
+            update: step.change(alpha, gamma.abs() * self.known.norm(), update.factor) / count.sqrt(),
             pressure: (step.pp / count).sqrt(),
             residual: f64::INFINITY,
             products: 1 + u64::from(update.settled) + std::mem::take(&mut search.products),

@@ -38,12 +38,6 @@ pub struct Last<'a> {
     pub u: &'a [f64],
 }
 
-/// Sums over C for gamma: (r, d), (q, d).
-pub(super) struct AlongChange {
-    rd: f64,
-    qd: f64,
-}
-
 /// d and w = A d.
 #[derive(Default)]
 pub(super) struct Known<T> {
@@ -76,21 +70,12 @@ impl<T> Known<T> {
 }
 
 impl<T: Real> Known<T> {
-    /// d; t where gamma is 0, so that nothing else is read.
-    pub(super) fn d<'a>(&'a self, gamma: f64, t: &'a [T]) -> &'a [T] {
+    /// d and w; t and q where gamma is 0, so that nothing else is read.
+    pub(super) fn beside<'a>(&'a self, gamma: f64, t: &'a [T], q: &'a [T]) -> (&'a [T], &'a [T]) {
         if gamma == 0.0 {
-            t
+            (t, q)
         } else {
-            &self.d
-        }
-    }
-
-    /// w; q where gamma is 0, likewise.
-    pub(super) fn w<'a>(&'a self, gamma: f64, q: &'a [T]) -> &'a [T] {
-        if gamma == 0.0 {
-            q
-        } else {
-            &self.w
+            (&self.d, &self.w)
         }
     }
 
@@ -177,14 +162,13 @@ impl<T: Real> Iteration<T> {
                 });
             }
         });
-        Step { rt, tq, tt, t1, pp, energy: None, change: Some(AlongChange { rd, qd }) }
+        Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
-    /// gamma beside a step of length alpha.
+    /// gamma beside a step of length alpha; 0 where no change is known.
     pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
-        let Some(AlongChange { rd, qd }) = step.change else { return 0.0 };
-        let gamma = (rd - alpha * qd) / self.known.energy;
-        if gamma.is_finite() {
+        let gamma = (step.rd - alpha * step.qd) / self.known.energy;
+        if self.known.is_there() && gamma.is_finite() {
             gamma
         } else {
             0.0

@@ -2,7 +2,6 @@
 
 use super::energy::Energy;
 use super::extension::Area;
-use super::known::AlongChange;
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
@@ -24,15 +23,23 @@ impl Default for Update {
     }
 }
 
-/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p).
+/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p); and (r, d), (q, d), 0 where no change is known.
 pub(super) struct Step {
     pub(super) rt: f64,
     pub(super) tq: f64,
     pub(super) tt: f64,
     pub(super) t1: f64,
     pub(super) pp: f64,
+    pub(super) rd: f64,
+    pub(super) qd: f64,
     pub(super) energy: Option<Energy>,
-    pub(super) change: Option<AlongChange>,
+}
+
+impl Step {
+    /// The 2-norm of the change of p, at most: the sum of what the step along t, that along d, of which the length is given, and the scaling change.
+    pub(super) fn change(&self, alpha: f64, along_d: f64, factor: f64) -> f64 {
+        alpha.abs() * self.tt.sqrt() + along_d + (factor - 1.0).abs() * self.pp.sqrt()
+    }
 }
 
 impl<T: Real> Iteration<T> {
@@ -158,7 +165,7 @@ impl<T: Real> Iteration<T> {
                     });
                 }
             });
-            return Step { rt, tq, tt, t1, pp, energy: None, change: None };
+            return Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
         }
         let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
@@ -172,7 +179,7 @@ impl<T: Real> Iteration<T> {
             }
         });
         let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
-        Step { rt, tq, tt, t1, pp, energy: Some(energy), change: None }
+        Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
 
     /// p = factor p on C, and the debts likewise.
