@@ -14,7 +14,11 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
         // Few rows have an element that leaves, and this the compiler can vectorise.
         let row = start..start + state.grid.mx;
         let elements = state.p[row.clone()].iter().zip(&state.contact[row.clone()]).zip(row.clone());
-        if !elements.fold(false, |some, ((p, inside), i)| some | (inside & set.leaves(i, *p))) {
+        let some_leaves = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || elements.fold(0, |some, ((p, inside), i)| some | u64::from(inside & set.leaves(i, *p))),
+        );
+        if some_leaves == 0 {
             continue;
         }
         for i in row {

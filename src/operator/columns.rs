@@ -197,8 +197,8 @@ impl<T: Real> Block<'_, T> {
         assert!(rows.end <= self.rows.min(length) && from.len() >= columns * length);
         // TILE rows at a time: the reads of each column are neighbours.
         let mut row = rows.start;
+        let mut tile = [[Complex::default(); BLOCK]; TILE];
         while row + TILE <= rows.end {
-            let mut tile = [[Complex::default(); BLOCK]; TILE];
             for (c, column) in from.chunks_exact(length).take(columns).enumerate() {
                 for (to, value) in tile.iter_mut().zip(&column[row..row + TILE]) {
                     to[c] = *value;

@@ -24,10 +24,13 @@ impl Plain<'_> {
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));
         }
-        // Of all of them first, which the compiler can vectorise.
-        let is_none = |v: &f64| v.is_nan() | (*v == f64::NEG_INFINITY);
-        let any = h.iter().fold(false, |any, v| any | is_none(v));
-        match any.then(|| h.iter().position(is_none)).flatten() {
+        // NaN is not greater than anything. Of all of them first, which the compiler can vectorise.
+        let is_number = |v: &f64| *v > f64::NEG_INFINITY;
+        let all = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg()),
+        );
+        match (all == 0).then(|| h.iter().position(|v| !is_number(v))).flatten() {
             Some(i) => Err(Error::NotFinite(format!(
                 "undeformed_distance of {} is {}; it must be a number, or +infinity where there is no surface",
                 self.grid.element(i),

@@ -73,7 +73,12 @@ impl Threads {
         scratch: &mut [S],
         work: impl Fn(P, &mut S) + Sync,
     ) {
-        let work = |piece: P, scratch: &mut S| pulp::Arch::new().dispatch(|| work(piece, scratch));
+        let work = |piece: P, scratch: &mut S| {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || work(piece, scratch),
+            )
+        };
         let Some((own, others)) = scratch.split_first_mut() else { return };
         let pool = if pieces.len() > 1 { self.pool() } else { None };
         let Some(pool) = pool else { return pieces.for_each(|piece| work(piece, own)) };
@@ -129,11 +134,16 @@ impl Threads {
         work: impl Fn(usize, &mut [A], &mut S) + Sync + Send,
     ) {
         let per_piece = self.rows_per_piece(data.len().div_ceil(length));
-        self.share(data.chunks_mut(per_piece * length).enumerate(), scratch, |(k, rows), scratch| {
-            for (i, row) in rows.chunks_mut(length).enumerate() {
-                work(k * per_piece + i, row, scratch);
-            }
-        });
+        self.share(
+            data.chunks_mut(per_piece * length).enumerate(),
+            scratch,
+            #[inline(always)]
+            |(k, rows), scratch| {
+                for (i, row) in rows.chunks_mut(length).enumerate() {
+                    work(k * per_piece + i, row, scratch);
+                }
+            },
+        );
     }
 
     /// Calls `work(row, its data in a, its data in b, scratch)` on each row of both; the last row may be shorter.
@@ -146,11 +156,16 @@ impl Threads {
     ) {
         let per_piece = self.rows_per_piece(a.len().div_ceil(length_a));
         let pieces = a.chunks_mut(per_piece * length_a).zip(b.chunks_mut(per_piece * length_b)).enumerate();
-        self.share(pieces, scratch, |(k, (a, b)), scratch| {
-            for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
-                work(k * per_piece + i, a, b, scratch);
-            }
-        });
+        self.share(
+            pieces,
+            scratch,
+            #[inline(always)]
+            |(k, (a, b)), scratch| {
+                for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
+                    work(k * per_piece + i, a, b, scratch);
+                }
+            },
+        );
     }
 
     /// Calls `work(row, its data)` on each row of `data`; the last row may be shorter.
@@ -160,7 +175,13 @@ impl Threads {
         length: usize,
         work: impl Fn(usize, &mut [A]) + Sync + Send,
     ) {
-        self.for_each_row(data, length, &mut self.no_scratch(), |k, row, ()| work(k, row));
+        self.for_each_row(
+            data,
+            length,
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |k, row, ()| work(k, row),
+        );
     }
 
     /// Calls `work(row, its data in a, its data in b)` on each row of both; the last row may be shorter.
@@ -170,7 +191,13 @@ impl Threads {
         b: (&mut [B], usize),
         work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
     ) {
-        self.for_each_row_pair_with(a, b, &mut self.no_scratch(), |k, a, b, ()| work(k, a, b));
+        self.for_each_row_pair_with(
+            a,
+            b,
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |k, a, b, ()| work(k, a, b),
+        );
     }
 
     /// These threads for a pass over arrays of so many elements, which takes about a tenth of the time of a product.

@@ -89,17 +89,20 @@ impl<T: Real> Iteration<T> {
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
         let (q, z, Update { alpha, gamma, settled, .. }) = (&self.q, &self.z, *update);
         let (_, w) = self.known.beside(gamma, &self.t, q);
-        let [work, energy] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (q, z, w) = (&q[run.clone()], &z[run.clone()], &w[run]);
-                sums.add(h.len(), |i| {
-                    let repair = if settled { z[i].to_double() } else { 0.0 };
-                    let u = u[i] + (alpha * q[i].to_double() + gamma * w[i].to_double()) + repair;
-                    [p[i] * (state.approach - h[i]), p[i] * u]
-                });
-            }
-        });
+        let [work, energy] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
+                for (run, _) in block.runs() {
+                    let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                    let (q, z, w) = (&q[run.clone()], &z[run.clone()], &w[run]);
+                    sums.add(h.len(), |i| {
+                        let repair = if settled { z[i].to_double() } else { 0.0 };
+                        let u = u[i] + (alpha * q[i].to_double() + gamma * w[i].to_double()) + repair;
+                        [p[i] * (state.approach - h[i]), p[i] * u]
+                    });
+                }
+            },
+        );
         (work, energy)
     }
 

@@ -31,19 +31,23 @@ impl<T: Real> Iteration<T> {
             set.leaves(i, to(p, t, d)) | (held_back & !S::FIXED)
         };
         // Blocks that no element leaves; the others have a sum of 1.
-        let [_] = self.runs.sum_changing(&mut state.p, |block, p, sums| {
-            let some_leave = block.runs().any(|(run, local)| {
-                let elements = p[local].iter().zip(&t[run.clone()]).zip(&d[run.clone()]).zip(run);
-                elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d))
-            });
-            if some_leave {
-                sums.add(1, |_| [1.0]);
-                return;
-            }
-            for (run, local) in block.runs() {
-                p[local].iter_mut().zip(&t[run.clone()]).zip(&d[run]).for_each(|((p, t), d)| *p = to(*p, *t, *d));
-            }
-        });
+        let [_] = self.runs.sum_changing(
+            &mut state.p,
+            #[inline(always)]
+            |block, p, sums| {
+                let some_leave = block.runs().any(|(run, local)| {
+                    let elements = p[local].iter().zip(&t[run.clone()]).zip(&d[run.clone()]).zip(run);
+                    elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d))
+                });
+                if some_leave {
+                    sums.add(1, |_| [1.0]);
+                    return;
+                }
+                for (run, local) in block.runs() {
+                    p[local].iter_mut().zip(&t[run.clone()]).zip(&d[run]).for_each(|((p, t), d)| *p = to(*p, *t, *d));
+                }
+            },
+        );
         let before = self.debts.len();
         // Of these few elements leave, at the rim: the others the compiler can vectorise.
         let chunks = self

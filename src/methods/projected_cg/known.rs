@@ -151,17 +151,20 @@ impl<T: Real> Iteration<T> {
     /// The sums of a step, and those of gamma.
     pub(super) fn step_beside_change(&mut self, state: &State) -> Step {
         let (t, q, d, approach) = (&self.t, &self.q, &self.known.d, state.approach);
-        let [rt, tq, tt, t1, pp, rd, qd] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
-                sums.add(h.len(), |i| {
-                    let (t, q, d) = (t[i].to_double(), q[i].to_double(), d[i].to_double());
-                    let r = approach - h[i] - u[i];
-                    [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d]
-                });
-            }
-        });
+        let [rt, tq, tt, t1, pp, rd, qd] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
+                for (run, _) in block.runs() {
+                    let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                    let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
+                    sums.add(h.len(), |i| {
+                        let (t, q, d) = (t[i].to_double(), q[i].to_double(), d[i].to_double());
+                        let r = approach - h[i] - u[i];
+                        [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d]
+                    });
+                }
+            },
+        );
         Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
@@ -200,24 +203,31 @@ impl<T: Real> Iteration<T> {
             return;
         }
         let Known { d, w, energy, size, .. } = &self.known;
-        let [rd, rr] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
-                sums.add(h.len(), |i| {
-                    let e = h[i] - state.approach + u[i];
-                    [-e * d[i].to_double(), e * e]
-                });
-            }
-        });
+        let [rd, rr] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
+                for (run, _) in block.runs() {
+                    let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
+                    sums.add(h.len(), |i| {
+                        let e = h[i] - state.approach + u[i];
+                        [-e * d[i].to_double(), e * e]
+                    });
+                }
+            },
+        );
         let gamma = rd / energy;
         if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
             return;
         }
-        let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
-            for (run, local) in block.runs() {
-                p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
-            }
-        });
+        let [] = self.runs.sum_changing(
+            &mut state.p,
+            #[inline(always)]
+            |block, p, _| {
+                for (run, local) in block.runs() {
+                    p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
+                }
+            },
+        );
         let mx = state.grid.mx;
         self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
             u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());

@@ -55,15 +55,18 @@ impl<T: Real> Iteration<T> {
             return;
         }
         let (q, z, Update { alpha, settled, factor, .. }) = (&self.q, &self.z, *update);
-        let [sum] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
-                sums.add(h.len(), |i| {
-                    let repair = if settled { z[i].to_double() } else { 0.0 };
-                    [h[i] + factor * (u[i] + alpha * q[i].to_double() + repair)]
-                });
-            }
-        });
+        let [sum] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
+                for (run, _) in block.runs() {
+                    let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
+                    sums.add(h.len(), |i| {
+                        let repair = if settled { z[i].to_double() } else { 0.0 };
+                        [h[i] + factor * (u[i] + alpha * q[i].to_double() + repair)]
+                    });
+                }
+            },
+        );
         if self.runs.count() > 0 {
             state.approach = sum / self.runs.count() as f64 + self.limits.shift;
         }
@@ -72,18 +75,22 @@ impl<T: Real> Iteration<T> {
     /// z = r = -e on C, 0 outside; the relative residual.
     pub(super) fn residual(&mut self, state: &State) -> f64 {
         let approach = state.approach;
-        let [rr, hh] = self.runs.sum_changing(&mut self.z, |block, z, sums| {
-            z.fill(T::zero());
-            for (run, local) in block.runs() {
-                let (h, u, z) = (&state.h[run.clone()], &state.u[run], &mut z[local]);
-                sums.add(h.len(), |i| {
-                    let distance = h[i] - approach;
-                    let e = distance + u[i];
-                    z[i] = T::of(-e);
-                    [e * e, distance * distance]
-                });
-            }
-        });
+        let [rr, hh] = self.runs.sum_changing(
+            &mut self.z,
+            #[inline(always)]
+            |block, z, sums| {
+                z.fill(T::zero());
+                for (run, local) in block.runs() {
+                    let (h, u, z) = (&state.h[run.clone()], &state.u[run], &mut z[local]);
+                    sums.add(h.len(), |i| {
+                        let distance = h[i] - approach;
+                        let e = distance + u[i];
+                        z[i] = T::of(-e);
+                        [e * e, distance * distance]
+                    });
+                }
+            },
+        );
         self.limits.residual = rr;
         if rr == 0.0 {
             0.0
@@ -117,14 +124,18 @@ impl<T: Real> Iteration<T> {
             Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
             _ => t,
         };
-        let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
-            for (run, local) in block.runs() {
-                let (p, z) = (&state.p[run.clone()], &z[run]);
-                for ((t, z), p) in t[local].iter_mut().zip(z).zip(p) {
-                    *t = held(*p, *z - mean + beta * *t);
+        let [] = self.runs.sum_changing(
+            &mut self.t,
+            #[inline(always)]
+            |block, t, _| {
+                for (run, local) in block.runs() {
+                    let (p, z) = (&state.p[run.clone()], &z[run]);
+                    for ((t, z), p) in t[local].iter_mut().zip(z).zip(p) {
+                        *t = held(*p, *z - mean + beta * *t);
+                    }
                 }
-            }
-        });
+            },
+        );
     }
 
     /// The mean over C that is taken from z + beta t, and beta. Directions without force have the sum `missing`; others may have any.
@@ -133,15 +144,18 @@ impl<T: Real> Iteration<T> {
             return (0.0, 0.0);
         }
         let (t, z, q) = (&self.t, &self.z, &self.q);
-        let [t1, z1, q1, zq] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (t, z, q) = (&t[run.clone()], &z[run.clone()], &q[run]);
-                sums.add(z.len(), |i| {
-                    let (z, q) = (z[i].to_double(), q[i].to_double());
-                    [t[i].to_double(), z, q, z * q]
-                });
-            }
-        });
+        let [t1, z1, q1, zq] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
+                for (run, _) in block.runs() {
+                    let (t, z, q) = (&t[run.clone()], &z[run.clone()], &q[run]);
+                    sums.add(z.len(), |i| {
+                        let (z, q) = (z[i].to_double(), q[i].to_double());
+                        [t[i].to_double(), z, q, z * q]
+                    });
+                }
+            },
+        );
         let count = self.runs.count() as f64;
         let mean = if missing.is_some() { z1 / count } else { 0.0 };
         let beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
@@ -155,29 +169,35 @@ impl<T: Real> Iteration<T> {
             return self.step_beside_change(state);
         }
         if !self.is_scaled {
-            let [rt, tq, tt, t1, pp] = self.runs.sum(|block, sums| {
+            let [rt, tq, tt, t1, pp] = self.runs.sum(
+                #[inline(always)]
+                |block, sums| {
+                    for (run, _) in block.runs() {
+                        let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
+                        let (t, q) = (&t[run.clone()], &q[run]);
+                        sums.add(h.len(), |i| {
+                            let (t, e) = (t[i].to_double(), h[i] - approach + u[i]);
+                            [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                        });
+                    }
+                },
+            );
+            return Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
+        }
+        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(
+            #[inline(always)]
+            |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (t, q) = (&t[run.clone()], &q[run]);
                     sums.add(h.len(), |i| {
-                        let (t, e) = (t[i].to_double(), h[i] - approach + u[i]);
-                        [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                        let (p, t, q, depth) = (p[i], t[i].to_double(), q[i].to_double(), approach - h[i]);
+                        let r = depth - u[i];
+                        [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u[i], p * q]
                     });
                 }
-            });
-            return Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
-        }
-        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                let (t, q) = (&t[run.clone()], &q[run]);
-                sums.add(h.len(), |i| {
-                    let (p, t, q, depth) = (p[i], t[i].to_double(), q[i].to_double(), approach - h[i]);
-                    let r = depth - u[i];
-                    [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u[i], p * q]
-                });
-            }
-        });
+            },
+        );
         let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
         Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
@@ -185,10 +205,14 @@ impl<T: Real> Iteration<T> {
     /// p = factor p on C, and the debts likewise.
     pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
         self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
-        let [] = self.runs.sum_changing(&mut state.p, |block, p, _| {
-            for (_, local) in block.runs() {
-                p[local].iter_mut().for_each(|p| *p *= factor);
-            }
-        });
+        let [] = self.runs.sum_changing(
+            &mut state.p,
+            #[inline(always)]
+            |block, p, _| {
+                for (_, local) in block.runs() {
+                    p[local].iter_mut().for_each(|p| *p *= factor);
+                }
+            },
+        );
     }
 }

@@ -28,7 +28,10 @@ impl Scaling {
             Load::Force(force) => force / state.grid.element_area() * self_influence,
         };
         let approach = state.approach;
-        let farthest = pulp::Arch::new().dispatch(|| farthest(&state.h, &state.contact, approach));
+        let farthest = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || farthest(&state.h, &state.contact, approach),
+        );
         let length = farthest.max(alone);
         let pressure = length / self_influence;
         let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);

@@ -112,12 +112,17 @@ impl Segments {
     /// Sums over C: `work(runs, sums)` adds those of a block.
     pub fn sum<const K: usize>(&mut self, work: impl Fn(Block<'_>, &mut Sums<K>) + Sync + Send) -> [f64; K] {
         let (found, block) = (&self.found, self.block);
-        self.threads.for_each_plain_row(&mut self.sums, 1, |b, total| {
-            let mut sums = Sums::new();
-            let block = Block { start: b * block, runs: &found[b].runs };
-            work(block, &mut sums);
-            sums.total(&mut total[0]);
-        });
+        self.threads.for_each_plain_row(
+            &mut self.sums,
+            1,
+            #[inline(always)]
+            |b, total| {
+                let mut sums = Sums::new();
+                let block = Block { start: b * block, runs: &found[b].runs };
+                work(block, &mut sums);
+                sums.total(&mut total[0]);
+            },
+        );
         self.total()
     }
 
@@ -129,12 +134,17 @@ impl Segments {
     ) -> [f64; K] {
         let (found, block) = (&self.found, self.block);
         let (data, sums) = ((data, block), (&mut self.sums[..], 1));
-        self.threads.for_each_row_pair(data, sums, |b, data, total| {
-            let mut sums = Sums::new();
-            let block = Block { start: b * block, runs: &found[b].runs };
-            work(block, data, &mut sums);
-            sums.total(&mut total[0]);
-        });
+        self.threads.for_each_row_pair(
+            data,
+            sums,
+            #[inline(always)]
+            |b, data, total| {
+                let mut sums = Sums::new();
+                let block = Block { start: b * block, runs: &found[b].runs };
+                work(block, data, &mut sums);
+                sums.total(&mut total[0]);
+            },
+        );
         self.total()
     }
 
