@@ -6,6 +6,7 @@ mod certificate;
 mod curvature;
 mod exchange;
 mod guard;
+mod operators;
 mod outline;
 mod problem;
 mod start;

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::admissible::AdmissibleSet;
+use super::operators::{MadeOf, Operators};
 use super::state::{Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::{Operator, SetUp, Workspace};
+use crate::operator::Operator;
 use crate::threads::Threads;
 
 /// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
@@ -20,8 +21,6 @@ pub struct Problem {
     pub grid: Grid,
     /// Influence coefficients.
     pub coefficients: Coefficients,
-    /// A, in double precision.
-    pub operator: Arc<Operator<f64>>,
     /// Whether A is symmetric.
     pub symmetric: bool,
     /// Whether the coefficients are the caller's: only they may be those of no elastic body.
@@ -30,17 +29,14 @@ pub struct Problem {
     pub work: f64,
     /// The threads of the solve.
     pub threads: Threads,
-    workspace: Workspace<f64>,
-    /// Memory of set-ups.
-    set_up: SetUp,
+    operators: Operators,
     products: u64,
 }
 
 impl Problem {
-    /// Sets up the operator of the finest grid.
+    /// Of the finest grid.
     pub fn new(grid: Grid, coefficients: Coefficients, threads: &Threads) -> Result<Problem> {
-        let operator = Arc::new(Operator::new(&coefficients, &grid, &threads.suited_to(grid.len()))?);
-        Problem::with_operator(grid, coefficients, operator, 1.0, threads)
+        Problem::with(Operators::default(), grid, coefficients, 1.0, threads)
     }
 
     /// On a grid, a product on which takes `work` of one on the finest.
@@ -51,40 +47,35 @@ impl Problem {
         work: f64,
         threads: &Threads,
     ) -> Result<Problem> {
-        let workspace = operator.workspace()?;
+        Problem::with(Operators::with(operator), grid, coefficients, work, threads)
+    }
+
+    fn with(
+        mut operators: Operators,
+        grid: Grid,
+        coefficients: Coefficients,
+        work: f64,
+        threads: &Threads,
+    ) -> Result<Problem> {
+        operators.prepare(MadeOf { coefficients: &coefficients, grid: &grid, threads })?;
         let symmetric = coefficients.is_symmetric(&grid);
         let threads = threads.clone();
-        Ok(Problem {
-            grid,
-            coefficients,
-            operator,
-            symmetric,
-            given: false,
-            work,
-            threads,
-            workspace,
-            set_up: SetUp::default(),
-            products: 0,
-        })
+        Ok(Problem { grid, coefficients, symmetric, given: false, work, threads, operators, products: 0 })
     }
 
     /// Takes other coefficients, on the same grid; plans and memory are kept where nobody else uses the operator. Not to be used after
     /// an error, before it is renewed again.
     pub fn renew(&mut self, coefficients: Coefficients) -> Result<()> {
-        let periods = self.operator.periods();
-        match Arc::get_mut(&mut self.operator) {
-            Some(operator) => operator.renew(&coefficients, 1.0, &self.grid, &mut self.set_up)?,
-            None => {
-                let threads = self.threads.suited_to(self.grid.len());
-                self.operator = Arc::new(Operator::new(&coefficients, &self.grid, &threads)?);
-            }
-        }
-        if self.operator.periods() != periods {
-            self.workspace = self.operator.workspace()?;
-        }
         self.symmetric = coefficients.is_symmetric(&self.grid);
         self.coefficients = coefficients;
-        Ok(())
+        let Problem { coefficients, grid, threads, operators, .. } = self;
+        operators.renew(MadeOf { coefficients, grid, threads })
+    }
+
+    /// A for any p, set up when that is first asked for.
+    pub fn operator(&mut self) -> Result<&Arc<Operator<f64>>> {
+        let Problem { coefficients, grid, threads, operators, .. } = self;
+        operators.whole(MadeOf { coefficients, grid, threads })
     }
 
     /// The influence of an element on itself.
@@ -108,18 +99,20 @@ impl Problem {
     }
 
     /// `u = A p`.
-    pub fn displace(&mut self, p: &[f64], u: &mut [f64]) {
-        self.operator.apply(p, u, &mut self.workspace);
-        self.workspace.rest();
+    pub fn displace(&mut self, p: &[f64], u: &mut [f64]) -> Result<()> {
+        let Problem { coefficients, grid, threads, operators, .. } = self;
+        operators.displace(MadeOf { coefficients, grid, threads }, p, u)?;
         self.products += 1;
+        Ok(())
     }
 
     /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
-    pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
+    pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set);
-        self.displace(&state.p, &mut state.u);
+        self.displace(&state.p, &mut state.u)?;
         state.u_is = Freshness::Exact;
         state.fit_approach();
+        Ok(())
     }
 
     /// Products since the last call.
@@ -129,6 +122,6 @@ impl Problem {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.operator.bytes() + self.workspace.bytes()
+        self.operators.bytes()
     }
 }

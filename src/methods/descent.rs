@@ -70,14 +70,14 @@ impl<S: AdmissibleSet> Step<S> for Descent {
         let Task { problem, state, monitor, .. } = task;
         let set = task.set;
         if !std::mem::replace(&mut self.began, true) {
-            take_over(problem, state, set);
+            take_over(problem, state, set)?;
             self.weigh(problem);
         }
         if state.u_is == Freshness::Exact {
             self.last_rr = 0.0;
         }
         let rr = self.direct(state, set);
-        problem.displace(&self.t, &mut self.q);
+        problem.displace(&self.t, &mut self.q)?;
         let (rt, tq) = (dot(&self.residual, &self.t), dot(&self.t, &self.q));
         if rr > 0.0 && !(tq > 0.0) {
             return Err(Error::NotPositiveDefinite(format!(
@@ -91,7 +91,7 @@ impl<S: AdmissibleSet> Step<S> for Descent {
         let mut length = alpha.min(limit);
         if !full {
             let feasible = length * (0.5 * length * tq - rt);
-            if self.try_truncated(problem, state, set, alpha) < feasible {
+            if self.try_truncated(problem, state, set, alpha)? < feasible {
                 std::mem::swap(&mut self.t, &mut self.change);
                 std::mem::swap(&mut self.q, &mut self.product);
                 length = 1.0;
@@ -135,22 +135,28 @@ impl Descent {
     }
 
     /// The step cut off at the bounds, in `change`, and what it does to the energy.
-    fn try_truncated<S: AdmissibleSet>(&mut self, problem: &mut Problem, state: &State, set: S, alpha: f64) -> f64 {
+    fn try_truncated<S: AdmissibleSet>(
+        &mut self,
+        problem: &mut Problem,
+        state: &State,
+        set: S,
+        alpha: f64,
+    ) -> Result<f64> {
         truncated_step(state, set, (&self.t, &self.free), alpha, &mut self.change);
-        problem.displace(&self.change, &mut self.product);
+        problem.displace(&self.change, &mut self.product)?;
         // A change without force does not see the approach.
         let gain = |i: usize| self.change[i] * (state.deformed_distance(i) + 0.5 * self.product[i]);
-        (0..self.t.len()).map(gain).sum()
+        Ok((0..self.t.len()).map(gain).sum())
     }
 }
 
 /// Admissible pressures that carry a prescribed force, C where they are positive, u = A p.
-fn take_over<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+fn take_over<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     let project = |(i, p): (usize, &mut f64)| *p = if p.is_finite() { set.project(i, *p) } else { 0.0 };
     state.p.iter_mut().enumerate().for_each(project);
     state.carry_force(set);
     find_contact(state, set);
-    problem.refresh(state, set);
+    problem.refresh(state, set)
 }
 
 /// Up to where t may be followed before an element reaches a bound.

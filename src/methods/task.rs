@@ -1,6 +1,7 @@
 //! What is to be solved on one grid.
 
 use crate::contact::{AdmissibleSet, Problem, State, Survey};
+use crate::error::Result;
 use crate::progress::{Goal, Monitor};
 
 /// What is to be solved on one grid.
@@ -19,8 +20,8 @@ pub struct Task<'a, 'm, S> {
 
 impl<S: AdmissibleSet> Task<'_, '_, S> {
     /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
-    pub fn refresh(&mut self) {
-        self.problem.refresh(self.state, self.set);
+    pub fn refresh(&mut self) -> Result<()> {
+        self.problem.refresh(self.state, self.set)
     }
 
     /// A survey of the state, by the threads of the solve.

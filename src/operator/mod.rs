@@ -8,6 +8,7 @@ pub mod dense;
 pub mod fft;
 #[allow(clippy::module_inception)]
 mod operator;
+mod periods;
 mod row_tables;
 pub mod row_transform;
 mod rows;
@@ -18,6 +19,7 @@ mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};
 pub use operator::Operator;
+pub use periods::Reach;
 pub use set_up::SetUp;
 pub use workspace::Workspace;
 

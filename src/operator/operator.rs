@@ -1,8 +1,6 @@
 //! `u = A p`: a product by FFT, with the diagonal and the coupling that the coefficients may have.
 //!
-//! A is block Toeplitz, so it is a part of a block circulant of period `px * py`. The period must keep the offsets `-(m-1)..m-1`
-//! apart: `2m - 1`, or `2m - 2` when the coefficients are even (offsets `m-1` and `-(m-1)` are then alike). In a direction in which the
-//! coefficients repeat themselves after the grid A is circulant: the period is the grid's, and nothing is padded.
+//! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
 //!
 //! The product is fused and pruned: transforms in x of those rows only that hold pressures ([`Rows`]); in y a [`Convolution`], or where
 //! A is Toeplitz in x only a product by matrices ([`PerRow`]); transforms back in x, to which a diagonal is added.
@@ -11,7 +9,8 @@ use std::iter::once;
 use std::ops::Range;
 
 use super::convolution::Convolution;
-use super::fft::{good_length, Complex, Real};
+use super::fft::{Complex, Real};
+use super::periods::{full_reach, periods, Reach};
 use super::row_tables::PerRow;
 use super::row_transform::RowTransform;
 use super::rows::{Product, Rows};
@@ -36,26 +35,12 @@ pub(super) enum Columns<T: Real> {
 pub struct Operator<T: Real> {
     pub(super) rows: Rows<T>,
     pub(super) columns: Columns<T>,
+    /// Pressures that lie farther apart give a wrong product. Only even coefficients make use of it.
+    reach: Reach,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
     pub(super) coupling: Option<Patches>,
-}
-
-/// The periods of a product.
-fn periods(coefficients: &Coefficients, grid: &Grid) -> (usize, usize) {
-    let (even, repeats) = (coefficients.is_even(grid), coefficients.repeats(grid));
-    let period = |m: usize, repeats: bool| match (repeats, even) {
-        (true, _) => m,
-        (_, true) => good_length(2 * m - 2),
-        (_, false) => good_length(2 * m - 1),
-    };
-    match coefficients.row_tables() {
-        // Columns are not transformed.
-        Some((tables, _)) if tables.is_even_in_x() => (good_length(2 * grid.mx - 2), grid.my),
-        Some(_) => (good_length(2 * grid.mx - 1), grid.my),
-        None => (period(grid.mx, repeats.0), period(grid.my, repeats.1)),
-    }
 }
 
 impl<T: Real> Operator<T> {
@@ -66,9 +51,28 @@ impl<T: Real> Operator<T> {
 
     /// Of coefficients times a factor, a power of two: no digit changes.
     pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
-        let mut operator = Operator::of_period(grid, periods(coefficients, grid), threads);
+        let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads);
         operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
         Ok(operator)
+    }
+
+    /// For products with pressures within a reach.
+    pub fn within(
+        reach: Reach,
+        coefficients: &Coefficients,
+        grid: &Grid,
+        threads: &Threads,
+        set_up: &mut SetUp,
+    ) -> Result<Operator<T>> {
+        let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads);
+        operator.reach = reach;
+        operator.renew(coefficients, 1.0, grid, set_up)?;
+        Ok(operator)
+    }
+
+    /// See [`Reach`].
+    pub fn reach(&self) -> Reach {
+        self.reach
     }
 
     /// Plans of a period; the spectrum is still to be computed.
@@ -76,6 +80,7 @@ impl<T: Real> Operator<T> {
         Operator {
             rows: Rows::new(grid.mx, grid.my, px, threads),
             columns: Columns::Convolution(Convolution::new(py)),
+            reach: full_reach(grid),
             diagonal: Vec::new(),
             coupling: None,
         }
@@ -98,7 +103,7 @@ impl<T: Real> Operator<T> {
     /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
     /// error, before it is renewed again.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
-        let (px, py) = periods(coefficients, grid);
+        let (px, py) = periods(coefficients, grid, self.reach);
         let threads = self.rows.threads.clone();
         if px != self.rows.transform.length() {
             self.rows = Rows::new(grid.mx, grid.my, px, &threads);
@@ -130,9 +135,9 @@ impl<T: Real> Operator<T> {
     ) -> Result<()> {
         if coefficients.is_even(grid) {
             let repeats = coefficients.repeats(grid);
-            let given = |m: usize, repeats: bool| if repeats { m / 2 + 1 } else { m };
+            let given = |m: usize, reach: usize, repeats: bool| if repeats { m / 2 + 1 } else { reach + 1 };
             let even = Even {
-                given: (given(grid.mx, repeats.0), given(grid.my, repeats.1)),
+                given: (given(grid.mx, self.reach.0, repeats.0), given(grid.my, self.reach.1, repeats.1)),
                 fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
                 finish: |value| factor * value,
             };
@@ -167,6 +172,7 @@ impl<T: Real> Operator<T> {
                 Columns::Convolution(convolution) => Columns::Convolution(convolution.in_precision(factor)?),
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },
+            reach: self.reach,
             diagonal,
             coupling: self.coupling.clone(),
         })

@@ -36,7 +36,7 @@ impl Best {
 
     /// The state becomes the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
     /// approach p = 0 is an iterate, too, and none worse than that is returned.
-    pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) {
+    pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
         // What was known of the state is no longer true of it.
         task.monitor.survey = None;
         let (state, set) = (&mut *task.state, task.set);
@@ -49,7 +49,7 @@ impl Best {
         }
         let left = truncate(state, set);
         if left > 0 || state.u_is != Freshness::Exact {
-            task.problem.refresh(state, set);
+            task.problem.refresh(state, set)?;
         }
         let now = Survey::of(state).violation(set);
         let by_approach = matches!(state.load, Load::Approach(_));
@@ -60,13 +60,13 @@ impl Best {
                 state.p.fill(0.0);
                 state.at_limit.fill(false);
             }
-            task.problem.refresh(state, set);
+            task.problem.refresh(state, set)?;
         }
         let mut found = Survey::of(state).violation(set);
         if !by_approach && !found.is_finite() {
             // A uniform pressure on C.
             state.p.fill(0.0);
-            task.problem.refresh(state, set);
+            task.problem.refresh(state, set)?;
             found = Survey::of(state).violation(set);
         }
         if by_approach && !(found <= 1.0) || !found.is_finite() {
@@ -78,5 +78,6 @@ impl Best {
             }
         }
         task.count_products();
+        Ok(())
     }
 }

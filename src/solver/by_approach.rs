@@ -74,11 +74,11 @@ impl ByApproach<'_> {
         task.goal.max_cycles = most.min(task.monitor.count.cycles + CYCLES);
         let load = std::mem::replace(&mut task.state.load, Load::Approach(approach));
         task.state.approach = approach;
-        task.refresh();
+        task.refresh()?;
         self.bracket.best.forget();
         let mut stop = iterate(self.projected_cg, task, &mut self.bracket.best)?;
         if stop == Outcome::Stagnated {
-            self.bracket.best.restore(task);
+            self.bracket.best.restore(task)?;
             stop = iterate(self.descent, task, &mut self.bracket.best)?;
         }
         (task.state.load, task.goal.max_cycles) = (load, most);

@@ -41,7 +41,7 @@ pub fn iterate<S: AdmissibleSet>(
 
         // (4.1), the certificate, (4.2)
         let left = if habits.exchanged_by_loop { truncate(task.state, set) } else { 0 };
-        let mut survey = certify(task, &change, left);
+        let mut survey = certify(task, &change, left)?;
         let violation = survey.violation(set);
         let (mut entered, mut last) = (0, survey);
         if habits.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
@@ -96,9 +96,9 @@ fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) 
 }
 
 /// Surveys the state, by a fresh product where u is none of p, or where the criterion seems met: only a fresh product certifies.
-fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Survey {
+fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Result<Survey> {
     if left > 0 || task.state.u_is == Freshness::Stale {
-        task.refresh();
+        task.refresh()?;
     } else {
         task.state.fit_approach();
     }
@@ -106,11 +106,11 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     if task.state.u_is == Freshness::Near
         && (task.is_interrupted() || task.goal.holds(&survey, change.update, task.set))
     {
-        task.refresh();
+        task.refresh()?;
         survey = task.survey();
     }
     task.count_products();
-    survey
+    Ok(survey)
 }
 
 #[cfg(test)]

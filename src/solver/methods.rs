@@ -73,7 +73,7 @@ impl Methods {
         let mut stop = Outcome::Stagnated;
         for (i, &stage) in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct).enumerate() {
             if i > 0 {
-                self.hand_over(stage, task);
+                self.hand_over(stage, task)?;
             } else {
                 match self.take_over(stage, task, (from, survey))? {
                     Some(true) => self.start(stage, task, from, error_ratio)?,
@@ -88,8 +88,8 @@ impl Methods {
         }
         if stop != Outcome::Converged {
             let indefinite =
-                stop == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state);
-            self.best.restore(task);
+                stop == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
+            self.best.restore(task)?;
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
                     "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
@@ -129,11 +129,12 @@ impl Methods {
     }
 
     /// The next method goes on from the best iterate; from what the direct solve leaves, having done nothing, as it is.
-    fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) {
+    fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
-            self.best.restore(task);
+            self.best.restore(task)?;
         }
+        Ok(())
     }
 
     /// A start from nothing. An `error_ratio` may raise the tolerance of the goal.
@@ -220,15 +221,15 @@ impl Methods {
 }
 
 /// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.
-fn has_negative_energy(problem: &mut Problem, state: &mut State) -> bool {
-    problem.displace(&state.p, &mut state.u);
+fn has_negative_energy(problem: &mut Problem, state: &mut State) -> Result<bool> {
+    problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;
-    state.p.iter().zip(&state.u).map(|(p, u)| p * u).sum::<f64>() < 0.0
+    Ok(state.p.iter().zip(&state.u).map(|(p, u)| p * u).sum::<f64>() < 0.0)
 }
 
 fn set_up_multigrid<'a>(
     multigrid: &'a mut Option<FullMultigrid>,
-    problem: &Problem,
+    problem: &mut Problem,
     shape: CycleShape,
 ) -> Result<&'a mut FullMultigrid> {
     match multigrid {

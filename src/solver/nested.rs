@@ -27,7 +27,7 @@ pub struct FullMultigrid {
 
 impl FullMultigrid {
     /// The grids below that of `problem`.
-    pub fn new(problem: &Problem, shape: CycleShape) -> Result<FullMultigrid> {
+    pub fn new(problem: &mut Problem, shape: CycleShape) -> Result<FullMultigrid> {
         let multigrid = Multigrid::new(problem, shape)?;
         let mut coarser = Vec::new();
         for level in &multigrid.levels[1..] {
@@ -71,12 +71,12 @@ impl FullMultigrid {
             match finer.last_mut() {
                 Some((problem, state)) => {
                     interpolate(from, state, highest);
-                    problem.refresh(state, NonNegative);
+                    problem.refresh(state, NonNegative)?;
                 }
                 None => {
                     interpolate(from, task.state, highest);
                     task.state.project(task.set);
-                    task.refresh();
+                    task.refresh()?;
                 }
             }
         }
@@ -114,7 +114,7 @@ impl FullMultigrid {
             iterate(&mut Cycles { multigrid, level: l + 1, workspace }, &mut task, best)?
         };
         if stop != Outcome::Converged {
-            best.restore(&mut task);
+            best.restore(&mut task)?;
         }
         Ok(())
     }

@@ -147,7 +147,7 @@ impl Solver {
             if push.by_force {
                 slid = self.state.approach - state.approach;
             }
-            let residual = self.carry(&state.p, slid, &mut carried, &mut displaced);
+            let residual = self.carry(&state.p, slid, &mut carried, &mut displaced)?;
             products += 0.5 * self.problem.take_products() as f64;
             if residual < turn.options.tolerance || sunk >= depth || monitor.is_cancelled() {
                 break;
@@ -161,18 +161,18 @@ impl Solver {
     }
 
     /// `p - p*` and its displacements; the residual of a shift of mu `slid` by them, as the certificate has it.
-    fn carry(&mut self, smaller: &[f64], slid: f64, carried: &mut [f64], displaced: &mut [f64]) -> f64 {
+    fn carry(&mut self, smaller: &[f64], slid: f64, carried: &mut [f64], displaced: &mut [f64]) -> Result<f64> {
         for ((carried, p), smaller) in carried.iter_mut().zip(&self.state.p).zip(smaller) {
             let most = p.max(0.0) * (1.0 - ROUNDED);
             *carried = (p - smaller).clamp(-most, most);
         }
-        self.problem.displace(carried, displaced);
+        self.problem.displace(carried, displaced)?;
         let (mut left, mut squares, mut count) = (0.0, 0.0, 0.0);
         for ((p, carried), u) in self.state.p.iter().zip(&*carried).zip(&*displaced).filter(|((p, _), _)| **p > 0.0) {
             left += rest([u - slid, 0.0], [*carried, 0.0], *p);
             (squares, count) = (squares + u * u, count + 1.0);
         }
-        (left / count).sqrt() / f64::max((squares / count).sqrt(), slid)
+        Ok((left / count).sqrt() / f64::max((squares / count).sqrt(), slid))
     }
 
     /// The state of another load, with the distance of which p is the exact solution.
@@ -207,7 +207,7 @@ impl Solver {
         let method = &mut self.methods.projected_cg;
         match begun {
             // Its displacements are those of sums of directions in single precision.
-            true => task.problem.refresh(task.state, NonNegative),
+            true => task.problem.refresh(task.state, NonNegative)?,
             false => method.start(&mut task)?,
         }
         method.step(&mut task)?;

@@ -46,7 +46,7 @@ pub fn take_over<S: AdmissibleSet>(
         state.forget();
         return Ok(nothing);
     }
-    balance(problem, state, set);
+    balance(problem, state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
     // A guess that is far worse than none costs time, or cannot be computed with.
     let survey = Survey::by(state, &problem.threads);
@@ -59,7 +59,7 @@ pub fn take_over<S: AdmissibleSet>(
         return Ok(nothing);
     }
     state.p.fill(0.0);
-    problem.refresh(state, set);
+    problem.refresh(state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
     Ok((from, Some(Survey::by(state, &problem.threads))))
 }
@@ -123,7 +123,7 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
 }
 
 /// p carries the prescribed force, and u = A p; without a product where u is that of pressures that are only to be scaled.
-fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
+fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     if state.u_is != Freshness::Exact {
         return problem.refresh(state, set);
     }
@@ -133,6 +133,7 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) {
         None => return problem.refresh(state, set),
     }
     state.fit_approach();
+    Ok(())
 }
 
 /// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.

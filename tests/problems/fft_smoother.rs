@@ -200,7 +200,7 @@ fn no_cycle_raises_the_energy() {
         let contact = spots(&grid, fill, &mut random);
         let shape = CycleShape { smoother: SmootherKind::Fft, relaxation, ..CycleShape::default() };
         let mut multigrid =
-            Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), shape).unwrap();
+            Multigrid::new(&mut Problem::new(grid, influence.clone(), &Threads::One).unwrap(), shape).unwrap();
         let d: Vec<f64> = contact.iter().map(|&c| if c { random.next() - 0.2 } else { 0.0 }).collect();
         let (mut v, mut u, mut before) = (vec![0.0; grid.len()], vec![0.0; grid.len()], 0.0_f64);
         for _ in 0..12 {

@@ -58,7 +58,7 @@ pub struct Multigrid {
 
 impl Multigrid {
     /// Sets up cycles of one shape on the grid of `problem`.
-    pub fn new(problem: &Problem, shape: CycleShape) -> Result<Multigrid> {
+    pub fn new(problem: &mut Problem, shape: CycleShape) -> Result<Multigrid> {
         let levels = levels(problem, shape.smoother, shape.coarsest)?;
         let workspace = Workspace::new(levels.iter().map(|level| &*level.operator))?;
         Ok(Multigrid { levels, shape, coarsest: Coarsest::new(), workspace })

@@ -35,10 +35,10 @@ pub struct Level {
 }
 
 impl Level {
-    fn new(problem: &Problem, grid: Grid, influence: Coefficients, kind: SmootherKind) -> Result<Level> {
+    fn new(problem: &mut Problem, grid: Grid, influence: Coefficients, kind: SmootherKind) -> Result<Level> {
         let (n, finest) = (grid.len(), problem.grid.len());
         let operator = match grid == problem.grid {
-            true => problem.operator.clone(),
+            true => problem.operator()?.clone(),
             false => Arc::new(Operator::new(&influence, &grid, &problem.threads.suited_to(n))?),
         };
         let array = || zeros(n, "the multigrid levels");
@@ -100,8 +100,9 @@ pub(super) fn clear_exterior(values: &mut [f64], contact: &[bool]) {
 }
 
 /// The levels, finest first: coarsens the grid of `problem` until no direction has more than `coarsest` elements.
-pub(super) fn levels(problem: &Problem, kind: SmootherKind, coarsest: usize) -> Result<Vec<Level>> {
-    let mut levels = vec![Level::new(problem, problem.grid, problem.coefficients.clone(), kind)?];
+pub(super) fn levels(problem: &mut Problem, kind: SmootherKind, coarsest: usize) -> Result<Vec<Level>> {
+    let (grid, coefficients) = (problem.grid, problem.coefficients.clone());
+    let mut levels = vec![Level::new(problem, grid, coefficients, kind)?];
     while let Some(coarse) = levels.last().and_then(|finer| coarsen(&finer.grid, coarsest)) {
         let finer = &levels[levels.len() - 1];
         let influence = finer.influence.coarsen(&finer.grid, &coarse)?;

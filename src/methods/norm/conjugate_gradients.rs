@@ -58,7 +58,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
             // On few elements the solution is exact after few iterations, the last of which was no small update.
             return Ok(0.0);
         }
-        problem.displace(direction, product);
+        problem.displace(direction, product)?;
         project(product);
         let curvature = dot(direction, product);
         if !(curvature > 0.0) {

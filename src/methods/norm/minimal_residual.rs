@@ -142,7 +142,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
         let mut cancelled = false;
         while krylov.rotations.len() < RESTART && iterations < stop.iterations && !cancelled {
             krylov.write_last(full);
-            problem.displace(full, product);
+            problem.displace(full, product)?;
             iterations += 1;
             let Some((left, is_last)) = krylov.add(product, project) else { break };
             cancelled = !monitor.cycle_done(&state.grid, 0, update, left / stop.distance);
@@ -161,7 +161,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
         if cancelled || krylov.rotations.is_empty() || small && left <= stop.believed {
             return Ok(update);
         }
-        problem.displace(&state.p, product);
+        problem.displace(&state.p, product)?;
     }
 }
 

@@ -71,7 +71,7 @@ impl Norm {
         };
         task.monitor.count.update = update;
         // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
-        refresh(task);
+        refresh(task)?;
         Ok(update)
     }
 
@@ -97,19 +97,19 @@ impl Norm {
 
     /// Step 3: elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
     /// solve is to follow; if not, the state is a trial: perhaps the violations are within the tolerance.
-    fn exchange<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> bool {
+    fn exchange<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<bool> {
         let (state, set) = (&mut *task.state, task.set);
         if self.guard.allows_all(violators(state, set)) {
             admit(state, set);
             truncate(state, set);
-            return true;
+            return Ok(true);
         }
         self.before.keep(state);
         self.u_before.clone_from(&state.u);
         truncate(state, set);
-        task.refresh();
+        task.refresh()?;
         self.next = Next::ExchangeOne;
-        false
+        Ok(false)
     }
 
     /// One element changes sides: the last of those that should.
@@ -129,7 +129,7 @@ impl Norm {
 }
 
 /// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
-fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
+fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let (state, set) = (&mut *task.state, task.set);
     let held = S::LIMITED && state.has_limited();
     for i in 0..state.p.len() {
@@ -138,13 +138,14 @@ fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
     }
     state.u_is = Freshness::Exact;
     if held || matches!(state.load, Load::Force(_)) {
-        refresh(task);
+        return refresh(task);
     }
+    Ok(())
 }
 
 /// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
 /// is for the next exchange.
-fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
+fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let Task { problem, state, set, .. } = task;
     let beside_limits = S::LIMITED && state.has_limited();
     match state.load {
@@ -156,9 +157,10 @@ fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
         Load::Force(_) if S::LIMITED && !beside_limits => _ = state.balance_force(),
         _ => _ = state.carry_force(*set),
     }
-    problem.displace(&state.p, &mut state.u);
+    problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;
     state.fit_approach();
+    Ok(())
 }
 
 fn violators<S: AdmissibleSet>(state: &State, set: S) -> usize {
@@ -194,14 +196,14 @@ impl<S: AdmissibleSet> Step<S> for Norm {
         match self.next {
             Next::GoOn => {
                 if task.state.p.iter().all(|p| *p == 0.0) {
-                    start_from_zero(task);
+                    start_from_zero(task)?;
                 }
             }
             Next::Exchange => {
-                if !self.exchange(task) {
+                if !self.exchange(task)? {
                     return Ok(Change { update: self.update, ..Change::default() });
                 }
-                start_from_zero(task);
+                start_from_zero(task)?;
             }
             Next::ExchangeOne => {
                 let floor = Goal { tolerance: FLOOR.max(task.goal.tolerance), ..task.goal };
@@ -209,7 +211,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
                     return Ok(Change { gives_up: true, ..Change::default() });
                 }
                 self.exchange_one(task.state, task.set);
-                start_from_zero(task);
+                start_from_zero(task)?;
             }
         }
         let update = self.solve(task)?;

@@ -86,7 +86,7 @@ impl CoarseGrids {
         for coarse in &mut self.grids {
             influence = influence.coarsen(&fine, &coarse.state.grid)?;
             fine = coarse.state.grid;
-            coarse.level.renew(influence.clone(), None);
+            coarse.level.renew(influence.clone());
         }
         self.are_current = true;
         Ok(())

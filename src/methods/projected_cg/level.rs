@@ -60,9 +60,14 @@ impl Level {
         }
     }
 
+    /// Whether the next window is the whole grid, and its operator is not here.
+    pub fn needs_operator(&self, state: &State) -> bool {
+        self.operator.is_none() && self.window(state).is_full(&self.grid)
+    }
+
     /// Where the window is the whole grid, its operator need not be set up anew.
-    pub fn with_operator(self, operator: Arc<Operator<f64>>) -> Level {
-        Level { operator: Some(operator), ..self }
+    pub fn lend(&mut self, operator: Arc<Operator<f64>>) {
+        self.operator = Some(operator);
     }
 
     /// Lets go of the operator of the whole grid.
@@ -70,10 +75,9 @@ impl Level {
         self.operator = None;
     }
 
-    /// Takes other coefficients on the same grid, and the operator of the whole grid if there is one. What the window holds is kept for
-    /// them, and follows when it is needed.
-    pub fn renew(&mut self, influence: Coefficients, operator: Option<Arc<Operator<f64>>>) {
-        (self.influence, self.operator) = (influence, operator);
+    /// Takes other coefficients on the same grid. What the window holds is kept for them, and follows when it is needed.
+    pub fn renew(&mut self, influence: Coefficients) {
+        (self.influence, self.operator) = (influence, None);
         if let Some(windowed) = &mut self.windowed {
             windowed.is_current = false;
         }

@@ -53,9 +53,8 @@ pub struct ProjectedCg {
 impl ProjectedCg {
     /// Sets up nothing: that follows when it is first needed.
     pub fn new(problem: &Problem, precision: Precision) -> ProjectedCg {
-        let finest = Level::new(problem.grid, problem.coefficients.clone(), precision, &problem.threads);
         ProjectedCg {
-            finest: finest.with_operator(problem.operator.clone()),
+            finest: Level::new(problem.grid, problem.coefficients.clone(), precision, &problem.threads),
             coarse: None,
             predictor: Predictor::default(),
             before: Vec::new(),
@@ -78,7 +77,7 @@ impl ProjectedCg {
 
     /// The problem has other coefficients: memory and plans are kept for them, and what is not computed here follows when it is needed.
     pub fn renew(&mut self, problem: &Problem) {
-        self.finest.renew(problem.coefficients.clone(), Some(problem.operator.clone()));
+        self.finest.renew(problem.coefficients.clone());
         self.coarse.iter_mut().for_each(CoarseGrids::forget_coefficients);
         self.predictor.forget_coefficients();
     }
@@ -101,9 +100,10 @@ impl ProjectedCg {
             release();
         }
         if noisy {
+            self.lend_operator(task.problem, task.state)?;
             self.finest.correct(task.state, task.set)?;
             self.finest.rest();
-            task.refresh();
+            task.refresh()?;
             task.count_products();
         }
         Ok(())
@@ -125,6 +125,14 @@ impl ProjectedCg {
     /// There is no solution before the last any more.
     pub fn forget_solutions(&mut self) {
         self.predictor = Predictor::default();
+    }
+
+    /// Where the window is the whole grid it needs the operator in single precision: a copy of the problem's.
+    fn lend_operator(&mut self, problem: &mut Problem, state: &State) -> Result<()> {
+        if self.finest.needs_operator(state) {
+            self.finest.lend(problem.operator()?.clone());
+        }
+        Ok(())
     }
 
     /// The update of the last step, as far as it proves anything: not where u was of single precision, or pressures were owed.
@@ -176,13 +184,14 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
+        self.lend_operator(problem, state)?;
         let last = Some(self.predictor.last()).filter(|_| by_approach && was == Freshness::Exact);
         let end = self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?;
         self.finest.rest();
         state.u_is = Freshness::Stale;
         let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;
         if gives_up || goal.by_update() {
-            problem.refresh(state, *set);
+            problem.refresh(state, *set)?;
         }
         if !goal.by_update() {
             return Ok(Change { gives_up, ..Change::default() });

@@ -1,0 +1,178 @@
+//! The operators of `u = A p` on one grid, in double precision: p on all of the grid, u too, but p is 0 on much of it.
+//!
+//! ```text
+//! p on elements s..e of a row of m      offsets -(e - 1) .. m - 1 - s occur,    reach = max(e - 1, m - 1 - s)
+//! period = 2 reach                      m + e - s for contact in the middle of the grid, 2 m - 2 for any p
+//! ```
+//!
+//! So with contact on 0.6 of each side of the grid, in its middle, a product takes three quarters of the time, and its spectrum, too. Which
+//! operator makes a product depends on p alone: no bit depends on the products before.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::operator::fft::good_length;
+use crate::operator::{Operator, Reach, SetUp, Workspace};
+use crate::threads::Threads;
+
+/// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
+const SMALLEST_GRID: usize = 128 * 128;
+/// A reach is worth an operator of its own where its period has at most this part of the elements of the full one.
+const WORTHWHILE: f64 = 0.8;
+
+/// What operators are made of.
+#[derive(Clone, Copy)]
+pub(super) struct MadeOf<'a> {
+    pub coefficients: &'a Coefficients,
+    pub grid: &'a Grid,
+    pub threads: &'a Threads,
+}
+
+/// Each is set up when it is first needed.
+#[derive(Default)]
+pub(super) struct Operators {
+    /// For any p.
+    whole: Option<Arc<Operator<f64>>>,
+    /// The last one for p on a part of the grid, and whether its coefficients are those of now.
+    part: Option<(Operator<f64>, bool)>,
+    /// Of the last product, with the periods that it is for.
+    workspace: Option<((usize, usize), Workspace<f64>)>,
+    /// Memory of set-ups.
+    set_up: SetUp,
+}
+
+impl Operators {
+    /// With an operator for any p.
+    pub fn with(whole: Arc<Operator<f64>>) -> Operators {
+        Operators { whole: Some(whole), ..Operators::default() }
+    }
+
+    /// The operator for any p.
+    pub fn whole(&mut self, of: MadeOf<'_>) -> Result<&Arc<Operator<f64>>> {
+        let whole = match self.whole.take() {
+            Some(whole) => whole,
+            None => Arc::new(Operator::new(of.coefficients, of.grid, &of.threads.suited_to(of.grid.len()))?),
+        };
+        Ok(self.whole.insert(whole))
+    }
+
+    /// Sets up what a product may need, where that does not depend on p.
+    pub fn prepare(&mut self, of: MadeOf<'_>) -> Result<()> {
+        if of.is_for_parts() {
+            return Ok(());
+        }
+        let whole = self.whole(of)?.clone();
+        fit(&mut self.workspace, &whole).map(drop)
+    }
+
+    /// The coefficients are others: plans and memory are kept where nobody else uses them. Not to be used after an error.
+    pub fn renew(&mut self, of: MadeOf<'_>) -> Result<()> {
+        self.part.iter_mut().for_each(|(_, is_current)| *is_current = false);
+        match self.whole.as_mut().and_then(Arc::get_mut) {
+            Some(operator) if !of.is_for_parts() => operator.renew(of.coefficients, 1.0, of.grid, &mut self.set_up)?,
+            _ => self.whole = None,
+        }
+        self.prepare(of)
+    }
+
+    /// `u = A p`.
+    pub fn displace(&mut self, of: MadeOf<'_>, p: &[f64], u: &mut [f64]) -> Result<()> {
+        // It is taken out for the time of the product.
+        let mut workspace = self.workspace.take();
+        let operator = match of.reach_of(p) {
+            Some(reach) => self.part(reach, of)?,
+            None => &**self.whole(of)?,
+        };
+        let fitting = fit(&mut workspace, operator)?;
+        operator.apply(p, u, fitting);
+        fitting.rest();
+        self.workspace = workspace;
+        Ok(())
+    }
+
+    /// The operator of a reach.
+    fn part(&mut self, reach: Reach, MadeOf { coefficients, grid, threads }: MadeOf<'_>) -> Result<&Operator<f64>> {
+        let set_up = &mut self.set_up;
+        let part = match self.part.take().filter(|(part, _)| part.reach() == reach) {
+            Some((part, true)) => part,
+            Some((mut part, false)) => {
+                part.renew(coefficients, 1.0, grid, set_up)?;
+                part
+            }
+            None => Operator::within(reach, coefficients, grid, &threads.suited_to(grid.len()), set_up)?,
+        };
+        Ok(&self.part.insert((part, true)).0)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let whole = self.whole.as_ref().map_or(0, |operator| operator.bytes());
+        let part = self.part.as_ref().map_or(0, |(part, _)| part.bytes());
+        whole + part + self.workspace.as_ref().map_or(0, |(_, workspace)| workspace.bytes())
+    }
+}
+
+impl MadeOf<'_> {
+    /// Whether some p may have operators of their own.
+    fn is_for_parts(&self) -> bool {
+        let MadeOf { coefficients, grid, .. } = self;
+        let is_toeplitz = coefficients.row_tables().is_none() && coefficients.repeats(grid) == (false, false);
+        grid.len() >= SMALLEST_GRID && is_toeplitz && coefficients.is_even(grid)
+    }
+
+    /// What p reaches, if that is worth an operator of its own.
+    fn reach_of(&self, p: &[f64]) -> Option<Reach> {
+        if !self.is_for_parts() {
+            return None;
+        }
+        let Grid { mx, my, .. } = *self.grid;
+        let (x, y) = loaded(p, mx);
+        // Half of a period that is transformed fast. Few periods are: a contact area that moves in steps keeps its operator for many of them.
+        let reach = |loaded: Range<usize>, m: usize| {
+            let farthest = loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
+            (good_length(2 * farthest) / 2).min(m - 1)
+        };
+        let (x, y) = (reach(x, mx), reach(y, my));
+        let part = ((x + 1) * (y + 1)) as f64 / self.grid.len() as f64;
+        (part <= WORTHWHILE).then_some((x, y))
+    }
+}
+
+/// The workspace of an operator: the one that there is, if it serves.
+fn fit<'a>(
+    workspace: &'a mut Option<((usize, usize), Workspace<f64>)>,
+    operator: &Operator<f64>,
+) -> Result<&'a mut Workspace<f64>> {
+    let periods = operator.periods();
+    let fitting = match workspace.take().filter(|(of, _)| *of == periods) {
+        Some(fitting) => fitting,
+        None => (periods, operator.workspace()?),
+    };
+    Ok(&mut workspace.insert(fitting).1)
+}
+
+/// The columns and rows outside of which p is 0; the first ones where it is 0 everywhere.
+fn loaded(p: &[f64], mx: usize) -> (Range<usize>, Range<usize>) {
+    let presses = |row: &[f64]| row.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0;
+    let rows = p.chunks_exact(mx);
+    let Some(first) = rows.clone().position(presses) else { return (0..1, 0..1) };
+    let last = rows.clone().rposition(presses).unwrap_or(first);
+    let (mut start, mut end) = (mx, 0);
+    for row in rows.skip(first).take(last + 1 - first) {
+        // Only what lies outside the columns so far is looked at.
+        if presses(&row[..start]) {
+            start = row.iter().position(|p| *p != 0.0).unwrap_or(start);
+        }
+        if presses(&row[end..]) {
+            end = row.iter().rposition(|p| *p != 0.0).map_or(end, |last| last + 1);
+        }
+    }
+    (start..end, first..last + 1)
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/operators.rs"]
+mod tests;

@@ -1,0 +1,115 @@
+//! Products by operators of a part of the grid, beside plain sums.
+
+use super::{loaded, MadeOf, Operators};
+use crate::grid::Grid;
+use crate::influence::{Coefficients, HalfSpace};
+use crate::threads::Threads;
+
+/// Errors of a transform are some roundings of the largest displacement.
+const ROUND_OFF: f64 = 32.0 * f64::EPSILON;
+
+fn grid() -> Grid {
+    Grid::new(161, 130, 0.7, 0.4).expect("a grid")
+}
+
+fn coefficients(grid: &Grid) -> Coefficients {
+    HalfSpace::new(grid.dx, grid.dy, 1.3).into()
+}
+
+/// Pressures that differ, on some columns and rows.
+fn pressures(grid: &Grid, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> Vec<f64> {
+    let value = |i: usize| {
+        let (x, y) = (i % grid.mx, i / grid.mx);
+        let inside = columns.contains(&x) && rows.contains(&y);
+        if inside {
+            1.0 + ((7 * x + 13 * y) % 17) as f64
+        } else {
+            0.0
+        }
+    };
+    (0..grid.len()).map(value).collect()
+}
+
+/// `u = A p` of element i, as a sum: row by row, so that its own rounding is some roundings, too.
+fn sum(coefficients: &Coefficients, grid: &Grid, p: &[f64], i: usize) -> f64 {
+    let (x, y) = ((i % grid.mx) as i64, (i / grid.mx) as i64);
+    let of_row = |(jy, p): (usize, &[f64])| {
+        let loaded = p.iter().enumerate().filter(|(_, p)| **p != 0.0);
+        loaded.map(|(jx, p)| p * coefficients.at(x - jx as i64, y - jy as i64)).sum::<f64>()
+    };
+    p.chunks_exact(grid.mx).enumerate().map(of_row).sum()
+}
+
+/// Columns and rows under load, and whether they have an operator of their own.
+fn cases() -> [(&'static str, std::ops::Range<usize>, std::ops::Range<usize>, bool); 8] {
+    [
+        ("in the middle", 40..121, 30..100, true),
+        ("one element in the middle", 80..81, 65..66, true),
+        ("beside the middle", 30..100, 40..105, true),
+        ("one row", 60..101, 64..65, true),
+        ("in a corner", 0..40, 0..30, false),
+        ("in the opposite corner", 150..161, 120..130, false),
+        ("across", 0..161, 60..70, true),
+        ("everywhere", 0..161, 0..130, false),
+    ]
+}
+
+#[test]
+fn products_of_a_part_are_those_of_all_elements() {
+    let (grid, threads) = (grid(), Threads::One);
+    let coefficients = coefficients(&grid);
+    let of = MadeOf { coefficients: &coefficients, grid: &grid, threads: &threads };
+    let mut operators = Operators::default();
+    for (name, columns, rows, is_part) in cases() {
+        let p = pressures(&grid, columns, rows);
+        assert_eq!(of.reach_of(&p).is_some(), is_part, "{name}");
+        let mut u = vec![f64::NAN; grid.len()];
+        operators.displace(of, &p, &mut u).expect("a product");
+        let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+        assert!(u.iter().all(|u| u.is_finite()), "{name}");
+        // All corners and edges are among them: there the period of a part is too short first.
+        let edges = (0..grid.mx).step_by(20).flat_map(|x| [x, grid.len() - 1 - x]);
+        let sides = (0..grid.my).step_by(16).flat_map(|y| [y * grid.mx, (y + 1) * grid.mx - 1]);
+        for i in edges.chain(sides).chain((0..grid.len()).step_by(997)) {
+            let exact = sum(&coefficients, &grid, &p, i);
+            assert!((u[i] - exact).abs() <= ROUND_OFF * largest, "{name}: {} for {exact} at {i}", u[i]);
+        }
+    }
+}
+
+#[test]
+fn no_bit_depends_on_the_products_before() {
+    let (grid, threads) = (grid(), Threads::One);
+    let coefficients = coefficients(&grid);
+    let of = MadeOf { coefficients: &coefficients, grid: &grid, threads: &threads };
+    let product = |operators: &mut Operators, p: &[f64]| {
+        let mut u = vec![f64::NAN; grid.len()];
+        operators.displace(of, p, &mut u).expect("a product");
+        u
+    };
+    let mut operators = Operators::default();
+    let others: Vec<Vec<f64>> = cases().map(|(_, columns, rows, _)| pressures(&grid, columns, rows)).into();
+    for p in others.iter().chain(others.iter().rev()) {
+        let after_others = product(&mut operators, p);
+        assert!(after_others == product(&mut Operators::default(), p));
+    }
+    // Nor on other coefficients before.
+    let before = HalfSpace::new(grid.dy, grid.dx, 2.0).into();
+    let mut operators = Operators::default();
+    let of_before = MadeOf { coefficients: &before, ..of };
+    for p in &others {
+        operators.displace(of_before, p, &mut vec![0.0; grid.len()]).expect("a product");
+        operators.renew(of_before).expect("an operator");
+        operators.renew(of).expect("an operator");
+        assert!(product(&mut operators, p) == product(&mut Operators::default(), p));
+    }
+}
+
+#[test]
+fn what_is_loaded_is_found() {
+    let grid = grid();
+    for (name, columns, rows, _) in cases() {
+        assert_eq!(loaded(&pressures(&grid, columns.clone(), rows.clone()), grid.mx), (columns, rows), "{name}");
+    }
+    assert_eq!(loaded(&vec![0.0; grid.len()], grid.mx), (0..1, 0..1));
+}
