@@ -21,8 +21,9 @@ pub fn factor(
     shape: CycleShape,
     (cycles, of): (usize, usize),
 ) -> f64 {
-    let mut multigrid = Multigrid::new(&Problem::new(*grid, influence.clone(), &Threads::One).expect("memory"), shape)
-        .expect("a valid grid");
+    let mut multigrid =
+        Multigrid::new(&mut Problem::new(*grid, influence.clone(), &Threads::One).expect("memory"), shape)
+            .expect("a valid grid");
     let mut seed = 1;
     let mut p: Vec<f64> = contact.iter().map(|&inside| if inside { random(&mut seed) } else { 0.0 }).collect();
     let mut residual = vec![0.0; p.len()];

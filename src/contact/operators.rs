@@ -1,12 +1,12 @@
-//! The operators of `u = A p` on one grid, in double precision: p on all of the grid, u too, but p is 0 on much of it.
+//! The operators of `u = A p` on one grid, in double precision. Each element is displaced, but few carry pressure:
 //!
 //! ```text
 //! p on elements s..e of a row of m      offsets -(e - 1) .. m - 1 - s occur,    reach = max(e - 1, m - 1 - s)
-//! period = 2 reach                      m + e - s for contact in the middle of the grid, 2 m - 2 for any p
+//! period = 2 reach                      m + (e - s) - 2 for contact in the middle of the grid, 2 m - 2 for any p
 //! ```
 //!
-//! So with contact on 0.6 of each side of the grid, in its middle, a product takes three quarters of the time, and its spectrum, too. Which
-//! operator makes a product depends on p alone: no bit depends on the products before.
+//! So with contact on 0.6 of each side of the grid, in its middle, a product takes three quarters of the time, and so does the set-up of its
+//! spectrum. Which operator makes a product depends on p alone: no bit depends on the products before.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::threads::Threads;
 
 /// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
 const SMALLEST_GRID: usize = 128 * 128;
-/// A reach is worth an operator of its own where its period has at most this part of the elements of the full one.
+/// A reach is worth an operator of its own where its periods have at most this part of the elements of the full ones.
 const WORTHWHILE: f64 = 0.8;
 
 /// What operators are made of.
@@ -40,7 +40,7 @@ pub(super) struct Operators {
     part: Option<(Operator<f64>, bool)>,
     /// Of the last product, with the periods that it is for.
     workspace: Option<((usize, usize), Workspace<f64>)>,
-    /// Memory of set-ups.
+    /// Memory for other coefficients.
     set_up: SetUp,
 }
 
@@ -68,18 +68,29 @@ impl Operators {
         fit(&mut self.workspace, &whole).map(drop)
     }
 
-    /// The coefficients are others: plans and memory are kept where nobody else uses them. Not to be used after an error.
+    /// The coefficients are others. An operator that all products need takes them now, with its plans and its memory if nobody else uses it; the
+    /// others follow when they are needed. Not to be used after an error, before it is renewed again.
     pub fn renew(&mut self, of: MadeOf<'_>) -> Result<()> {
-        self.part.iter_mut().for_each(|(_, is_current)| *is_current = false);
+        let is_for_parts = of.is_for_parts();
+        self.part = self.part.take().filter(|_| is_for_parts).map(|(part, _)| (part, false));
         match self.whole.as_mut().and_then(Arc::get_mut) {
-            Some(operator) if !of.is_for_parts() => operator.renew(of.coefficients, 1.0, of.grid, &mut self.set_up)?,
+            Some(operator) if !is_for_parts => operator.renew(of.coefficients, 1.0, of.grid, &mut self.set_up)?,
             _ => self.whole = None,
         }
         self.prepare(of)
     }
 
+    /// Whether the product with p needs the operator for any p.
+    pub fn needs_whole(of: MadeOf<'_>, p: &[f64]) -> bool {
+        of.reach_of(p).is_none()
+    }
+
     /// `u = A p`.
     pub fn displace(&mut self, of: MadeOf<'_>, p: &[f64], u: &mut [f64]) -> Result<()> {
+        if p.iter().all(|p| *p == 0.0) {
+            u.fill(0.0);
+            return Ok(());
+        }
         // It is taken out for the time of the product.
         let mut workspace = self.workspace.take();
         let operator = match of.reach_of(p) {
@@ -95,14 +106,13 @@ impl Operators {
 
     /// The operator of a reach.
     fn part(&mut self, reach: Reach, MadeOf { coefficients, grid, threads }: MadeOf<'_>) -> Result<&Operator<f64>> {
-        let set_up = &mut self.set_up;
         let part = match self.part.take().filter(|(part, _)| part.reach() == reach) {
             Some((part, true)) => part,
             Some((mut part, false)) => {
-                part.renew(coefficients, 1.0, grid, set_up)?;
+                part.renew(coefficients, 1.0, grid, &mut self.set_up)?;
                 part
             }
-            None => Operator::within(reach, coefficients, grid, &threads.suited_to(grid.len()), set_up)?,
+            None => Operator::within(reach, coefficients, grid, &threads.suited_to(grid.len()))?,
         };
         Ok(&self.part.insert((part, true)).0)
     }
@@ -129,15 +139,16 @@ impl MadeOf<'_> {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
-        let (x, y) = loaded(p, mx);
-        // Half of a period that is transformed fast. Few periods are: a contact area that moves in steps keeps its operator for many of them.
-        let reach = |loaded: Range<usize>, m: usize| {
+        let (x, y) = loaded(p, mx)?;
+        // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
+        let period = |loaded: Range<usize>, m: usize| {
             let farthest = loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
-            (good_length(2 * farthest) / 2).min(m - 1)
+            good_length(2 * farthest)
         };
-        let (x, y) = (reach(x, mx), reach(y, my));
-        let part = ((x + 1) * (y + 1)) as f64 / self.grid.len() as f64;
-        (part <= WORTHWHILE).then_some((x, y))
+        let (px, py) = (period(x, mx), period(y, my));
+        let full = good_length(2 * mx - 2) * good_length(2 * my - 2);
+        let reach = ((px / 2).min(mx - 1), (py / 2).min(my - 1));
+        ((px * py) as f64 <= WORTHWHILE * full as f64).then_some(reach)
     }
 }
 
@@ -154,11 +165,11 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
-/// The columns and rows outside of which p is 0; the first ones where it is 0 everywhere.
-fn loaded(p: &[f64], mx: usize) -> (Range<usize>, Range<usize>) {
+/// The columns and rows outside of which p is 0; none where it is 0 everywhere.
+fn loaded(p: &[f64], mx: usize) -> Option<(Range<usize>, Range<usize>)> {
     let presses = |row: &[f64]| row.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0;
     let rows = p.chunks_exact(mx);
-    let Some(first) = rows.clone().position(presses) else { return (0..1, 0..1) };
+    let first = rows.clone().position(presses)?;
     let last = rows.clone().rposition(presses).unwrap_or(first);
     let (mut start, mut end) = (mx, 0);
     for row in rows.skip(first).take(last + 1 - first) {
@@ -170,7 +181,7 @@ fn loaded(p: &[f64], mx: usize) -> (Range<usize>, Range<usize>) {
             end = row.iter().rposition(|p| *p != 0.0).map_or(end, |last| last + 1);
         }
     }
-    (start..end, first..last + 1)
+    Some((start..end, first..last + 1))
 }
 
 #[cfg(test)]

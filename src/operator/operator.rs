@@ -35,7 +35,7 @@ pub(super) enum Columns<T: Real> {
 pub struct Operator<T: Real> {
     pub(super) rows: Rows<T>,
     pub(super) columns: Columns<T>,
-    /// Pressures that lie farther apart give a wrong product. Only even coefficients make use of it.
+    /// Products with pressures that reach farther are wrong. Only even coefficients make use of it.
     reach: Reach,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
@@ -57,16 +57,10 @@ impl<T: Real> Operator<T> {
     }
 
     /// For products with pressures within a reach.
-    pub fn within(
-        reach: Reach,
-        coefficients: &Coefficients,
-        grid: &Grid,
-        threads: &Threads,
-        set_up: &mut SetUp,
-    ) -> Result<Operator<T>> {
+    pub fn within(reach: Reach, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads);
         operator.reach = reach;
-        operator.renew(coefficients, 1.0, grid, set_up)?;
+        operator.renew(coefficients, 1.0, grid, &mut SetUp::default())?;
         Ok(operator)
     }
 

@@ -119,7 +119,8 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
     let grid = Grid::new(M, M, 1.0, 0.6).unwrap();
     let influence = half_space(&grid);
     let mut multigrid =
-        Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default()).unwrap();
+        Multigrid::new(&mut Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default())
+            .unwrap();
     let analysis = Analysis::new(1.0, 0.6, [16, 16], 2).unwrap();
     let [tx, ty] = analysis.frequencies();
     let (n, at) = (tx.len(), |i: i64| i.rem_euclid(32) as usize);
@@ -218,7 +219,7 @@ fn jacobi_diverges_by_the_factor_of_the_analysis() {
         let two = Analysis::new(1.0, 1.0, [n, n], 2).unwrap();
         let predicted = two.amplification(Jacobi, omega).into_iter().fold(0.0, f64::max);
         let mut multigrid =
-            Multigrid::new(&Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default())
+            Multigrid::new(&mut Problem::new(grid, influence.clone(), &Threads::One).unwrap(), CycleShape::default())
                 .unwrap();
         let (mut p, mut r, mut growth) = (vec![1.0; n * n], vec![0.0; n * n], 0.0);
         let mut smoother = Smoother::new(Jacobi, &influence, &grid, &Threads::One).unwrap();

@@ -127,9 +127,9 @@ impl ProjectedCg {
         self.predictor = Predictor::default();
     }
 
-    /// Where the window is the whole grid it needs the operator in single precision: a copy of the problem's.
+    /// Where the window is the whole grid it needs the operator in single precision: a copy of the problem's, if that is needed anyway.
     fn lend_operator(&mut self, problem: &mut Problem, state: &State) -> Result<()> {
-        if self.finest.needs_operator(state) {
+        if self.finest.needs_operator(state) && problem.needs_operator(&state.p) {
             self.finest.lend(problem.operator()?.clone());
         }
         Ok(())
