@@ -66,10 +66,11 @@ pub struct Guess<'a> {
 /// after one that failed on the way there is none.
 ///
 /// A solve from nothing or from a given guess has the same result, to the last bit, whatever was solved before. After a first
-/// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for one
-/// thing: PROJECTED_CG (and AUTO) work on a window around the contact area, whose operator is set up anew when its size
-/// changes; the operators of the last few sizes are kept, of up to 128 x 128 elements each. On larger grids products with pressures on a part
-/// of the grid have an operator for that part, which is set up anew when the pressures reach farther or less far. From 4096 x 4096 elements on, where memory is scarce, what a solve needs at its beginning is set up for each solve.
+/// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for two
+/// operators. PROJECTED_CG (and AUTO) work on a window around the contact area, whose operator is set up anew when its size
+/// changes; the operators of the last few sizes are kept, of up to 128 x 128 elements each. From 128 x 128 elements on, products with
+/// pressures on a part of the grid have an operator of a shorter period, which is set up anew when the pressures reach farther or less
+/// far. From 4096 x 4096 elements on, where memory is scarce, what a solve needs at its beginning is set up for each solve.
 pub struct Solver {
     problem: contact::Problem,
     set_up: SetUp,
