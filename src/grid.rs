@@ -93,3 +93,27 @@ pub fn children(fine: usize, coarse: usize, i: usize) -> Range<usize> {
     let factor = if coarse < fine { 2 } else { 1 };
     factor * i..(factor * (i + 1)).min(fine)
 }
+
+/// The columns and the rows, of `mx` values each, outside of which nothing counts: `any` looks at some values of a row together, `counts` at
+/// one. None where nothing does.
+pub(crate) fn bounding_box<A>(
+    values: &[A],
+    mx: usize,
+    any: impl Fn(&[A]) -> bool,
+    counts: impl Fn(&A) -> bool,
+) -> Option<(Range<usize>, Range<usize>)> {
+    let rows = values.chunks_exact(mx);
+    let first = rows.clone().position(&any)?;
+    let last = rows.clone().rposition(&any)?;
+    let (mut start, mut end) = (mx, 0);
+    for row in rows.skip(first).take(last + 1 - first) {
+        // Only what lies outside the columns so far is looked at.
+        if any(&row[..start]) {
+            start = row.iter().position(&counts).unwrap_or(start);
+        }
+        if any(&row[end..]) {
+            end = row.iter().rposition(&counts).map_or(end, |last| last + 1);
+        }
+    }
+    Some((start..end, first..last + 1))
+}

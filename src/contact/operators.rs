@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::grid::{bounding_box, Grid};
 use crate::influence::Coefficients;
 use crate::operator::fft::good_length;
 use crate::operator::{Operator, Reach, SetUp, Workspace};
@@ -168,20 +168,7 @@ fn fit<'a>(
 /// The columns and rows outside of which p is 0; none where it is 0 everywhere.
 fn loaded(p: &[f64], mx: usize) -> Option<(Range<usize>, Range<usize>)> {
     let presses = |row: &[f64]| row.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0;
-    let rows = p.chunks_exact(mx);
-    let first = rows.clone().position(presses)?;
-    let last = rows.clone().rposition(presses).unwrap_or(first);
-    let (mut start, mut end) = (mx, 0);
-    for row in rows.skip(first).take(last + 1 - first) {
-        // Only what lies outside the columns so far is looked at.
-        if presses(&row[..start]) {
-            start = row.iter().position(|p| *p != 0.0).unwrap_or(start);
-        }
-        if presses(&row[end..]) {
-            end = row.iter().rposition(|p| *p != 0.0).map_or(end, |last| last + 1);
-        }
-    }
-    Some((start..end, first..last + 1))
+    bounding_box(p, mx, presses, |p| *p != 0.0)
 }
 
 #[cfg(test)]

@@ -50,11 +50,7 @@ impl<T: Real> Iteration<T> {
         );
         let before = self.debts.len();
         // Of these few elements leave, at the rim: the others the compiler can vectorise.
-        let chunks = self
-            .runs
-            .of_blocks_with_sum()
-            .flat_map(|run| run.clone().step_by(CHUNK).map(move |start| start..run.end.min(start + CHUNK)));
-        for chunk in chunks {
+        for chunk in self.runs.pieces_of_blocks_with_sum(CHUNK) {
             let (p, t, d) = (&mut state.p[chunk.clone()], &t[chunk.clone()], &d[chunk.clone()]);
             let some_leave = |some, (((p, t), d), i): (((&f64, &T), &T), usize)| some | leaves(i, *p, *t, *d);
             if !p.iter().zip(t).zip(d).zip(chunk.clone()).fold(false, some_leave) {

@@ -148,10 +148,11 @@ impl Segments {
         self.total()
     }
 
-    /// The runs of the blocks whose first sum of the last pass was not 0.
-    pub fn of_blocks_with_sum(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+    /// The runs of the blocks whose first sum of the last pass was not 0, cut into pieces of at most so many elements.
+    pub fn pieces_of_blocks_with_sum(&self, most: usize) -> impl Iterator<Item = Range<usize>> + '_ {
         let blocks = self.found.iter().zip(&self.sums).filter(|(_, sums)| sums[0] != 0.0);
-        blocks.flat_map(|(block, _)| &block.runs).map(|&(start, end)| start as usize..end as usize)
+        let runs = blocks.flat_map(|(block, _)| &block.runs).map(|&(start, end)| start as usize..end as usize);
+        runs.flat_map(move |run| run.clone().step_by(most).map(move |start| start..run.end.min(start + most)))
     }
 
     fn total<const K: usize>(&self) -> [f64; K] {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::segments::first_that_is;
 use crate::contact::State;
-use crate::grid::Grid;
+use crate::grid::{self, Grid};
 use crate::operator::fft::good_length;
 use crate::threads::Threads;
 
@@ -127,15 +127,6 @@ fn bounding_box(state: &State) -> Option<Window> {
 }
 
 fn bounding_box_of(elements: &[bool], mx: usize) -> Option<Window> {
-    let first = first_that_is(true, elements)? / mx;
-    let rows = elements.chunks_exact(mx);
-    let last = rows.clone().rposition(|row| first_that_is(true, row).is_some())?;
-    let (mut start, mut end) = (mx, 0);
-    for row in rows.skip(first).take(last + 1 - first) {
-        start = first_that_is(true, &row[..start]).unwrap_or(start);
-        if first_that_is(true, &row[end..]).is_some() {
-            end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
-        }
-    }
-    Some(Window { x: start..end, y: first..last + 1 })
+    let (x, y) = grid::bounding_box(elements, mx, |row| first_that_is(true, row).is_some(), |inside| *inside)?;
+    Some(Window { x, y })
 }
