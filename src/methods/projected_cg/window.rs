@@ -12,9 +12,10 @@ use crate::grid::{self, Grid};
 use crate::operator::fft::good_length;
 use crate::threads::Threads;
 
-/// Elements around the contact area, at least: one for what may enter, more for an area that still moves. And the part of its length that comes
-/// to them on each side: with 1/32 cold calls on ellipses of 512 to 2048 took 1.03 to 1.06 times as long.
-const MARGIN: usize = 3;
+/// Elements around the contact area, at least, in a new window: one for what may enter, one for an area that still moves (with two of these cold
+/// calls on ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long, with none the same). And the part of its length that comes to
+/// them on each side: with 1/32 cold calls on ellipses of 512 to 2048 took 1.03 to 1.06 times as long.
+const MARGIN: usize = 2;
 const PART: usize = 64;
 /// A window of more than this part of the grid is not worth its own operator. With 0.6 steps in time on ellipse 64 and 256 and on both wheel-rail
 /// contacts took 1.1 to 1.2 times as long, cold calls 1.0 to 1.35; with 0.95 as long.
@@ -72,14 +73,13 @@ impl Window {
         }
     }
 
-    /// Whether this window still serves a contact area: it has a margin around it and is not far too large.
+    /// Whether this window still serves a contact area: there is room for what may enter, and it is not far too large.
     fn holds(&self, area: &Window, grid: &Grid) -> bool {
-        let margin = |outer: &Range<usize>, inner: &Range<usize>, m: usize| {
-            (outer.start == 0 || outer.start + MARGIN <= inner.start)
-                && (outer.end == m || inner.end + MARGIN <= outer.end)
+        let has_room = |outer: &Range<usize>, inner: &Range<usize>, m: usize| {
+            (outer.start == 0 || outer.start < inner.start) && (outer.end == m || inner.end < outer.end)
         };
         let part = area.x.len() as f64 * area.y.len() as f64 / (self.x.len() as f64 * self.y.len() as f64);
-        margin(&self.x, &area.x, grid.mx) && margin(&self.y, &area.y, grid.my) && part > 0.3
+        has_room(&self.x, &area.x, grid.mx) && has_room(&self.y, &area.y, grid.my) && part > 0.3
     }
 
     /// Number of elements.
