@@ -117,10 +117,9 @@ impl Level {
         if displacement != Freshness::Exact {
             state.carry_force(set);
         }
-        let mx = self.grid.mx;
+        let whole = self.grid;
         self.on_window(state, set, displacement, |inner, window, units, state, set| {
-            let grid = state.grid;
-            let work = grid.len() as f64 / finest as f64;
+            let work = state.grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
                 in_either!(inner, inner => inner.correct(state, set));
             }
@@ -128,11 +127,11 @@ impl Level {
                 in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
-            in_either!(inner, inner => inner.know(state, last, (window, mx), units))?;
+            in_either!(inner, inner => inner.know(state, last, (window, whole.mx), units))?;
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
-                monitor.cycle_done(&grid, cycle.changes, cycle.update / units.pressure(), cycle.residual)
+                monitor.cycle_done(&whole, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             };
             Ok(in_either!(inner, inner => inner.run(state, set, goal, after_cycle)))
         })?
