@@ -57,11 +57,17 @@ pub(super) fn twiddles<T: Real>(n: usize, compute: impl FnOnce() -> Vec<Complex<
     T::with_plans(|plans| plans.twiddles.entry(n).or_insert_with(|| compute().into()).clone())
 }
 
-/// Work of a transform of length `2^a 3^b 5^c` relative to one of a power of two: measured, in single precision, where it
-/// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives.
-fn relative_work(twos: u32, fives: u32) -> f64 {
+/// Work of a transform of length `2^a 3^b 5^c` relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
+/// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives, unless one stands beside many twos alone.
+fn relative_work(twos: u32, has_threes: bool, fives: u32) -> f64 {
     let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);
-    let of_fives = [1.0, 1.12, 1.3].get(fives as usize).copied().unwrap_or(1.6);
+    let of_fives = match (has_threes, fives) {
+        (_, 0) => 1.0,
+        (false, 1) if twos >= 5 => 1.0,
+        (_, 1) => 1.12,
+        (_, 2) => 1.3,
+        _ => 1.6,
+    };
     of_twos * of_fives
 }
 
@@ -74,7 +80,7 @@ pub fn good_length(n: usize) -> usize {
         let mut odd = power_of_five;
         while odd < longest {
             let even = n.div_ceil(odd).max(2).next_power_of_two();
-            let work = (odd * even) as f64 * relative_work(even.trailing_zeros(), fives);
+            let work = (odd * even) as f64 * relative_work(even.trailing_zeros(), odd > power_of_five, fives);
             if work < least {
                 (best, least) = (odd * even, work);
             }
