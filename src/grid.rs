@@ -102,18 +102,44 @@ pub(crate) fn bounding_box<A>(
     any: impl Fn(&[A]) -> bool,
     counts: impl Fn(&A) -> bool,
 ) -> Option<(Range<usize>, Range<usize>)> {
-    let rows = values.chunks_exact(mx);
-    let first = rows.clone().position(&any)?;
-    let last = rows.clone().rposition(&any)?;
-    let (mut start, mut end) = (mx, 0);
-    for row in rows.skip(first).take(last + 1 - first) {
-        // Only what lies outside the columns so far is looked at.
-        if any(&row[..start]) {
-            start = row.iter().position(&counts).unwrap_or(start);
+    pulp::Arch::new().dispatch(BoundingBox { values, mx, any, counts })
+}
+
+/// Compiled for the vectors of this machine, on which no bit depends.
+struct BoundingBox<'a, A, F, G> {
+    values: &'a [A],
+    mx: usize,
+    any: F,
+    counts: G,
+}
+
+impl<A, F: Fn(&[A]) -> bool, G: Fn(&A) -> bool> pulp::NullaryFnOnce for BoundingBox<'_, A, F, G> {
+    type Output = Option<(Range<usize>, Range<usize>)>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let BoundingBox { values, mx, any, counts } = self;
+        let row = |y: usize| &values[y * mx..(y + 1) * mx];
+        let (mut first, mut end_of_rows) = (0, values.len() / mx);
+        while first < end_of_rows && !any(row(first)) {
+            first += 1;
         }
-        if any(&row[end..]) {
-            end = row.iter().rposition(&counts).map_or(end, |last| last + 1);
+        if first == end_of_rows {
+            return None;
         }
+        while !any(row(end_of_rows - 1)) {
+            end_of_rows -= 1;
+        }
+        let (mut start, mut end) = (mx, 0);
+        for row in (first..end_of_rows).map(row) {
+            // Only what lies outside the columns so far is looked at.
+            if any(&row[..start]) {
+                start = row.iter().position(&counts).unwrap_or(start);
+            }
+            if any(&row[end..]) {
+                end = row.iter().rposition(&counts).map_or(end, |last| last + 1);
+            }
+        }
+        Some((start..end, first..end_of_rows))
     }
-    Some((start..end, first..last + 1))
 }

@@ -78,6 +78,7 @@ pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod stress;
+mod sums;
 pub mod threads;
 
 #[cfg(panic = "abort")]

@@ -11,6 +11,7 @@ mod outline;
 mod problem;
 mod start;
 mod state;
+mod survey_pass;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};

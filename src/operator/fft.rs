@@ -7,12 +7,14 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 pub use rustfft::num_complex::Complex;
-use rustfft::num_traits::{Float, FromPrimitive, ToPrimitive};
+use rustfft::num_traits::{Float, FromPrimitive};
 
 use rustfft::{Fft, FftNum, FftPlanner};
 
+use crate::sums::Value;
+
 /// `f32` or `f64`.
-pub trait Real: FftNum + Float + FromPrimitive + ToPrimitive + Default + std::iter::Sum + std::ops::AddAssign {
+pub trait Real: Value + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign {
     #[doc(hidden)]
     fn with_plans<R>(use_it: impl FnOnce(&mut Plans<Self>) -> R) -> R;
 
@@ -20,11 +22,6 @@ pub trait Real: FftNum + Float + FromPrimitive + ToPrimitive + Default + std::it
     #[inline(always)]
     fn of(value: f64) -> Self {
         Self::from_f64(value).unwrap_or_default()
-    }
-
-    /// This value in double precision.
-    fn to_double(self) -> f64 {
-        self.to_f64().unwrap_or_default()
     }
 }
 

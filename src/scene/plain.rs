@@ -26,9 +26,10 @@ impl Plain<'_> {
         }
         // NaN is not greater than anything. Of all of them first, which the compiler can vectorise.
         let is_number = |v: &f64| *v > f64::NEG_INFINITY;
+        let elements = h.iter();
         let all = pulp::Arch::new().dispatch(
             #[inline(always)]
-            || h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg()),
+            || elements.fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg()),
         );
         match (all == 0).then(|| h.iter().position(|v| !is_number(v))).flatten() {
             Some(i) => Err(Error::NotFinite(format!(

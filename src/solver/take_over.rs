@@ -103,11 +103,16 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
         let row = start..start + state.grid.mx;
         let (p, h, contact) = (&state.p[row.clone()], &state.h[row.clone()], &state.contact[row.clone()]);
         let elements = p.iter().zip(h).zip(contact).zip(row.clone());
-        let unclean = |some, (((p, h), &inside), i): (((&f64, &f64), &bool), usize)| {
-            let to = if inside { set.project(i, *p) } else { 0.0 };
-            some | (to != *p) | (inside & !h.is_finite())
-        };
-        if !elements.fold(false, unclean) {
+        let is_unclean = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                elements.fold(false, |some, (((p, h), &inside), i)| {
+                    let to = if inside { set.project(i, *p) } else { 0.0 };
+                    some | (to != *p) | (inside & !h.is_finite())
+                })
+            },
+        );
+        if !is_unclean {
             continue;
         }
         for i in row {

@@ -88,17 +88,17 @@ impl<T: Real> Iteration<T> {
     /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
         let (q, z, Update { alpha, gamma, settled, .. }) = (&self.q, &self.z, *update);
-        let (_, w) = self.known.beside(gamma, &self.t, q);
+        let ((_, w), approach) = (self.known.beside(gamma, &self.t, q), state.approach);
         let [work, energy] = self.runs.sum(
             #[inline(always)]
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (q, z, w) = (&q[run.clone()], &z[run.clone()], &w[run]);
-                    sums.add(h.len(), |i| {
-                        let repair = if settled { z[i].to_double() } else { 0.0 };
-                        let u = u[i] + (alpha * q[i].to_double() + gamma * w[i].to_double()) + repair;
-                        [p[i] * (state.approach - h[i]), p[i] * u]
+                    sums.add([h, u, p], [q, z, w], |[h, u, p], [q, z, w]| {
+                        let repair = if settled { z } else { 0.0 };
+                        let u = u + (alpha * q + gamma * w) + repair;
+                        [p * (approach - h), p * u]
                     });
                 }
             },

@@ -35,13 +35,11 @@ impl<T: Real> Iteration<T> {
             &mut state.p,
             #[inline(always)]
             |block, p, sums| {
-                let some_leave = block.runs().any(|(run, local)| {
+                for (run, local) in block.runs() {
                     let elements = p[local].iter().zip(&t[run.clone()]).zip(&d[run.clone()]).zip(run);
-                    elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d))
-                });
-                if some_leave {
-                    sums.add(1, |_| [1.0]);
-                    return;
+                    if elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d)) {
+                        return sums.add_one([1.0]);
+                    }
                 }
                 for (run, local) in block.runs() {
                     p[local].iter_mut().zip(&t[run.clone()]).zip(&d[run]).for_each(|((p, t), d)| *p = to(*p, *t, *d));

@@ -14,13 +14,13 @@
 
 use super::passes::Step;
 use super::scaling::Scaling;
-use super::segments::Sums;
 use super::vectors::Iteration;
 use super::Window;
 use crate::contact::State;
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::operator::fft::Real;
+use crate::sums::Sums;
 
 /// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
 const CARRIES: f64 = 0.5;
@@ -84,13 +84,9 @@ impl<T: Real> Known<T> {
         self.length.sqrt()
     }
 
-    fn measure(&mut self) {
-        (self.energy, self.length, self.size) = (0.0, 0.0, 0.0);
-        for (d, w) in self.d.iter().zip(&self.w).filter(|(d, _)| **d != T::zero()) {
-            self.energy += d.to_double() * w.to_double();
-            self.length += d.to_double() * d.to_double();
-            self.size += w.to_double() * w.to_double();
-        }
+    /// Takes (d, w), and the sums of d^2 and of w^2.
+    fn measured(&mut self, [energy, length, size]: [f64; 3]) {
+        (self.energy, self.length, self.size) = (energy, length, size);
     }
 }
 
@@ -125,26 +121,23 @@ impl<T: Real> Iteration<T> {
                 sums: &mut sums,
             });
         }
-        let [sum, absolute, all] = sums.values();
+        let [sum, absolute, all, measures @ ..] = sums.values();
         if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
-            self.known.measure();
+            self.known.measured(measures);
         }
         Ok(())
     }
 
     /// d becomes the change on C alone. Returns the products that this takes.
     pub(super) fn restrict_known(&mut self, state: &State) -> u64 {
-        let Known { d, energy, .. } = &mut self.known;
-        let leaves = |(d, inside): (&T, &bool)| !inside & (*d != T::zero());
-        if *energy <= 0.0 || !d.iter().zip(&state.contact).any(leaves) {
+        let (Known { d, energy, .. }, z) = (&mut self.known, &mut self.z);
+        if *energy <= 0.0 || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
             return 0;
         }
-        for ((d, z), inside) in d.iter_mut().zip(&mut self.z).zip(&state.contact) {
-            *z = if *inside { T::zero() } else { std::mem::replace(d, T::zero()) };
-        }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
-        self.known.w.iter_mut().zip(&self.z).for_each(|(w, z)| *w = *w - *z);
-        self.known.measure();
+        let (Known { d, w, .. }, z) = (&mut self.known, &self.z);
+        let measures = pulp::Arch::new().dispatch(Subtract { d, w, z });
+        self.known.measured(measures);
         1
     }
 
@@ -157,10 +150,9 @@ impl<T: Real> Iteration<T> {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
-                    sums.add(h.len(), |i| {
-                        let (t, q, d) = (t[i].to_double(), q[i].to_double(), d[i].to_double());
-                        let r = approach - h[i] - u[i];
-                        [r * t, t * q, t * t, t.abs(), p[i] * p[i], r * d, q * d]
+                    sums.add([h, u, p], [t, q, d], |[h, u, p], [t, q, d]| {
+                        let r = approach - h - u;
+                        [r * t, t * q, t * t, t.abs(), p * p, r * d, q * d]
                     });
                 }
             },
@@ -202,15 +194,15 @@ impl<T: Real> Iteration<T> {
         if !self.known.is_there() {
             return;
         }
-        let Known { d, w, energy, size, .. } = &self.known;
+        let (Known { d, w, energy, size, .. }, approach) = (&self.known, state.approach);
         let [rd, rr] = self.runs.sum(
             #[inline(always)]
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
-                    sums.add(h.len(), |i| {
-                        let e = h[i] - state.approach + u[i];
-                        [-e * d[i].to_double(), e * e]
+                    sums.add([h, u], [d], |[h, u], [d]| {
+                        let e = h - approach + u;
+                        [-e * d, e * e]
                     });
                 }
             },
@@ -254,8 +246,8 @@ struct Change<'a, T> {
     u: (&'a [f64], &'a [f64], f64),
     d: &'a mut [T],
     w: &'a mut [T],
-    /// Of d, |d| and |p|.
-    sums: &'a mut Sums<3>,
+    /// Of d, |d| and |p|, and the measures of d and w.
+    sums: &'a mut Sums<6>,
 }
 
 impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
@@ -264,13 +256,59 @@ impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
     #[inline(always)]
     fn call(self) {
         let Change { p: (p, last_p, pressure), u: (u, last_u, length), d, w, sums } = self;
-        sums.add(p.len(), |i| {
-            let change = p[i] - pressure * last_p[i];
-            d[i] = T::of(change);
-            [change, change.abs(), p[i].abs()]
+        d.iter_mut().zip(p).zip(last_p).for_each(|((d, p), last)| *d = T::of(p - pressure * last));
+        w.iter_mut().zip(u).zip(last_u).for_each(|((w, u), last)| *w = T::of(u - length * last));
+        sums.add([p, last_p], [&*d, &*w], |[p, last_p], [d, w]| {
+            let change = p - pressure * last_p;
+            let [energy, length, size] = measures(d, w);
+            [change, change.abs(), p.abs(), energy, length, size]
         });
-        for ((w, now), last) in w.iter_mut().zip(u).zip(last_u) {
-            *w = T::of(now - length * last);
-        }
     }
+}
+
+/// What is outside C goes from d to z; returns whether anything does.
+struct Restrict<'a, T> {
+    d: &'a mut [T],
+    z: &'a mut [T],
+    contact: &'a [bool],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Restrict<'_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Restrict { d, z, contact } = self;
+        let mut leaves = false;
+        for ((d, z), inside) in d.iter_mut().zip(z).zip(contact) {
+            (*d, *z) = if *inside { (*d, T::zero()) } else { (T::zero(), *d) };
+            leaves |= *z != T::zero();
+        }
+        leaves
+    }
+}
+
+/// w = w - z; returns the measures of d and w.
+struct Subtract<'a, T> {
+    d: &'a [T],
+    w: &'a mut [T],
+    z: &'a [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
+    type Output = [f64; 3];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 3] {
+        let (Subtract { d, w, z }, mut sums) = (self, Sums::new());
+        w.iter_mut().zip(z).for_each(|(w, z)| *w = *w - *z);
+        sums.add([], [d, w], |[], [d, w]| measures(d, w));
+        sums.values()
+    }
+}
+
+/// What an element adds to (d, w) and to the sums of d^2 and of w^2.
+#[inline(always)]
+fn measures(d: f64, w: f64) -> [f64; 3] {
+    [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]
 }

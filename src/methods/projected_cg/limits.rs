@@ -99,8 +99,7 @@ impl<T: Real> Iteration<T> {
         let p = &state.p;
         let [carried] = self.runs.sum(|block, sums| {
             for (run, _) in block.runs() {
-                let p = &p[run];
-                sums.add(p.len(), |i| [p[i]]);
+                sums.add::<T, 1, 0>([&p[run]], [], |p, []| p);
             }
         });
         let factor = force / (carried * state.grid.element_area());
@@ -143,7 +142,7 @@ impl<T: Real> Iteration<T> {
                 let steps = state.p[run.clone()].iter().zip(&t[run.clone()]);
                 set.any_beyond(run.start, steps.map(|(p, t)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK)))
             });
-            sums.add(1, |_| [f64::from(u8::from(beyond))]);
+            sums.add_one([f64::from(u8::from(beyond))]);
         });
         reached > 0.0
     }

@@ -60,9 +60,9 @@ impl<T: Real> Iteration<T> {
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, q, z) = (&state.h[run.clone()], &state.u[run.clone()], &q[run.clone()], &z[run]);
-                    sums.add(h.len(), |i| {
-                        let repair = if settled { z[i].to_double() } else { 0.0 };
-                        [h[i] + factor * (u[i] + alpha * q[i].to_double() + repair)]
+                    sums.add([h, u], [q, z], |[h, u], [q, z]| {
+                        let repair = if settled { z } else { 0.0 };
+                        [h + factor * (u + alpha * q + repair)]
                     });
                 }
             },
@@ -82,10 +82,9 @@ impl<T: Real> Iteration<T> {
                 z.fill(T::zero());
                 for (run, local) in block.runs() {
                     let (h, u, z) = (&state.h[run.clone()], &state.u[run], &mut z[local]);
-                    sums.add(h.len(), |i| {
-                        let distance = h[i] - approach;
-                        let e = distance + u[i];
-                        z[i] = T::of(-e);
+                    z.iter_mut().zip(h).zip(u).for_each(|((z, h), u)| *z = T::of(-(h - approach + u)));
+                    sums.add::<T, 2, 0>([h, u], [], |[h, u], []| {
+                        let (distance, e) = (h - approach, h - approach + u);
                         [e * e, distance * distance]
                     });
                 }
@@ -120,18 +119,15 @@ impl<T: Real> Iteration<T> {
         let missing = self.limits.missing / forecast.unwrap_or(1.0);
         let (mean, beta) = self.conjugate(without_force.then_some(missing), tq);
         let (z, mean, beta) = (&self.z, T::of(mean), T::of(beta));
-        let held = |p: f64, t: T| match forecast {
-            Some(forecast) if p + forecast * t.to_double() < 0.0 => T::of(-p / forecast),
-            _ => t,
-        };
         let [] = self.runs.sum_changing(
             &mut self.t,
             #[inline(always)]
             |block, t, _| {
                 for (run, local) in block.runs() {
-                    let (p, z) = (&state.p[run.clone()], &z[run]);
-                    for ((t, z), p) in t[local].iter_mut().zip(z).zip(p) {
-                        *t = held(*p, *z - mean + beta * *t);
+                    let (p, z, t) = (&state.p[run.clone()], &z[run], &mut t[local]);
+                    t.iter_mut().zip(z).for_each(|(t, z)| *t = *z - mean + beta * *t);
+                    if let Some(forecast) = forecast {
+                        hold_back(p, t, forecast);
                     }
                 }
             },
@@ -149,10 +145,7 @@ impl<T: Real> Iteration<T> {
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (t, z, q) = (&t[run.clone()], &z[run.clone()], &q[run]);
-                    sums.add(z.len(), |i| {
-                        let (z, q) = (z[i].to_double(), q[i].to_double());
-                        [t[i].to_double(), z, q, z * q]
-                    });
+                    sums.add([], [t, z, q], |[], [t, z, q]| [t, z, q, z * q]);
                 }
             },
         );
@@ -175,9 +168,9 @@ impl<T: Real> Iteration<T> {
                     for (run, _) in block.runs() {
                         let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                         let (t, q) = (&t[run.clone()], &q[run]);
-                        sums.add(h.len(), |i| {
-                            let (t, e) = (t[i].to_double(), h[i] - approach + u[i]);
-                            [-e * t, t * q[i].to_double(), t * t, t.abs(), p[i] * p[i]]
+                        sums.add([h, u, p], [t, q], |[h, u, p], [t, q]| {
+                            let e = h - approach + u;
+                            [-e * t, t * q, t * t, t.abs(), p * p]
                         });
                     }
                 },
@@ -190,10 +183,10 @@ impl<T: Real> Iteration<T> {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (t, q) = (&t[run.clone()], &q[run]);
-                    sums.add(h.len(), |i| {
-                        let (p, t, q, depth) = (p[i], t[i].to_double(), q[i].to_double(), approach - h[i]);
-                        let r = depth - u[i];
-                        [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u[i], p * q]
+                    sums.add([h, u, p], [t, q], |[h, u, p], [t, q]| {
+                        let depth = approach - h;
+                        let r = depth - u;
+                        [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u, p * q]
                     });
                 }
             },
@@ -214,5 +207,14 @@ impl<T: Real> Iteration<T> {
                 }
             },
         );
+    }
+}
+
+/// t where the step of the forecast would take p below 0: to 0. Without a branch, so that the compiler can vectorise.
+#[inline(always)]
+fn hold_back<T: Real>(p: &[f64], t: &mut [T], forecast: f64) {
+    for (t, p) in t.iter_mut().zip(p) {
+        let held = T::of(-p / forecast);
+        *t = if p + forecast * t.to_double() < 0.0 { held } else { *t };
     }
 }

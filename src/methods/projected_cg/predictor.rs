@@ -9,13 +9,13 @@ use std::mem::{swap, take};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::known::Last;
-use super::segments::Sums;
 use super::Window;
 use crate::contact::{Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
 use crate::operator::zeros;
 use crate::scene::Load;
+use crate::sums::Sums;
 use crate::threads::Threads;
 
 /// A change whose energy is this part of its own without what is of p is that of rounding.
@@ -69,24 +69,34 @@ impl Predictor {
         let (last_p, last_u, mx) = (&self.p[..], &self.u[..], state.grid.mx);
         let State { h, p, contact, .. } = state;
         let (threads, h, presses_on_nothing) = (threads.for_a_pass(n), &h[..], AtomicBool::new(false));
-        threads.for_each_row_pair((p, mx), (contact, mx), |y, p, contact| {
-            let row = y * mx..(y + 1) * mx;
-            let (last, h) = (&last_p[row.clone()], &h[row]);
-            if presses(p) | presses(last) {
-                p.iter_mut().zip(last).for_each(|(p, last)| *p = now * last - before * *p);
-                if touch(p, h, contact) {
-                    presses_on_nothing.store(true, Ordering::Relaxed);
+        threads.for_each_row_pair(
+            (p, mx),
+            (contact, mx),
+            #[inline(always)]
+            |y, p, contact| {
+                let row = y * mx..(y + 1) * mx;
+                let (last, h) = (&last_p[row.clone()], &h[row]);
+                if presses(p) | presses(last) {
+                    p.iter_mut().zip(last).for_each(|(p, last)| *p = now * last - before * *p);
+                    if touch(p, h, contact) {
+                        presses_on_nothing.store(true, Ordering::Relaxed);
+                    }
+                } else {
+                    contact.fill(false);
                 }
-            } else {
-                contact.fill(false);
-            }
-        });
+            },
+        );
         let Window { x, y: rows } = window(state);
         let part = rows.start * mx..rows.end * mx;
-        threads.for_each_plain_row(&mut state.u[part.clone()], mx, |y, u| {
-            let last = &last_u[part.start + y * mx..][x.clone()];
-            u[x.clone()].iter_mut().zip(last).for_each(|(u, last)| *u = now * last - before * *u);
-        });
+        threads.for_each_plain_row(
+            &mut state.u[part.clone()],
+            mx,
+            #[inline(always)]
+            |y, u| {
+                let last = &last_u[part.start + y * mx..][x.clone()];
+                u[x.clone()].iter_mut().zip(last).for_each(|(u, last)| *u = now * last - before * *u);
+            },
+        );
         Ok(match presses_on_nothing.into_inner() {
             true => Freshness::Stale,
             false if is_of_others && before != 0.0 => Freshness::Near,
@@ -151,8 +161,8 @@ impl pulp::NullaryFnOnce for Products<'_> {
 
     #[inline(always)]
     fn call(self) -> [f64; 7] {
-        let Products { state, before } = self;
-        let mut sums = Sums::new();
+        let (Products { state, before }, mut sums) = (self, Sums::new());
+        let approach = state.approach;
         for start in (0..state.p.len()).step_by(state.grid.mx) {
             let row = start..start + state.grid.mx;
             let (p, u, h) = (&state.p[row.clone()], &state.u[row.clone()], &state.h[row.clone()]);
@@ -161,10 +171,10 @@ impl pulp::NullaryFnOnce for Products<'_> {
                 continue;
             }
             // Without branches: h may be infinite where nothing presses.
-            sums.add(p.len(), |i| {
-                let (d, v) = (p[i] - p_0[i], u[i] - u_0[i]);
-                let e = if (p[i] != 0.0) | (d != 0.0) { h[i] - state.approach + u[i] } else { 0.0 };
-                [p[i] * u[i], p[i] * e, d * u[i], d * v, d * e, p[i], p_0[i]]
+            sums.add::<f64, 5, 0>([p, u, h, p_0, u_0], [], |[p, u, h, p_0, u_0], []| {
+                let (d, v) = (p - p_0, u - u_0);
+                let e = if (p != 0.0) | (d != 0.0) { h - approach + u } else { 0.0 };
+                [p * u, p * e, d * u, d * v, d * e, p, p_0]
             });
         }
         sums.values()

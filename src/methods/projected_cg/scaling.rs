@@ -28,10 +28,7 @@ impl Scaling {
             Load::Force(force) => force / state.grid.element_area() * self_influence,
         };
         let approach = state.approach;
-        let farthest = pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || farthest(&state.h, &state.contact, approach),
-        );
+        let farthest = pulp::Arch::new().dispatch(Farthest { h: &state.h, contact: &state.contact, approach });
         let length = farthest.max(alone);
         let pressure = length / self_influence;
         let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);
@@ -64,24 +61,34 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact, or below the approach. What is inlined is compiled for the vectors of this machine,
-/// on which no bit depends.
-#[inline(always)]
-fn farthest(h: &[f64], contact: &[bool], approach: f64) -> f64 {
-    // Several at a time: that the compiler can vectorise.
-    const LANES: usize = 8;
-    let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let mut largest = [0.0; LANES];
-    let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));
-    let rest = h.remainder().iter().zip(contact.remainder());
-    let of_rest = rest.fold(0.0, |largest, (h, &inside)| larger(distance(*h, inside), largest));
-    for (h, contact) in h.zip(contact) {
-        for lane in 0..LANES {
-            largest[lane] = larger(distance(h[lane], contact[lane]), largest[lane]);
+/// The largest |h - approach| of elements in contact, or below the approach. Compiled for the vectors of this machine, on which no bit depends.
+struct Farthest<'a> {
+    h: &'a [f64],
+    contact: &'a [bool],
+    approach: f64,
+}
+
+impl pulp::NullaryFnOnce for Farthest<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        // Several at a time: that the compiler can vectorise.
+        const LANES: usize = 8;
+        let Farthest { h, contact, approach } = self;
+        let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let mut largest = [0.0; LANES];
+        let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));
+        let rest = h.remainder().iter().zip(contact.remainder());
+        let of_rest = rest.fold(0.0, |largest, (h, &inside)| larger(distance(*h, inside), largest));
+        for (h, contact) in h.zip(contact) {
+            for lane in 0..LANES {
+                largest[lane] = larger(distance(h[lane], contact[lane]), largest[lane]);
+            }
         }
+        largest.into_iter().fold(of_rest, |largest, value| larger(value, largest))
     }
-    largest.into_iter().fold(of_rest, |largest, value| larger(value, largest))
 }
 
 /// The exponent of two of a normal number.

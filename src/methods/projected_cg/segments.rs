@@ -10,6 +10,7 @@ use std::ops::Range;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{keep, reserve};
+use crate::sums::Sums;
 use crate::threads::Threads;
 
 /// Blocks of rows at most, and elements of a block at least: each costs some additions.
@@ -17,8 +18,6 @@ const BLOCKS: usize = 64;
 const LEAST: usize = 512;
 /// Sums at most that a pass takes.
 const MOST_SUMS: usize = 9;
-/// Parts of each sum of a block: an addition does not wait for the one before.
-const LANES: usize = 4;
 
 /// The runs of all rows.
 pub struct Segments {
@@ -94,18 +93,23 @@ impl Segments {
         }
         self.version += 1;
         let (mx, length, now) = (self.mx, self.block, self.version);
-        self.threads.for_each_plain_row(&mut self.found, 1, |b, found| {
-            let Found { runs, count, changed, version } = &mut found[0];
-            if take(changed) {
-                *version = now;
-                runs.clear();
-                let elements = &contact[b * length..contact.len().min((b + 1) * length)];
-                for (iy, row) in elements.chunks_exact(mx).enumerate() {
-                    find_in_row(row, (b * length + iy * mx) as u32, runs);
+        self.threads.for_each_plain_row(
+            &mut self.found,
+            1,
+            #[inline(always)]
+            |b, found| {
+                let Found { runs, count, changed, version } = &mut found[0];
+                if take(changed) {
+                    *version = now;
+                    runs.clear();
+                    let elements = &contact[b * length..contact.len().min((b + 1) * length)];
+                    for (iy, row) in elements.chunks_exact(mx).enumerate() {
+                        find_in_row(row, (b * length + iy * mx) as u32, runs);
+                    }
+                    *count = runs.iter().map(|(start, end)| (end - start) as usize).sum();
                 }
-                *count = runs.iter().map(|(start, end)| (end - start) as usize).sum();
-            }
-        });
+            },
+        );
         self.count = self.found.iter().map(|block| block.count).sum();
     }
 
@@ -120,7 +124,7 @@ impl Segments {
                 let mut sums = Sums::new();
                 let block = Block { start: b * block, runs: &found[b].runs };
                 work(block, &mut sums);
-                sums.total(&mut total[0]);
+                total[0][..K].copy_from_slice(&sums.values());
             },
         );
         self.total()
@@ -142,7 +146,7 @@ impl Segments {
                 let mut sums = Sums::new();
                 let block = Block { start: b * block, runs: &found[b].runs };
                 work(block, data, &mut sums);
-                sums.total(&mut total[0]);
+                total[0][..K].copy_from_slice(&sums.values());
             },
         );
         self.total()
@@ -171,6 +175,7 @@ impl Drop for Segments {
 }
 
 /// Appends the runs of a row whose first element is `start`.
+#[inline(always)]
 fn find_in_row(row: &[bool], start: u32, runs: &mut Vec<(u32, u32)>) {
     let mut column = 0;
     while let Some(skipped) = first_that_is(true, &row[column..]) {
@@ -181,6 +186,7 @@ fn find_in_row(row: &[bool], start: u32, runs: &mut Vec<(u32, u32)>) {
 }
 
 /// The first of some elements that is in contact, or is not; many at a time, which the compiler can vectorise.
+#[inline(always)]
 pub fn first_that_is(inside: bool, elements: &[bool]) -> Option<usize> {
     const MANY: usize = 32;
     let none = |many: &[bool]| many.iter().fold(true, |none, &element| none & (element != inside));
@@ -201,43 +207,5 @@ impl Block<'_> {
             let run = start as usize..end as usize;
             (run.clone(), run.start - self.start..run.end - self.start)
         })
-    }
-}
-
-/// Sums over elements, in lanes.
-pub struct Sums<const K: usize>([[f64; LANES]; K]);
-
-impl<const K: usize> Sums<K> {
-    /// Nothing yet.
-    pub fn new() -> Sums<K> {
-        Sums([[0.0; LANES]; K])
-    }
-
-    /// Adds `terms(0), .. terms(n - 1)`.
-    #[inline(always)]
-    pub fn add(&mut self, n: usize, mut terms: impl FnMut(usize) -> [f64; K]) {
-        let whole = n - n % LANES;
-        for start in (0..whole).step_by(LANES) {
-            for lane in 0..LANES {
-                let terms = terms(start + lane);
-                for (sum, term) in self.0.iter_mut().zip(terms) {
-                    sum[lane] += term;
-                }
-            }
-        }
-        for i in whole..n {
-            for (sum, term) in self.0.iter_mut().zip(terms(i)) {
-                sum[i - whole] += term;
-            }
-        }
-    }
-
-    /// What they are.
-    pub fn values(&self) -> [f64; K] {
-        self.0.map(|lanes| lanes.iter().sum())
-    }
-
-    fn total(&self, total: &mut [f64; MOST_SUMS]) {
-        total[..K].copy_from_slice(&self.values());
     }
 }

@@ -6,7 +6,6 @@
 
 use std::ops::Range;
 
-use super::segments::first_that_is;
 use crate::contact::State;
 use crate::grid::{self, Grid};
 use crate::operator::fft::good_length;
@@ -130,6 +129,7 @@ fn bounding_box(state: &State) -> Option<Window> {
 }
 
 fn bounding_box_of(elements: &[bool], mx: usize) -> Option<Window> {
-    let (x, y) = grid::bounding_box(elements, mx, |row| first_that_is(true, row).is_some(), |inside| *inside)?;
+    let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
+    let (x, y) = grid::bounding_box(elements, mx, any, |inside| *inside)?;
     Some(Window { x, y })
 }

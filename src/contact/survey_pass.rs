@@ -1,0 +1,153 @@
+//! The pass of a survey: what elements of a state add to it.
+
+use std::array::from_fn;
+use std::ops::Range;
+
+use super::certificate::Survey;
+use super::State;
+
+/// Elements that are looked at together: many at a time, which the compiler can vectorise.
+const CHUNK: usize = 64;
+/// Parts of an extreme: a comparison does not wait for the one before.
+const LANES: usize = 8;
+
+/// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`: each in parts, one for each place in a chunk.
+type Sums = [[f64; CHUNK]; 6];
+
+/// Elements that are added to a survey, before norms are made of its sums; those at their limit count as exterior. Compiled for the vectors of this
+/// machine, on which no bit depends.
+pub(super) struct Pass<'a> {
+    pub state: &'a State,
+    pub elements: Range<usize>,
+    pub survey: &'a mut Survey,
+}
+
+impl pulp::NullaryFnOnce for Pass<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Pass { state, elements, survey } = self;
+        let (mut sums, mut count): (Sums, u64) = ([[0.0; CHUNK]; 6], 0);
+        let mut range = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for start in elements.clone().step_by(CHUNK) {
+            let chunk = start..elements.end.min(start + CHUNK);
+            let (penetrates, loaded) = signs(state, chunk.clone());
+            if penetrates {
+                survey.violation = survey.violation.max(deepest(state, chunk.clone()));
+            }
+            if loaded {
+                count += add(state, chunk.clone(), &mut sums);
+                extremes(&mut range, &state.p[chunk]);
+            } else {
+                extremes(&mut range, &[0.0]);
+            }
+        }
+        let [rr, hh, pressures, squares, gaps, energy] = sums.each_mut().map(total);
+        survey.residual += rr;
+        survey.distance += hh;
+        survey.contact_count += count as usize;
+        survey.pressures += pressures;
+        survey.squares += squares;
+        survey.work = (survey.work.0 + gaps, survey.work.1 + energy);
+        let (low, high) = (range.0.into_iter(), range.1.into_iter());
+        survey.range = (low.fold(survey.range.0, f64::min), high.fold(survey.range.1, f64::max));
+    }
+}
+
+/// Whether some elements penetrate, and whether some are in contact or have a pressure. Of most chunks none penetrates, and of many none is in
+/// contact. Signs and zeros are bits.
+#[inline(always)]
+fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
+    let (h, u) = (&state.h[elements.clone()], &state.u[elements.clone()]);
+    let (p, contact) = (&state.p[elements.clone()], &state.contact[elements]);
+    let (mut penetrates, mut loaded) = (0, 0);
+    for (((h, u), p), inside) in h.iter().zip(u).zip(p).zip(contact) {
+        let inside = u64::from(*inside);
+        penetrates |= (h - state.approach + u).to_bits() >> 63 & !inside;
+        loaded |= p.to_bits() << 1 | inside;
+    }
+    (penetrates != 0, loaded != 0)
+}
+
+/// Adds at most [`CHUNK`] elements. Returns how many are in contact.
+#[inline(always)]
+fn add(state: &State, elements: Range<usize>, sums: &mut Sums) -> u64 {
+    let (approach, n) = (state.approach, elements.len());
+    let (h, u) = (&state.h[elements.clone()][..n], &state.u[elements.clone()][..n]);
+    let (p, contact) = (&state.p[elements.clone()][..n], &state.contact[elements][..n]);
+    let [rr, hh, pressures, squares, gaps, energy] = sums.each_mut().map(|sums| &mut sums[..n]);
+    for i in 0..n {
+        let distance = h[i] - approach;
+        let e = distance + u[i];
+        // Distances of elements without a surface are infinite: their bits are cleared.
+        let (inside, presses) = (u64::from(contact[i]).wrapping_neg(), u64::from(p[i] != 0.0).wrapping_neg());
+        rr[i] += f64::from_bits((e * e).to_bits() & inside);
+        hh[i] += f64::from_bits((distance * distance).to_bits() & inside);
+        pressures[i] += p[i];
+        squares[i] += p[i] * p[i];
+        gaps[i] += f64::from_bits((p[i] * e.abs()).to_bits() & presses);
+        energy[i] += f64::from_bits((p[i] * u[i].abs()).to_bits() & presses);
+    }
+    contact.iter().map(|inside| u64::from(*inside)).sum()
+}
+
+/// The sum of all parts: half of them are added to the other half, and so on.
+#[inline(always)]
+fn total(parts: &mut [f64; CHUNK]) -> f64 {
+    let mut n = CHUNK / 2;
+    while n > 0 {
+        let (sums, added) = parts.split_at_mut(n);
+        sums.iter_mut().zip(added).for_each(|(sum, part)| *sum += *part);
+        n /= 2;
+    }
+    parts[0]
+}
+
+/// The least and the greatest of some values, and of those before, in lanes.
+#[inline(always)]
+fn extremes((low, high): &mut ([f64; LANES], [f64; LANES]), values: &[f64]) {
+    let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
+    // One after the other: of both in one loop the compiler makes a muddle.
+    for values in lanes {
+        *low = from_fn(|lane| if values[lane] < low[lane] { values[lane] } else { low[lane] });
+    }
+    for values in lanes {
+        *high = from_fn(|lane| if values[lane] > high[lane] { values[lane] } else { high[lane] });
+    }
+    for value in rest {
+        (low[0], high[0]) = (low[0].min(*value), high[0].max(*value));
+    }
+}
+
+/// The largest `-e` of exterior elements, or 0.
+#[inline(always)]
+fn deepest(state: &State, elements: Range<usize>) -> f64 {
+    let approach = state.approach;
+    let deeper = |so_far: f64, h: f64, u: f64, counts: bool| {
+        let depth = if counts { approach - h - u } else { 0.0 };
+        if depth > so_far {
+            depth
+        } else {
+            so_far
+        }
+    };
+    if !state.at_limit.is_empty() {
+        let free = |i: usize| !state.contact[i] && !state.at_limit[i];
+        return elements.fold(0.0, |so_far, i| deeper(so_far, state.h[i], state.u[i], free(i)));
+    }
+    let (h, of_rest_h) = pulp::as_arrays::<LANES, f64>(&state.h[elements.clone()]);
+    let (u, of_rest_u) = pulp::as_arrays::<LANES, f64>(&state.u[elements.clone()]);
+    let (contact, of_rest) = pulp::as_arrays::<LANES, bool>(&state.contact[elements]);
+    let mut deepest = [0.0; LANES];
+    for ((h, u), contact) in h.iter().zip(u).zip(contact) {
+        deepest = from_fn(|lane| deeper(deepest[lane], h[lane], u[lane], !contact[lane]));
+    }
+    let rest = of_rest_h.iter().zip(of_rest_u).zip(of_rest);
+    let of_rest = rest.fold(0.0, |so_far, ((h, u), inside)| deeper(so_far, *h, *u, !inside));
+    deepest.into_iter().fold(of_rest, f64::max)
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/survey_pass.rs"]
+mod tests;

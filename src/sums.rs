@@ -1,0 +1,81 @@
+//! Sums over elements: the one kernel of passes that add.
+//!
+//! Each sum is taken in lanes, which depend neither on the threads nor on the vectors of the machine: nor do the bits of the sums. Where a pass
+//! is compiled for those vectors (`pulp`), so is what is inlined here.
+
+use std::array::from_fn;
+
+/// Parts of each sum: an addition does not wait for the one before.
+const LANES: usize = 4;
+
+/// What is added in double precision.
+pub trait Value: Copy {
+    /// This value in double precision.
+    fn to_double(self) -> f64;
+}
+
+macro_rules! value {
+    ($($t:ty),*) => {
+        $(impl Value for $t {
+            #[inline(always)]
+            fn to_double(self) -> f64 {
+                f64::from(self)
+            }
+        })*
+    };
+}
+value!(f32, f64);
+
+/// Sums over elements, in lanes.
+pub struct Sums<const K: usize>([[f64; LANES]; K]);
+
+impl<const K: usize> Sums<K> {
+    /// Nothing yet.
+    pub fn new() -> Sums<K> {
+        Sums([[0.0; LANES]; K])
+    }
+
+    /// Adds `terms(values of a, values of b)` of all elements of some slices, which are of one length. Lanes are loaded before they are computed with:
+    /// of indices into several slices the compiler cannot tell that they are inside, and does not vectorise (3.5 times the time).
+    #[inline(always)]
+    pub fn add<T: Value, const A: usize, const B: usize>(
+        &mut self,
+        a: [&[f64]; A],
+        b: [&[T]; B],
+        terms: impl Fn([f64; A], [f64; B]) -> [f64; K],
+    ) {
+        let n = a.first().map_or_else(|| b[0].len(), |a| a.len());
+        let a = a.map(|a| pulp::as_arrays::<LANES, f64>(&a[..n]));
+        let b = b.map(|b| pulp::as_arrays::<LANES, T>(&b[..n]));
+        let mut sums = self.0;
+        for i in 0..n / LANES {
+            let x: [[f64; LANES]; A] = from_fn(|k| a[k].0[i]);
+            let y: [[f64; LANES]; B] = from_fn(|k| b[k].0[i].map(Value::to_double));
+            for lane in 0..LANES {
+                let terms = terms(from_fn(|k| x[k][lane]), from_fn(|k| y[k][lane]));
+                for k in 0..K {
+                    sums[k][lane] += terms[k];
+                }
+            }
+        }
+        for lane in 0..n % LANES {
+            let terms = terms(from_fn(|k| a[k].1[lane]), from_fn(|k| b[k].1[lane].to_double()));
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| sum[lane] += term);
+        }
+        self.0 = sums;
+    }
+
+    /// Adds terms that are not of elements.
+    pub fn add_one(&mut self, terms: [f64; K]) {
+        self.0.iter_mut().zip(terms).for_each(|(sum, term)| sum[0] += term);
+    }
+
+    /// What they are.
+    pub fn values(&self) -> [f64; K] {
+        self.0.map(|lanes| lanes.iter().sum())
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/sums.rs"]
+mod tests;

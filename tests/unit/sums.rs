@@ -1,0 +1,27 @@
+//! Sums in lanes against a loop over the elements: of whole numbers, which are added without rounding.
+
+use super::Sums;
+
+#[test]
+fn sums_are_those_of_all_elements() {
+    for n in 0..=23 {
+        let values: Vec<f64> = (0..n).map(|i| f64::from(i * i % 17 - 5)).collect();
+        let others: Vec<f32> = (0..n).map(|i| (i * 7 % 11 - 3) as f32).collect();
+        let mut sums = Sums::new();
+        sums.add([&values[..]], [&others[..]], |[a], [b]| [a * b, a - b, 1.0]);
+        sums.add_one([0.5, 0.0, 0.0]);
+        let pairs = || values.iter().zip(&others).map(|(a, b)| (*a, f64::from(*b)));
+        let expected =
+            [0.5 + pairs().map(|(a, b)| a * b).sum::<f64>(), pairs().map(|(a, b)| a - b).sum(), f64::from(n)];
+        assert_eq!(sums.values(), expected, "{n} elements");
+    }
+}
+
+#[test]
+fn sums_of_one_kind_of_values_only() {
+    let (values, none): (Vec<f64>, Vec<f32>) = ((1..=9).map(f64::from).collect(), vec![1.0; 9]);
+    let mut sums = Sums::new();
+    sums.add::<f64, 2, 0>([&values, &values], [], |[a, b], []| [a * b]);
+    sums.add([], [&none[..]], |[], [b]| [b]);
+    assert_eq!(sums.values(), [285.0 + 9.0]);
+}
