@@ -25,6 +25,7 @@ const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 /// Blocks of rows at most, the sums of which are added in order, and elements of a block at least: each costs some additions.
 const BLOCKS: usize = 64;
 const LEAST: usize = 1024;
+
 /// What one pass over a state whose u is A p tells.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Survey {

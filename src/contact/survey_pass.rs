@@ -108,7 +108,7 @@ fn total(parts: &mut [f64; CHUNK]) -> f64 {
 #[inline(always)]
 fn extremes((low, high): &mut ([f64; LANES], [f64; LANES]), values: &[f64]) {
     let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
-    // One after the other: of both in one loop the compiler makes a muddle.
+    // One after the other: both in one loop are not vectorised.
     for values in lanes {
         *low = from_fn(|lane| if values[lane] < low[lane] { values[lane] } else { low[lane] });
     }
