@@ -105,7 +105,7 @@ pub(crate) fn bounding_box<A>(
     pulp::Arch::new().dispatch(BoundingBox { values, mx, any, counts })
 }
 
-/// Compiled for the vectors of this machine, on which no bit depends.
+/// The search of [`bounding_box`]. Compiled for the vectors of this machine, on which no bit depends.
 struct BoundingBox<'a, A, F, G> {
     values: &'a [A],
     mx: usize,

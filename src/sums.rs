@@ -1,4 +1,4 @@
-//! Sums over elements: the one kernel of passes that add.
+//! Sums over elements in lanes, for passes over slices of one length.
 //!
 //! Each sum is taken in lanes, which depend neither on the threads nor on the vectors of the machine: nor do the bits of the sums. Where a pass
 //! is compiled for those vectors (`pulp`), so is what is inlined here.
@@ -35,8 +35,8 @@ impl<const K: usize> Sums<K> {
         Sums([[0.0; LANES]; K])
     }
 
-    /// Adds `terms(values of a, values of b)` of all elements of some slices, which are of one length. Lanes are loaded before they are computed with:
-    /// of indices into several slices the compiler cannot tell that they are inside, and does not vectorise (3.5 times the time).
+    /// Adds `terms(values of a, values of b)` of all elements of some slices, one at least, which are of one length. Lanes are loaded first: the
+    /// compiler cannot tell that indices into several slices are inside, and then does not vectorise (3.5 times the time).
     #[inline(always)]
     pub fn add<T: Value, const A: usize, const B: usize>(
         &mut self,

@@ -12,10 +12,10 @@ const CHUNK: usize = 64;
 const LANES: usize = 8;
 
 /// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`: each in parts, one for each place in a chunk.
-type Sums = [[f64; CHUNK]; 6];
+type Parts = [[f64; CHUNK]; 6];
 
-/// Elements that are added to a survey, before norms are made of its sums; those at their limit count as exterior. Compiled for the vectors of this
-/// machine, on which no bit depends.
+/// Elements that are added to a survey, before norms are made of its sums. Of those at their limit only p and its work count here; the survey adds
+/// the rest itself. Compiled for the vectors of this machine, on which no bit depends.
 pub(super) struct Pass<'a> {
     pub state: &'a State,
     pub elements: Range<usize>,
@@ -28,7 +28,7 @@ impl pulp::NullaryFnOnce for Pass<'_> {
     #[inline(always)]
     fn call(self) {
         let Pass { state, elements, survey } = self;
-        let (mut sums, mut count): (Sums, u64) = ([[0.0; CHUNK]; 6], 0);
+        let (mut sums, mut count): (Parts, u64) = ([[0.0; CHUNK]; 6], 0);
         let mut range = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         for start in elements.clone().step_by(CHUNK) {
             let chunk = start..elements.end.min(start + CHUNK);
@@ -72,7 +72,7 @@ fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
 
 /// Adds at most [`CHUNK`] elements. Returns how many are in contact.
 #[inline(always)]
-fn add(state: &State, elements: Range<usize>, sums: &mut Sums) -> u64 {
+fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     let (approach, n) = (state.approach, elements.len());
     let (h, u) = (&state.h[elements.clone()][..n], &state.u[elements.clone()][..n]);
     let (p, contact) = (&state.p[elements.clone()][..n], &state.contact[elements][..n]);

@@ -19,9 +19,9 @@ fn sums_are_those_of_all_elements() {
 
 #[test]
 fn sums_of_one_kind_of_values_only() {
-    let (values, none): (Vec<f64>, Vec<f32>) = ((1..=9).map(f64::from).collect(), vec![1.0; 9]);
+    let (values, ones): (Vec<f64>, Vec<f32>) = ((1..=9).map(f64::from).collect(), vec![1.0; 9]);
     let mut sums = Sums::new();
     sums.add::<f64, 2, 0>([&values, &values], [], |[a, b], []| [a * b]);
-    sums.add([], [&none[..]], |[], [b]| [b]);
+    sums.add([], [&ones[..]], |[], [b]| [b]);
     assert_eq!(sums.values(), [285.0 + 9.0]);
 }

@@ -12,6 +12,7 @@
 //! Elements that are not in C at the start are taken out of d, and by one product out of w. Those that leave later have no part of d any more, but
 //! of w and of (d, w): u is owed the difference.
 
+use super::known_passes::{Change, Restrict, Subtract};
 use super::passes::Step;
 use super::scaling::Scaling;
 use super::vectors::Iteration;
@@ -84,8 +85,8 @@ impl<T: Real> Known<T> {
         self.length.sqrt()
     }
 
-    /// Takes (d, w), and the sums of d^2 and of w^2.
-    fn measured(&mut self, [energy, length, size]: [f64; 3]) {
+    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass.
+    fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
         (self.energy, self.length, self.size) = (energy, length, size);
     }
 }
@@ -123,21 +124,21 @@ impl<T: Real> Iteration<T> {
         }
         let [sum, absolute, all, measures @ ..] = sums.values();
         if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
-            self.known.measured(measures);
+            self.known.take_measures(measures);
         }
         Ok(())
     }
 
-    /// d becomes the change on C alone. Returns the products that this takes.
+    /// d becomes the change on C alone; z loses what it held. Returns the products that this takes.
     pub(super) fn restrict_known(&mut self, state: &State) -> u64 {
         let (Known { d, energy, .. }, z) = (&mut self.known, &mut self.z);
-        if *energy <= 0.0 || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
+        if !(*energy > 0.0) || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
             return 0;
         }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
         let (Known { d, w, .. }, z) = (&mut self.known, &self.z);
         let measures = pulp::Arch::new().dispatch(Subtract { d, w, z });
-        self.known.measured(measures);
+        self.known.take_measures(measures);
         1
     }
 
@@ -237,78 +238,4 @@ fn merge(debts: &mut Vec<(usize, f64)>) {
         }
         same
     });
-}
-
-/// A row of d and w, from what there is now and what there was before with the factor of its units; compiled for the vectors of this
-/// machine, on which no bit depends.
-struct Change<'a, T> {
-    p: (&'a [f64], &'a [f64], f64),
-    u: (&'a [f64], &'a [f64], f64),
-    d: &'a mut [T],
-    w: &'a mut [T],
-    /// Of d, |d| and |p|, and the measures of d and w.
-    sums: &'a mut Sums<6>,
-}
-
-impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Change { p: (p, last_p, pressure), u: (u, last_u, length), d, w, sums } = self;
-        d.iter_mut().zip(p).zip(last_p).for_each(|((d, p), last)| *d = T::of(p - pressure * last));
-        w.iter_mut().zip(u).zip(last_u).for_each(|((w, u), last)| *w = T::of(u - length * last));
-        sums.add([p, last_p], [&*d, &*w], |[p, last_p], [d, w]| {
-            let change = p - pressure * last_p;
-            let [energy, length, size] = measures(d, w);
-            [change, change.abs(), p.abs(), energy, length, size]
-        });
-    }
-}
-
-/// What is outside C goes from d to z; returns whether anything does.
-struct Restrict<'a, T> {
-    d: &'a mut [T],
-    z: &'a mut [T],
-    contact: &'a [bool],
-}
-
-impl<T: Real> pulp::NullaryFnOnce for Restrict<'_, T> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let Restrict { d, z, contact } = self;
-        let mut leaves = false;
-        for ((d, z), inside) in d.iter_mut().zip(z).zip(contact) {
-            (*d, *z) = if *inside { (*d, T::zero()) } else { (T::zero(), *d) };
-            leaves |= *z != T::zero();
-        }
-        leaves
-    }
-}
-
-/// w = w - z; returns the measures of d and w.
-struct Subtract<'a, T> {
-    d: &'a [T],
-    w: &'a mut [T],
-    z: &'a [T],
-}
-
-impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
-    type Output = [f64; 3];
-
-    #[inline(always)]
-    fn call(self) -> [f64; 3] {
-        let (Subtract { d, w, z }, mut sums) = (self, Sums::new());
-        w.iter_mut().zip(z).for_each(|(w, z)| *w = *w - *z);
-        sums.add([], [d, w], |[], [d, w]| measures(d, w));
-        sums.values()
-    }
-}
-
-/// What an element adds to (d, w) and to the sums of d^2 and of w^2.
-#[inline(always)]
-fn measures(d: f64, w: f64) -> [f64; 3] {
-    [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]
 }

@@ -10,6 +10,7 @@ mod extension;
 mod inner;
 mod iteration;
 mod known;
+mod known_passes;
 mod level;
 mod limits;
 mod part;

@@ -187,7 +187,7 @@ fn find_in_row(row: &[bool], start: u32, runs: &mut Vec<(u32, u32)>) {
 
 /// The first of some elements that is in contact, or is not; many at a time, which the compiler can vectorise.
 #[inline(always)]
-pub fn first_that_is(inside: bool, elements: &[bool]) -> Option<usize> {
+fn first_that_is(inside: bool, elements: &[bool]) -> Option<usize> {
     const MANY: usize = 32;
     let none = |many: &[bool]| many.iter().fold(true, |none, &element| none & (element != inside));
     let skipped = MANY * elements.chunks_exact(MANY).take_while(|many| none(many)).count();
