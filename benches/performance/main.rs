@@ -41,11 +41,11 @@ fn main() {
             (targets::SOLVE_ONCE, []) => return targets::solve_once(name, size()),
             (targets::SOLVE_AGAIN, [what, seconds, threads @ ..]) => {
                 let seconds = seconds.parse().expect("seconds");
+                let threads = threads.first().map_or(1, |count| count.parse().expect("threads"));
                 if what != "shift" {
-                    return targets::solve_again(name, size(), what == "steps", seconds);
+                    return targets::solve_again(name, size(), what == "steps", seconds, threads);
                 }
                 let case = if name == "rough" { friction::like_bodies(size()) } else { case::ellipse(size()) };
-                let threads = threads.first().map_or(1, |count| count.parse().expect("threads"));
                 return friction::shift_again(&case, threads, seconds);
             }
             _ => {}

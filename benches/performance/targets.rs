@@ -344,12 +344,12 @@ pub fn memory(cases: &[(&str, usize, f64)]) {
 pub const SOLVE_AGAIN: &str = "--solve-again";
 
 /// Cold solves, or time steps up and down again, for so many seconds and until all are done.
-pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64) {
+pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64, threads: usize) {
     by_processor(true);
     let case = by_name(name, m);
     let began = std::time::Instant::now();
-    let next = Options { initial_guess: InitialGuess::Previous, ..options(1) };
-    let approach = cold(&case.scene(), &options(1)).1.measures.approach;
+    let next = Options { initial_guess: InitialGuess::Previous, ..options(threads) };
+    let approach = cold(&case.scene(), &options(threads)).1.measures.approach;
     let mut solver = Solver::new(&case.scene(), &next).expect("a solver");
     let (mut solves, mut iterations, mut work, mut took) = (0, 0, 0.0, 0.0);
     while began.elapsed().as_secs_f64() < at_least || steps && solves % (2 * CLIMB) != 0 {
@@ -362,7 +362,7 @@ pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64) {
             iterations += report.count.active_set_steps;
             work += report.count.work_units;
         } else {
-            cold(&case.scene(), &options(1));
+            cold(&case.scene(), &options(threads));
         }
         solves += 1;
     }

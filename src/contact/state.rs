@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep, reserve, rest, zeros};
 use crate::scene::Load;
+use crate::sums::Sums;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
@@ -112,7 +113,8 @@ impl State {
 
     /// `sum of p dx dy`.
     pub fn force(&self) -> f64 {
-        self.p.iter().sum::<f64>() * self.grid.element_area()
+        let [sum] = pulp::Arch::new().dispatch(Sum(&self.p));
+        sum * self.grid.element_area()
     }
 
     /// `e = h - approach + u` of element i.
@@ -221,6 +223,20 @@ impl pulp::NullaryFnOnce for Lowest<'_> {
             }
         }
         rest.iter().chain(&least).fold(f64::INFINITY, |least, value| lesser(*value, least))
+    }
+}
+
+/// Compiled for the vectors of this machine, on which no bit depends.
+struct Sum<'a>(&'a [f64]);
+
+impl pulp::NullaryFnOnce for Sum<'_> {
+    type Output = [f64; 1];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 1] {
+        let mut sum = Sums::new();
+        sum.add::<f64, 1, 0>([self.0], [], |[value], []| [value]);
+        sum.values()
     }
 }
 

@@ -57,7 +57,12 @@ impl Threads {
 
     /// Calls `work(k, item)` on each of some items.
     pub fn for_each<A: Send>(&self, items: &mut [A], work: impl Fn(usize, &mut A) + Sync + Send) {
-        self.share(items.iter_mut().enumerate(), &mut self.no_scratch(), |(k, item), ()| work(k, item));
+        self.share(
+            items.iter_mut().enumerate(),
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |(k, item), ()| work(k, item),
+        );
     }
 
     /// Calls `work(k, scratch)` for each `k < count`, with the scratch of the thread that does it.

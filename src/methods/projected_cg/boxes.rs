@@ -3,6 +3,8 @@
 //! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
 //! C.
 
+use std::cmp::Ordering;
+
 use crate::operator::fft::Real;
 
 /// Elements of a box in each direction.
@@ -30,8 +32,8 @@ impl pulp::NullaryFnOnce for Count<'_> {
         for (k, ((near, rim), inside)) in near.chunks_mut(CHUNK).zip(rim).zip(here).enumerate() {
             let counts = box_sums(contact, (y, mx), k * CHUNK, u8::from);
             let mut any = 0;
-            for ((near, count), inside) in near.iter_mut().zip(counts).zip(inside) {
-                *near = count * u8::from(!inside);
+            for ((near, count), inside) in near.iter_mut().zip(&counts).zip(inside) {
+                *near = if *inside { 0 } else { *count };
                 any |= *near;
             }
             *rim = any != 0;
@@ -60,8 +62,8 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
         for (k, ((values, near), rim)) in values.chunks_mut(CHUNK).zip(near.chunks(CHUNK)).zip(rim).enumerate() {
             if *rim {
                 let sums = box_sums(z, (y, mx), k * CHUNK, |z| z);
-                for ((value, near), sum) in values.iter_mut().zip(near).zip(sums) {
-                    *value += share(*near, absent) * sum;
+                for ((value, near), sum) in values.iter_mut().zip(near).zip(&sums) {
+                    *value += share(*near, absent) * *sum;
                 }
             }
         }
@@ -117,7 +119,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
             let near = k.saturating_sub(1)..chunks.min(k + 2);
             if rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true)) {
                 let sums = box_sums(shares, (y, mx), k * CHUNK, |share| share);
-                values.iter_mut().zip(sums).for_each(|(value, sum)| *value += sum);
+                values.iter_mut().zip(&sums).for_each(|(value, sum)| *value += *sum);
             }
         }
     }
@@ -143,19 +145,32 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
     start: usize,
     value: impl Fn(A) -> B,
 ) -> [B; CHUNK] {
+    const LENGTH: usize = CHUNK + BOX - 1;
     let rows = from[y.saturating_sub(REACH) * mx..from.len().min((y + REACH + 1) * mx)].chunks_exact(mx);
-    let mut columns = [B::default(); CHUNK + BOX - 1];
-    if start >= REACH && start + CHUNK + REACH <= mx {
-        // A loop of known length.
+    let mut columns = [B::default(); LENGTH];
+    let first = start.saturating_sub(REACH).min(mx.saturating_sub(LENGTH));
+    if mx >= LENGTH {
+        // A loop of known length, and what is beyond an end of the row is moved out.
         for row in rows {
-            let row: &[A] = &row[start - REACH..][..CHUNK + BOX - 1];
+            let row: &[A] = &row[first..][..LENGTH];
             columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
         }
     } else {
-        let (first, last) = (start.saturating_sub(REACH), mx.min(start + CHUNK + REACH));
-        let columns = &mut columns[first + REACH - start..][..last - first];
         for row in rows {
-            columns.iter_mut().zip(&row[first..last]).for_each(|(sum, from)| *sum = *sum + value(*from));
+            columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
+        }
+    }
+    match (first + REACH).cmp(&start) {
+        Ordering::Equal => {}
+        Ordering::Greater => {
+            let by = first + REACH - start;
+            columns.copy_within(..LENGTH - by, by);
+            columns[..by].fill(B::default());
+        }
+        Ordering::Less => {
+            let by = start - REACH - first;
+            columns.copy_within(by.., 0);
+            columns[LENGTH - by..].fill(B::default());
         }
     }
     let mut sums = [B::default(); CHUNK];

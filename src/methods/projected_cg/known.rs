@@ -145,15 +145,16 @@ impl<T: Real> Iteration<T> {
     /// The sums of a step, and those of gamma.
     pub(super) fn step_beside_change(&mut self, state: &State) -> Step {
         let (t, q, d, approach) = (&self.t, &self.q, &self.known.d, state.approach);
-        let [rt, tq, tt, t1, pp, rd, qd] = self.runs.sum(
+        let [tq, tt, t1, pp, rt, rd, qd] = self.runs.sum(
             #[inline(always)]
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
-                    sums.add([h, u, p], [t, q, d], |[h, u, p], [t, q, d]| {
+                    sums.add_from(0, [p], [t, q], |[p], [t, q]| [t * q, t * t, t.abs(), p * p]);
+                    sums.add_from(4, [h, u], [t, q, d], |[h, u], [t, q, d]| {
                         let r = approach - h - u;
-                        [r * t, t * q, t * t, t.abs(), p * p, r * d, q * d]
+                        [r * t, r * d, q * d]
                     });
                 }
             },

@@ -208,7 +208,7 @@ impl Level {
         let grid = window.grid(&self.grid);
         let units = match self.precision {
             Precision::Double => Scaling::SAME,
-            Precision::Auto | Precision::Mixed => Scaling::for_state(state, self.influence.at(0, 0)),
+            Precision::Auto | Precision::Mixed => Scaling::for_state(state, self.influence.at(0, 0), &self.threads),
         };
         let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None

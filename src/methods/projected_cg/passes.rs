@@ -177,16 +177,16 @@ impl<T: Real> Iteration<T> {
             );
             return Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
         }
-        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.runs.sum(
+        let [tq, tt, t1, pp, pq, rt, pd, td, pu] = self.runs.sum(
             #[inline(always)]
             |block, sums| {
                 for (run, _) in block.runs() {
                     let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
                     let (t, q) = (&t[run.clone()], &q[run]);
-                    sums.add([h, u, p], [t, q], |[h, u, p], [t, q]| {
+                    sums.add_from(0, [p], [t, q], |[p], [t, q]| [t * q, t * t, t.abs(), p * p, p * q]);
+                    sums.add_from(5, [h, u, p], [t], |[h, u, p], [t]| {
                         let depth = approach - h;
-                        let r = depth - u;
-                        [r * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u, p * q]
+                        [(depth - u) * t, p * depth, t * depth, p * u]
                     });
                 }
             },

@@ -3,10 +3,13 @@
 
 use crate::contact::State;
 use crate::scene::Load;
+use crate::threads::Threads;
 
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
 /// room in the range 2^-126 to 2^127 then.
 const AS_IT_IS: i32 = 48;
+/// Parts of a grid that threads share.
+const PARTS: usize = 64;
 
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,15 +24,13 @@ impl Scaling {
     /// The scene's own.
     pub const SAME: Scaling = Scaling { influence: 1.0, length: 1.0 };
 
-    /// Scaling that suit a state, where an element's influence on itself is `self_influence`.
-    pub fn for_state(state: &State, self_influence: f64) -> Scaling {
+    /// Those that suit a state, where an element's influence on itself is `self_influence`.
+    pub fn for_state(state: &State, self_influence: f64, threads: &Threads) -> Scaling {
         let alone = match state.load {
             Load::Approach(_) => 0.0,
             Load::Force(force) => force / state.grid.element_area() * self_influence,
         };
-        let approach = state.approach;
-        let farthest = pulp::Arch::new().dispatch(Farthest { h: &state.h, contact: &state.contact, approach });
-        let length = farthest.max(alone);
+        let length = farthest(state, threads).max(alone);
         let pressure = length / self_influence;
         let suits = [length, pressure].into_iter().all(|value| towards_one(value) == 1.0);
         Scaling { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
@@ -61,33 +62,45 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact, or below the approach. Compiled for the vectors of this machine, on which no bit depends.
-struct Farthest<'a> {
-    h: &'a [f64],
-    contact: &'a [bool],
-    approach: f64,
+/// The largest |h - approach| of elements in contact, or below the approach: of the parts of the grid, and of these.
+fn farthest(state: &State, threads: &Threads) -> f64 {
+    let (approach, n) = (state.approach, state.h.len());
+    let mut parts = [0.0; PARTS];
+    let length = n.div_ceil(PARTS);
+    threads.for_a_pass(n).for_each(
+        &mut parts,
+        #[inline(always)]
+        |k, farthest| {
+            let part = (k * length).min(n)..((k + 1) * length).min(n);
+            *farthest = farthest_of(&state.h[part.clone()], &state.contact[part], approach);
+        },
+    );
+    parts.into_iter().fold(0.0, larger)
 }
 
-impl pulp::NullaryFnOnce for Farthest<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        // Several at a time: that the compiler can vectorise.
-        const LANES: usize = 8;
-        let Farthest { h, contact, approach } = self;
-        let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        let mut largest = [0.0; LANES];
-        let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));
-        let rest = h.remainder().iter().zip(contact.remainder());
-        let of_rest = rest.fold(0.0, |largest, (h, &inside)| larger(distance(*h, inside), largest));
-        for (h, contact) in h.zip(contact) {
-            for lane in 0..LANES {
-                largest[lane] = larger(distance(h[lane], contact[lane]), largest[lane]);
-            }
+/// That of a part, several at a time: that the compiler can vectorise.
+#[inline(always)]
+fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
+    const LANES: usize = 8;
+    let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
+    let mut farthest = [0.0; LANES];
+    let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));
+    let rest = h.remainder().iter().zip(contact.remainder());
+    let of_rest = rest.fold(0.0, |farthest, (h, &inside)| larger(distance(*h, inside), farthest));
+    for (h, contact) in h.zip(contact) {
+        for lane in 0..LANES {
+            farthest[lane] = larger(distance(h[lane], contact[lane]), farthest[lane]);
         }
-        largest.into_iter().fold(of_rest, |largest, value| larger(value, largest))
+    }
+    farthest.into_iter().fold(of_rest, |farthest, value| larger(value, farthest))
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b {
+        a
+    } else {
+        b
     }
 }
 

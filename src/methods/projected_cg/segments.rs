@@ -16,6 +16,8 @@ use crate::threads::Threads;
 /// Blocks of rows at most, and elements of a block at least: each costs some additions.
 const BLOCKS: usize = 64;
 const LEAST: usize = 512;
+/// Elements that are compared at a time, one in each byte of a word.
+const EIGHT: usize = 8;
 /// Sums at most that a pass takes.
 const MOST_SUMS: usize = 9;
 
@@ -174,24 +176,28 @@ impl Drop for Segments {
     }
 }
 
-/// Appends the runs of a row whose first element is `start`.
+/// Appends the runs of a row whose first element is `start`: they begin and end where an element differs from the one before, of which eight are
+/// compared at a time.
 #[inline(always)]
 fn find_in_row(row: &[bool], start: u32, runs: &mut Vec<(u32, u32)>) {
-    let mut column = 0;
-    while let Some(skipped) = first_that_is(true, &row[column..]) {
-        let from = column + skipped;
-        column = from + first_that_is(false, &row[from..]).unwrap_or(row.len() - from);
-        runs.push((start + from as u32, start + column as u32));
+    let (eights, rest) = pulp::as_arrays::<EIGHT, bool>(row);
+    // No contact behind the row, so that each run ends.
+    let mut last = [false; EIGHT];
+    last[..rest.len()].copy_from_slice(rest);
+    let (mut before, mut first) = (0, None);
+    for k in 0..=eights.len() {
+        let elements = u64::from_le_bytes(eights.get(k).unwrap_or(&last).map(u8::from));
+        let mut edges = elements ^ (elements << 8 | before);
+        before = elements >> 56;
+        while edges != 0 {
+            let edge = start + (EIGHT * k) as u32 + edges.trailing_zeros() / 8;
+            match first.take() {
+                Some(first) => runs.push((first, edge)),
+                None => first = Some(edge),
+            }
+            edges &= edges - 1;
+        }
     }
-}
-
-/// The first of some elements that is in contact, or is not; many at a time, which the compiler can vectorise.
-#[inline(always)]
-fn first_that_is(inside: bool, elements: &[bool]) -> Option<usize> {
-    const MANY: usize = 32;
-    let none = |many: &[bool]| many.iter().fold(true, |none, &element| none & (element != inside));
-    let skipped = MANY * elements.chunks_exact(MANY).take_while(|many| none(many)).count();
-    elements[skipped..].iter().position(|&element| element == inside).map(|i| skipped + i)
 }
 
 /// The runs of a block.
