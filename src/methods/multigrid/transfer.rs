@@ -24,20 +24,27 @@ pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to
     };
     let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { f64::INFINITY };
     let columns = if coarse.mx < fine.mx { 2 } else { 1 };
-    threads.for_a_pass(fine.len()).for_each_plain_row(to, coarse.mx, |y, row| {
-        let mut rows = children(fine.my, coarse.my, y).map(|y| h[y * fine.mx..][..fine.mx].chunks(columns));
-        let (Some(first), second) = (rows.next(), rows.next()) else { return };
-        match second {
-            Some(second) => row.iter_mut().zip(first.zip(second)).for_each(|(to, children)| {
-                *to = mean(match children {
-                    // Mostly: this the compiler unrolls.
-                    ([a, b], [c, d]) => [a, b, c, d].into_iter().fold((0.0, 0.0), add),
-                    (first, second) => first.iter().chain(second).fold((0.0, 0.0), add),
-                });
-            }),
-            None => row.iter_mut().zip(first).for_each(|(to, first)| *to = mean(first.iter().fold((0.0, 0.0), add))),
-        }
-    });
+    threads.for_a_pass(fine.len()).for_each_plain_row(
+        to,
+        coarse.mx,
+        #[inline(always)]
+        |y, row| {
+            let mut rows = children(fine.my, coarse.my, y).map(|y| h[y * fine.mx..][..fine.mx].chunks(columns));
+            let (Some(first), second) = (rows.next(), rows.next()) else { return };
+            match second {
+                Some(second) => row.iter_mut().zip(first.zip(second)).for_each(|(to, children)| {
+                    *to = mean(match children {
+                        // Mostly: this the compiler unrolls.
+                        ([a, b], [c, d]) => [a, b, c, d].into_iter().fold((0.0, 0.0), add),
+                        (first, second) => first.iter().chain(second).fold((0.0, 0.0), add),
+                    });
+                }),
+                None => {
+                    row.iter_mut().zip(first).for_each(|(to, first)| *to = mean(first.iter().fold((0.0, 0.0), add)))
+                }
+            }
+        },
+    );
 }
 
 /// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
@@ -75,6 +82,7 @@ pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], com
 }
 
 /// The same in row y of the fine grid.
+#[inline(always)]
 pub fn interpolate_row(
     fine: &Grid,
     coarse: &Grid,
@@ -101,36 +109,41 @@ pub fn interpolate_row(
 /// (`+infinity`, outside a window).
 pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], threads: &Threads) {
     let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
-    threads.for_a_pass(fine.len()).for_each_plain_row(to, fine.mx, |y, row| {
-        // The coarse row that holds this one, and its neighbour on the same side.
-        let (near, far) = match (coarse.my == fine.my, y % 2) {
-            (true, _) => (y, y),
-            (_, 0) => (y / 2, (y / 2).saturating_sub(1)),
-            _ => (y / 2, (y / 2 + 1).min(coarse.my - 1)),
-        };
-        let (near, far) = (&from[near * coarse.mx..][..coarse.mx], &from[far * coarse.mx..][..coarse.mx]);
-        let at = |x: usize| mix(near[x], far[x]);
-        if coarse.mx == fine.mx {
-            row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
-            return;
-        }
-        // Blocks of coarse elements, with a neighbour on each side: loops that the compiler can vectorise.
-        let mut mixed = [0.0; BLOCK + 2];
-        for (children, first) in row.chunks_mut(2 * BLOCK).zip((0..).step_by(BLOCK)) {
-            let count = children.len().div_ceil(2);
-            let neighbours = near[first..].iter().zip(&far[first..]);
-            mixed[1..].iter_mut().zip(neighbours).for_each(|(mixed, (near, far))| *mixed = mix(*near, *far));
-            mixed[0] = if first > 0 { at(first - 1) } else { mixed[1] };
-            if first + count == coarse.mx {
-                mixed[count + 1] = mixed[count];
+    threads.for_a_pass(fine.len()).for_each_plain_row(
+        to,
+        fine.mx,
+        #[inline(always)]
+        |y, row| {
+            // The coarse row that holds this one, and its neighbour on the same side.
+            let (near, far) = match (coarse.my == fine.my, y % 2) {
+                (true, _) => (y, y),
+                (_, 0) => (y / 2, (y / 2).saturating_sub(1)),
+                _ => (y / 2, (y / 2 + 1).min(coarse.my - 1)),
+            };
+            let (near, far) = (&from[near * coarse.mx..][..coarse.mx], &from[far * coarse.mx..][..coarse.mx]);
+            let at = |x: usize| mix(near[x], far[x]);
+            if coarse.mx == fine.mx {
+                row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
+                return;
             }
-            let mut pairs = children.chunks_exact_mut(2);
-            for (pair, around) in pairs.by_ref().zip(mixed.windows(3)) {
-                (pair[0], pair[1]) = (mix(around[1], around[0]), mix(around[1], around[2]));
+            // Blocks of coarse elements, with a neighbour on each side: loops that the compiler can vectorise.
+            let mut mixed = [0.0; BLOCK + 2];
+            for (children, first) in row.chunks_mut(2 * BLOCK).zip((0..).step_by(BLOCK)) {
+                let count = children.len().div_ceil(2);
+                let neighbours = near[first..].iter().zip(&far[first..]);
+                mixed[1..].iter_mut().zip(neighbours).for_each(|(mixed, (near, far))| *mixed = mix(*near, *far));
+                mixed[0] = if first > 0 { at(first - 1) } else { mixed[1] };
+                if first + count == coarse.mx {
+                    mixed[count + 1] = mixed[count];
+                }
+                let mut pairs = children.chunks_exact_mut(2);
+                for (pair, around) in pairs.by_ref().zip(mixed.windows(3)) {
+                    (pair[0], pair[1]) = (mix(around[1], around[0]), mix(around[1], around[2]));
+                }
+                if let [last] = pairs.into_remainder() {
+                    *last = mix(mixed[count], mixed[count - 1]);
+                }
             }
-            if let [last] = pairs.into_remainder() {
-                *last = mix(mixed[count], mixed[count - 1]);
-            }
-        }
-    });
+        },
+    );
 }

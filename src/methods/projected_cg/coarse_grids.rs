@@ -263,12 +263,17 @@ fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
     transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u, threads);
     fine.approach = coarse.approach;
     let State { h, p, contact, .. } = fine;
-    threads.for_a_pass(to.len()).for_each_row_pair((p, to.mx), (contact, to.mx), |y, p, contact| {
-        transfer::interpolate_row(&to, &from, &coarse.p, y, p, |to, value| *to = value);
-        for ((p, inside), h) in p.iter_mut().zip(contact).zip(&h[y * to.mx..]) {
-            // Without a branch, which the compiler can vectorise.
-            *p = if h.is_infinite() | (*h > highest) { 0.0 } else { *p };
-            *inside = *p > 0.0;
-        }
-    });
+    threads.for_a_pass(to.len()).for_each_row_pair(
+        (p, to.mx),
+        (contact, to.mx),
+        #[inline(always)]
+        |y, p, contact| {
+            transfer::interpolate_row(&to, &from, &coarse.p, y, p, |to, value| *to = value);
+            for ((p, inside), h) in p.iter_mut().zip(contact).zip(&h[y * to.mx..]) {
+                // Without a branch, which the compiler can vectorise.
+                *p = if h.is_infinite() | (*h > highest) { 0.0 } else { *p };
+                *inside = *p > 0.0;
+            }
+        },
+    );
 }

@@ -127,3 +127,7 @@ fn to_one(value: f64) -> f64 {
         1.0
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/scaling.rs"]
+mod tests;

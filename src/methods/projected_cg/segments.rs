@@ -215,3 +215,7 @@ impl Block<'_> {
         })
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/segments.rs"]
+mod tests;
