@@ -23,15 +23,16 @@ SECONDS = "8"
 # The first that some function of the stack matches.
 PARTS = [
     ("", r"performance::case|heights|wheel_rail\b"),
-    ("estimate of the approach", r"State::start|estimate_approach"),
     ("report", r"close_grid|Measures"),
-    ("certificate", r"certify|judge|Survey"),
-    ("prediction of a time step", r"History"),
-    ("preconditioner", r"apply_in_place"),
-    ("set-up", r"even_spectrum|inverse_circulant|Solver::new|Iteration<T>::new|orkspace<|fill_row|zeros<"),
-    ("products", r"\bapply<|apply_rows|::apply"),
-    ("products or preconditioner", r"transform_rows|convolve_columns|for_each_block|for_each_row|rustfft|row_transform"),
-    ("vector passes", r"Iteration|iterate|projected_cg|Level"),
+    ("set-up", r"set_spectrum|Solver::new|Iteration<T>::new|Workspace<T>::new|fill_row|MadeOf|memory::|choose_window|::check\b"),
+    ("certificate", r"Survey|Problem::(displace|refresh)|Task<S>::refresh"),
+    ("prediction of a time step", r"Predictor|ProjectedCg::predict|take_over"),
+    ("known change", r"::know\b|restrict_known|step_along_known"),
+    ("extension of the residual", r"Extension<T>::(count|extend|collect)"),
+    ("preconditioner", r"::precondition\b|Preconditioner<T>::apply"),
+    ("products", r"Operator<T>::(apply|without_coupling|convolve|forward)"),
+    ("between grids", r"prolong|::transfer::|Window::(insert|extract)|part::(enter|leave)|take_displacements"),
+    ("passes", r"Iteration<T>|projected_cg|Level"),
 ]
 
 
@@ -42,7 +43,8 @@ def stacks(data):
 
 
 def main():
-    built = glob.glob(os.path.join(ROOT, "target", "release", "deps", "performance-*"))
+    target = os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target"))
+    built = glob.glob(os.path.join(target, "release", "deps", "performance-*"))
     program = max((path for path in built if os.access(path, os.X_OK)), key=os.path.getmtime)
     data = os.path.join(ROOT, "build", "perf.data")
     os.makedirs(os.path.dirname(data), exist_ok=True)

@@ -113,8 +113,7 @@ impl State {
 
     /// `sum of p dx dy`.
     pub fn force(&self) -> f64 {
-        let [sum] = pulp::Arch::new().dispatch(Sum(&self.p));
-        sum * self.grid.element_area()
+        pulp::Arch::new().dispatch(Sum(&self.p)) * self.grid.element_area()
     }
 
     /// `e = h - approach + u` of element i.
@@ -203,7 +202,7 @@ pub fn lowest(h: &[f64]) -> f64 {
     pulp::Arch::new().dispatch(Lowest(h))
 }
 
-/// Compiled for the vectors of this machine, on which no bit depends.
+/// The least of values. Compiled for the vectors of this machine, on which no bit depends.
 struct Lowest<'a>(&'a [f64]);
 
 impl pulp::NullaryFnOnce for Lowest<'_> {
@@ -226,17 +225,18 @@ impl pulp::NullaryFnOnce for Lowest<'_> {
     }
 }
 
-/// Compiled for the vectors of this machine, on which no bit depends.
+/// The sum of values. Compiled for the vectors of this machine, on which no bit depends.
 struct Sum<'a>(&'a [f64]);
 
 impl pulp::NullaryFnOnce for Sum<'_> {
-    type Output = [f64; 1];
+    type Output = f64;
 
     #[inline(always)]
-    fn call(self) -> [f64; 1] {
-        let mut sum = Sums::new();
-        sum.add::<f64, 1, 0>([self.0], [], |[value], []| [value]);
-        sum.values()
+    fn call(self) -> f64 {
+        let mut sums = Sums::new();
+        sums.add::<f64, 1, 0>([self.0], [], |[value], []| [value]);
+        let [sum] = sums.values();
+        sum
     }
 }
 

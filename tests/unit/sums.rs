@@ -25,3 +25,12 @@ fn sums_of_one_kind_of_values_only() {
     sums.add([], [&ones[..]], |[], [b]| [b]);
     assert_eq!(sums.values(), [285.0 + 9.0]);
 }
+
+#[test]
+fn some_of_the_sums() {
+    let values: Vec<f64> = (1..=9).map(f64::from).collect();
+    let mut sums = Sums::<3>::new();
+    sums.add_from::<f64, 1, 0, 2>(0, [&values], [], |[a], []| [1.0, a]);
+    sums.add_from::<f64, 1, 0, 2>(1, [&values], [], |[a], []| [a, a * a]);
+    assert_eq!(sums.values(), [9.0, 90.0, 285.0]);
+}

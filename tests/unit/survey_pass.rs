@@ -10,7 +10,7 @@ const APPROACH: f64 = 3.0;
 /// What a state is like, beside the numbers of a generator: some elements have no surface, and the first 70 columns of wide grids carry nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// Pressures of either sign.
+    /// Pressures of either sign; u is no number where there is no surface.
     Plain,
     /// Pressures of either sign, and elements at their limit.
     Limited,
@@ -38,7 +38,9 @@ fn state(mx: usize, my: usize, kind: Kind) -> State {
     for i in 0..n {
         let (role, has_surface) = (if mx > 100 && i % mx < 70 { 9 } else { number(4) }, state.h[i].is_finite());
         let presses = role < 2 && has_surface && kind != Kind::Idle;
-        state.u[i] = if kind == Kind::Idle && !has_surface { f64::NAN } else { number(12) as f64 - 6.0 };
+        let u = number(12) as f64 - 6.0;
+        let is_number = has_surface || !matches!(kind, Kind::Plain | Kind::Idle);
+        state.u[i] = if is_number { u } else { f64::NAN };
         state.contact[i] = presses && role == 0;
         let least = if kind == Kind::Positive { 1.0 } else { -3.0 };
         state.p[i] = match kind {

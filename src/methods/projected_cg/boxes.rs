@@ -150,7 +150,7 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
     let mut columns = [B::default(); LENGTH];
     let first = start.saturating_sub(REACH).min(mx.saturating_sub(LENGTH));
     if mx >= LENGTH {
-        // A loop of known length, and what is beyond an end of the row is moved out.
+        // A loop of known length.
         for row in rows {
             let row: &[A] = &row[first..][..LENGTH];
             columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
@@ -160,6 +160,7 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
             columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
         }
     }
+    // Columns move to their place in the box; those beyond the row are zero.
     match (first + REACH).cmp(&start) {
         Ordering::Equal => {}
         Ordering::Greater => {

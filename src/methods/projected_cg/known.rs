@@ -85,8 +85,9 @@ impl<T: Real> Known<T> {
         self.length.sqrt()
     }
 
-    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass.
+    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass; no direction where single precision did not hold w.
     fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
+        let energy = if energy.is_finite() { energy } else { 0.0 };
         (self.energy, self.length, self.size) = (energy, length, size);
     }
 }

@@ -8,8 +8,9 @@ use crate::threads::Threads;
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
 /// room in the range 2^-126 to 2^127 then.
 const AS_IT_IS: i32 = 48;
-/// Parts of a grid that threads share.
+/// Parts of a grid that threads share, and elements of each at least.
 const PARTS: usize = 64;
+const LEAST: usize = 512;
 
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,17 +63,17 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact, or below the approach: of the parts of the grid, and of these.
+/// The largest |h - approach| of elements in contact, or below the approach: found for each part of the grid, then among the parts.
 fn farthest(state: &State, threads: &Threads) -> f64 {
     let (approach, n) = (state.approach, state.h.len());
     let mut parts = [0.0; PARTS];
-    let length = n.div_ceil(PARTS);
+    let length = n.div_ceil(PARTS).max(LEAST);
     threads.for_a_pass(n).for_each(
         &mut parts,
         #[inline(always)]
-        |k, farthest| {
+        |k, of_part| {
             let part = (k * length).min(n)..((k + 1) * length).min(n);
-            *farthest = farthest_of(&state.h[part.clone()], &state.contact[part], approach);
+            *of_part = farthest_of(&state.h[part.clone()], &state.contact[part], approach);
         },
     );
     parts.into_iter().fold(0.0, larger)

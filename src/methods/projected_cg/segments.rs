@@ -176,7 +176,7 @@ impl Drop for Segments {
     }
 }
 
-/// Appends the runs of a row whose first element is `start`: they begin and end where an element differs from the one before, of which eight are
+/// Appends the runs of a row whose first element is `start`. A run begins or ends where an element differs from the one before; eight are
 /// compared at a time.
 #[inline(always)]
 fn find_in_row(row: &[bool], start: u32, runs: &mut Vec<(u32, u32)>) {
