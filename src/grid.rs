@@ -48,6 +48,11 @@ impl Grid {
         Ok(Grid { mx, my, dx, dy })
     }
 
+    /// Rows of each block, where work is cut into at most so many blocks of at least so many elements: whatever the number of threads.
+    pub(crate) fn rows_of_blocks(&self, most: usize, least: usize) -> usize {
+        self.my.div_ceil(most).max(least / self.mx).min(self.my)
+    }
+
     /// Number of elements.
     pub fn len(&self) -> usize {
         self.mx * self.my

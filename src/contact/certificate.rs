@@ -59,7 +59,7 @@ impl Survey {
     pub fn by(state: &State, threads: &Threads) -> Survey {
         let Grid { mx, my, .. } = state.grid;
         let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
-        let rows = my.div_ceil(BLOCKS).max(LEAST / mx).min(my);
+        let rows = state.grid.rows_of_blocks(BLOCKS, LEAST);
         let add = |b: usize, survey: &mut Survey| {
             let elements = b * rows * mx..((b + 1) * rows).min(my) * mx;
             pulp::Arch::new().dispatch(Pass { state, elements, survey });

@@ -21,6 +21,6 @@ fn what_single_precision_cannot_hold_is_no_change() {
         let mut u = [1.0; 6];
         u[at] = 1e300;
         let [.., energy, _, _] = change(&[2.0, 0.0, 1.0, 3.0, 0.0, 1.0], &u);
-        assert!(!(energy.is_finite()), "element {at}: {energy}");
+        assert!(!energy.is_finite(), "element {at}: {energy}");
     }
 }

@@ -3,8 +3,6 @@
 //! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
 //! C.
 
-use std::cmp::Ordering;
-
 use crate::operator::fft::Real;
 
 /// Elements of a box in each direction.
@@ -161,18 +159,11 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
         }
     }
     // Columns move to their place in the box; those beyond the row are zero.
-    match (first + REACH).cmp(&start) {
-        Ordering::Equal => {}
-        Ordering::Greater => {
-            let by = first + REACH - start;
-            columns.copy_within(..LENGTH - by, by);
-            columns[..by].fill(B::default());
-        }
-        Ordering::Less => {
-            let by = start - REACH - first;
-            columns.copy_within(by.., 0);
-            columns[LENGTH - by..].fill(B::default());
-        }
+    let (up, down) = ((first + REACH).saturating_sub(start), start.saturating_sub(first + REACH));
+    if up + down > 0 {
+        let summed = columns;
+        columns = [B::default(); LENGTH];
+        columns[up..LENGTH - down].copy_from_slice(&summed[down..LENGTH - up]);
     }
     let mut sums = [B::default(); CHUNK];
     for (k, sum) in sums.iter_mut().enumerate() {

@@ -132,8 +132,9 @@ impl<T: Real> Iteration<T> {
 
     /// d becomes the change on C alone; z loses what it held. Returns the products that this takes.
     pub(super) fn restrict_known(&mut self, state: &State) -> u64 {
-        let (Known { d, energy, .. }, z) = (&mut self.known, &mut self.z);
-        if !(*energy > 0.0) || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
+        let is_there = self.known.is_there();
+        let (Known { d, .. }, z) = (&mut self.known, &mut self.z);
+        if !is_there || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
             return 0;
         }
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);

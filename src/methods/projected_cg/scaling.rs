@@ -8,8 +8,8 @@ use crate::threads::Threads;
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
 /// room in the range 2^-126 to 2^127 then.
 const AS_IT_IS: i32 = 48;
-/// Parts of a grid that threads share, and elements of each at least.
-const PARTS: usize = 64;
+/// Blocks of rows that threads share at most, and elements of a block at least.
+const BLOCKS: usize = 64;
 const LEAST: usize = 512;
 
 /// Factors from the scene's units to the iteration's.
@@ -63,23 +63,23 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact, or below the approach: found for each part of the grid, then among the parts.
+/// The largest |h - approach| of elements in contact, or below the approach: found for each block of rows, then among the blocks.
 fn farthest(state: &State, threads: &Threads) -> f64 {
     let (approach, n) = (state.approach, state.h.len());
-    let mut parts = [0.0; PARTS];
-    let length = n.div_ceil(PARTS).max(LEAST);
+    let length = state.grid.rows_of_blocks(BLOCKS, LEAST) * state.grid.mx;
+    let mut of_blocks = [0.0; BLOCKS];
     threads.for_a_pass(n).for_each(
-        &mut parts,
+        &mut of_blocks[..n.div_ceil(length)],
         #[inline(always)]
-        |k, of_part| {
-            let part = (k * length).min(n)..((k + 1) * length).min(n);
-            *of_part = farthest_of(&state.h[part.clone()], &state.contact[part], approach);
+        |b, of_block| {
+            let block = b * length..((b + 1) * length).min(n);
+            *of_block = farthest_of(&state.h[block.clone()], &state.contact[block], approach);
         },
     );
-    parts.into_iter().fold(0.0, larger)
+    of_blocks.into_iter().fold(0.0, larger)
 }
 
-/// That of a part, several at a time: that the compiler can vectorise.
+/// That of a block, several at a time: that the compiler can vectorise.
 #[inline(always)]
 fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
     const LANES: usize = 8;

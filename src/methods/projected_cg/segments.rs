@@ -50,7 +50,7 @@ struct Found {
 impl Segments {
     /// No contact. Memory for any contact area is reserved, and touched when it is needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
-        let rows = grid.my.div_ceil(BLOCKS).max(LEAST / grid.mx).min(grid.my);
+        let rows = grid.rows_of_blocks(BLOCKS, LEAST);
         let blocks = grid.my.div_ceil(rows);
         let mut found = Vec::new();
         found.resize_with(blocks, Found::default);
