@@ -60,6 +60,8 @@
 #![deny(unsafe_code)]
 
 pub mod analytic;
+mod blocks;
+mod bounding_box;
 pub mod contact;
 pub mod effects;
 pub mod error;

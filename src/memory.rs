@@ -135,15 +135,13 @@ fn least_resting() -> usize {
     LEAST_RESTING.get()
 }
 
-/// Room for n values that wake when they are first needed.
-pub(crate) fn resting<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
-    let mut v = Vec::new();
+/// Makes room for n values that wake when they are first needed, and are all written before they are read. Small arrays are awake.
+pub(crate) fn asleep<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, mark: A, what: &str) -> Result<()> {
     if rests(n) {
-        reserve(&mut v, n, what)?;
+        reserve(v, n, what)
     } else {
-        unwritten(&mut v, n, mark, what)?;
+        unwritten(v, n, mark, what)
     }
-    Ok(v)
 }
 
 /// An array that is not needed for a while: a large one is empty then.

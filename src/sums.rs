@@ -1,4 +1,4 @@
-//! Sums over elements in lanes, for passes over slices of one length.
+//! Sums over elements in lanes, for passes over slices of one length, and the least of values.
 //!
 //! Each sum is taken in lanes, which depend neither on the threads nor on the vectors of the machine: nor do the bits of the sums. Where a pass
 //! is compiled for those vectors (`pulp`), so is what is inlined here.
@@ -87,6 +87,36 @@ impl<const K: usize> Sums<K> {
     pub fn values(&self) -> [f64; K] {
         self.0.map(|lanes| lanes.iter().sum())
     }
+}
+
+/// The sum of `a + b` where it `counts`, and in how many places it does. Several at a time: that the compiler can vectorise.
+#[inline(always)]
+pub fn sum_where(a: &[f64], b: &[f64], counts: &[bool]) -> (f64, u64) {
+    const LANES: usize = 8;
+    let term = |a: f64, b: f64, counts: bool| if counts { a + b } else { 0.0 };
+    let (a, rest_of_a) = pulp::as_arrays::<LANES, f64>(a);
+    let (b, rest_of_b) = pulp::as_arrays::<LANES, f64>(b);
+    let (lanes, rest) = pulp::as_arrays::<LANES, bool>(counts);
+    let mut sums = [0.0; LANES];
+    for ((a, b), counts) in a.iter().zip(b).zip(lanes) {
+        sums = from_fn(|lane| sums[lane] + term(a[lane], b[lane], counts[lane]));
+    }
+    let of_rest = rest_of_a.iter().zip(rest_of_b).zip(rest).map(|((a, b), counts)| term(*a, *b, *counts));
+    let count = counts.iter().fold(0, |count, &counts| count + u64::from(counts));
+    (sums.iter().sum::<f64>() + of_rest.sum::<f64>(), count)
+}
+
+/// The least of some values that are numbers; infinite if there are none. Several at a time: that the compiler can vectorise.
+#[inline(always)]
+pub fn least(values: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let lesser = |a: f64, b: f64| if a < b { a } else { b };
+    let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
+    let mut least = [f64::INFINITY; LANES];
+    for values in lanes {
+        least = from_fn(|lane| lesser(values[lane], least[lane]));
+    }
+    rest.iter().chain(&least).fold(f64::INFINITY, |least, value| lesser(*value, least))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::{AdmissibleSet, State};
 use crate::scene::Load;
+use crate::threads::Threads;
 
 /// Rounds of raising what is below its limit; each but the last brings an element to its limit, most of them many.
 const ROUNDS: u32 = 50;
@@ -14,27 +15,27 @@ const OUT_OF_REACH: f64 = 1e140;
 
 impl State {
     /// Whether p carries a prescribed force.
-    pub fn carries(&self) -> bool {
+    pub fn carries(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return true };
-        let (sum, all) = self.p.iter().fold((0.0, 0.0), |(sum, all), p| (sum + p, all + p.abs()));
+        let [sum, all] = self.sum_pressures(threads, |p| [p, p.abs()]);
         let area = self.grid.element_area();
         (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
     }
 
     /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
     /// Call before u is recomputed.
-    pub fn carry_force<S: AdmissibleSet>(&mut self, set: S) -> Option<f64> {
+    pub fn carry_force<S: AdmissibleSet>(&mut self, set: S, threads: &Threads) -> Option<f64> {
         if S::FIXED && self.load == Load::Force(0.0) {
             self.remove_mean();
             return None;
         }
         if !S::LIMITED {
-            return self.balance_force();
+            return self.balance_force(threads);
         }
         self.project(set);
         let Load::Force(force) = self.load else { return Some(1.0) };
         if !self.has_limited() {
-            let factor = self.balance_force();
+            let factor = self.balance_force(threads);
             self.project(set);
             if !self.has_limited() {
                 return factor;
@@ -58,7 +59,7 @@ impl State {
                 // Less than what is at its limit carries: that is not at its limit.
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
-            } else if self.carries() {
+            } else if self.carries(threads) {
                 // What is at its limit carries all of it.
                 break;
             } else {

@@ -2,7 +2,7 @@
 
 use super::survey_pass::Pass;
 use super::{AdmissibleSet, State};
-use crate::grid::Grid;
+use crate::blocks;
 use crate::threads::Threads;
 
 /// The measures of a solution. Status OK means that they hold to the tolerance.
@@ -21,10 +21,6 @@ pub struct Certificate {
 /// The round-off of `h - approach` where h is the approach: a sum and a mean of equal numbers. Distances below it are those of bodies that
 /// fit exactly; larger ones, though round-off of a huge offset they may be, are not taken for none.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
-
-/// Blocks of rows at most, the sums of which are added in order, and elements of a block at least: each costs some additions.
-const BLOCKS: usize = 64;
-const LEAST: usize = 1024;
 
 /// What one pass over a state whose u is A p tells.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,26 +53,13 @@ impl Survey {
 
     /// The same by several threads: block of rows by block, so that they make no difference.
     pub fn by(state: &State, threads: &Threads) -> Survey {
-        let Grid { mx, my, .. } = state.grid;
         let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
-        let rows = state.grid.rows_of_blocks(BLOCKS, LEAST);
-        let add = |b: usize, survey: &mut Survey| {
-            let elements = b * rows * mx..((b + 1) * rows).min(my) * mx;
-            pulp::Arch::new().dispatch(Pass { state, elements, survey });
+        let of_block = |elements| {
+            let mut survey = nothing;
+            pulp::Arch::new().dispatch(Pass { state, elements, survey: &mut survey });
+            survey
         };
-        let (count, threads) = (my.div_ceil(rows), threads.for_a_pass(mx * my));
-        let mut survey = nothing;
-        if threads.count() == 1 {
-            for b in 0..count {
-                let mut block = nothing;
-                add(b, &mut block);
-                survey = survey.joined(&block);
-            }
-        } else {
-            let mut blocks = [nothing; BLOCKS];
-            threads.for_each(&mut blocks[..count], add);
-            survey = blocks[..count].iter().fold(survey, Survey::joined);
-        }
+        let mut survey = blocks::fold(&state.grid, threads, nothing, of_block, |so_far, block| so_far.joined(&block));
         let mut touching = survey.distance;
         if state.has_limited() {
             touching += survey.add_limited(state);

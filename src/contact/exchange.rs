@@ -1,24 +1,31 @@
 //! Steps (4.1) and (4.2) of section 4.1: who enters the contact area and who leaves it.
 
+use std::ops::Range;
+
 use super::admissible::AdmissibleSet;
 use super::State;
+use crate::blocks;
+use crate::threads::Threads;
 
 /// Step (4.1): elements of C that would pull go to the exterior area, with `p = 0`, and those above their limit to that. Returns how
 /// many.
-pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
+pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) -> usize {
     if S::FIXED {
         return 0;
     }
-    let mut changed = 0;
-    for start in (0..state.p.len()).step_by(state.grid.mx) {
-        // Few rows have an element that leaves, and this the compiler can vectorise.
-        let row = start..start + state.grid.mx;
-        let elements = state.p[row.clone()].iter().zip(&state.contact[row.clone()]).zip(row.clone());
-        let some_leaves = pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || elements.fold(0, |some, ((p, inside), i)| some | u64::from(inside & set.leaves(i, *p))),
-        );
-        if some_leaves == 0 {
+    // Often nothing leaves, and otherwise few rows have an element that does.
+    let (p, contact) = (&state.p, &state.contact);
+    let some = blocks::fold(
+        &state.grid,
+        threads,
+        false,
+        #[inline(always)]
+        |block| some_leaves(set, p, contact, block),
+        |some, of_block| some | of_block,
+    );
+    let (n, mx, mut changed) = (state.p.len(), state.grid.mx, 0);
+    for row in (0..n).step_by(mx).map(|start| start..start + mx).filter(|_| some) {
+        if !some_leaves(set, &state.p, &state.contact, row.clone()) {
             continue;
         }
         for i in row {
@@ -33,6 +40,13 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
         }
     }
     changed
+}
+
+/// Whether one of some elements leaves. All of them, which the compiler can vectorise.
+#[inline(always)]
+fn some_leaves<S: AdmissibleSet>(set: S, p: &[f64], contact: &[bool], elements: Range<usize>) -> bool {
+    let values = p[elements.clone()].iter().zip(&contact[elements.clone()]).zip(elements);
+    values.fold(0, |some, ((p, inside), i)| some | u64::from(inside & set.leaves(i, *p))) != 0
 }
 
 /// Step (4.2): exterior elements with `e < 0`, and elements at their limit with `e > 0`, go to the contact area. Returns how many.

@@ -11,8 +11,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::bounding_box::bounding_box;
 use crate::error::Result;
-use crate::grid::{bounding_box, Grid};
+use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::fft::good_length;
 use crate::operator::{Operator, Reach, SetUp, Workspace};
@@ -87,7 +88,7 @@ impl Operators {
 
     /// `u = A p`.
     pub fn displace(&mut self, of: MadeOf<'_>, p: &[f64], u: &mut [f64]) -> Result<()> {
-        if p.iter().all(|p| *p == 0.0) {
+        if !p.chunks_exact(of.grid.mx).any(presses) {
             u.fill(0.0);
             return Ok(());
         }
@@ -139,7 +140,7 @@ impl MadeOf<'_> {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
-        let (x, y) = loaded(p, mx)?;
+        let (x, y) = loaded(p, self.grid, self.threads)?;
         // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
         let period = |loaded: Range<usize>, m: usize| {
             let farthest = loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
@@ -165,10 +166,15 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
+/// Whether some pressure is not 0.
+#[inline(always)]
+fn presses(p: &[f64]) -> bool {
+    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
+}
+
 /// The columns and rows outside of which p is 0; none where it is 0 everywhere.
-fn loaded(p: &[f64], mx: usize) -> Option<(Range<usize>, Range<usize>)> {
-    let presses = |row: &[f64]| row.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0;
-    bounding_box(p, mx, presses, |p| *p != 0.0)
+fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<(Range<usize>, Range<usize>)> {
+    bounding_box(p, grid, threads, presses, |p| *p != 0.0)
 }
 
 #[cfg(test)]

@@ -114,10 +114,10 @@ impl Problem {
 
     /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
     pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
-        state.carry_force(set);
+        state.carry_force(set, &self.threads);
         self.displace(&state.p, &mut state.u)?;
         state.u_is = Freshness::Exact;
-        state.fit_approach();
+        state.fit_approach(&self.threads);
         Ok(())
     }
 

@@ -1,12 +1,15 @@
 //! The unknowns of one grid and what is known about them.
 
+use std::array::from_fn;
 use std::ops::Range;
 
+use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep, reserve, rest, zeros};
 use crate::scene::Load;
-use crate::sums::Sums;
+use crate::sums::{least, sum_where, Sums};
+use crate::threads::Threads;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
@@ -113,7 +116,32 @@ impl State {
 
     /// `sum of p dx dy`.
     pub fn force(&self) -> f64 {
-        pulp::Arch::new().dispatch(Sum(&self.p)) * self.grid.element_area()
+        self.force_by(&Threads::One)
+    }
+
+    fn force_by(&self, threads: &Threads) -> f64 {
+        let [sum] = self.sum_pressures(threads, |p| [p]);
+        sum * self.grid.element_area()
+    }
+
+    /// Sums over all pressures.
+    pub(super) fn sum_pressures<const K: usize>(
+        &self,
+        threads: &Threads,
+        terms: impl Fn(f64) -> [f64; K] + Sync + Send,
+    ) -> [f64; K] {
+        blocks::fold(
+            &self.grid,
+            threads,
+            [0.0; K],
+            #[inline(always)]
+            |block| {
+                let mut sums = Sums::new();
+                sums.add::<f64, 1, 0>([&self.p[block]], [], |[p], []| terms(p));
+                sums.values()
+            },
+            |sums, of_block| from_fn(|k| sums[k] + of_block[k]),
+        )
     }
 
     /// `e = h - approach + u` of element i.
@@ -123,13 +151,15 @@ impl State {
 
     /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed. Returns the factor; none when the
     /// pressures were replaced by uniform ones, on the lowest element if there was no contact.
-    pub fn balance_force(&mut self) -> Option<f64> {
+    pub fn balance_force(&mut self, threads: &Threads) -> Option<f64> {
         let Load::Force(force) = self.load else { return Some(1.0) };
-        let carried = self.force();
+        let carried = self.force_by(threads);
         let factor = force / carried;
         if carried > 0.0 && factor.is_finite() && factor > 0.0 {
             if factor != 1.0 {
-                self.p.iter_mut().for_each(|p| *p *= factor);
+                threads.for_a_pass(self.p.len()).for_each_plain_row(&mut self.p, self.grid.mx, |_, row| {
+                    row.iter_mut().for_each(|p| *p *= factor);
+                });
             }
             return Some(factor);
         }
@@ -145,9 +175,9 @@ impl State {
         None
     }
 
-    /// What coarser grids take larger distances for: far above what any approach closes, and no number that rules a mean.
-    pub fn out_of_reach(&self, self_influence: f64) -> f64 {
-        let lowest = Some(lowest(&self.h)).filter(|h| h.is_finite()).unwrap_or(0.0);
+    /// What coarser grids take larger distances for: far above what any approach closes, and no number that rules a mean. `lowest`: the least of h.
+    pub fn out_of_reach(&self, lowest: f64, self_influence: f64) -> f64 {
+        let lowest = Some(lowest).filter(|h| h.is_finite()).unwrap_or(0.0);
         let depth = match self.load {
             Load::Approach(approach) => approach - lowest,
             // One element alone goes deepest.
@@ -157,15 +187,18 @@ impl State {
     }
 
     /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.
-    pub fn fit_approach(&mut self) {
+    pub fn fit_approach(&mut self, threads: &Threads) {
         if let Load::Force(_) = self.load {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for ((h, u), _) in self.h.iter().zip(&self.u).zip(&self.contact).filter(|(_, &inside)| inside) {
-                sum += h + u;
-                count += 1.0;
-            }
-            if count > 0.0 {
-                self.approach = sum / count;
+            let (sum, count) = blocks::fold(
+                &self.grid,
+                threads,
+                (0.0, 0),
+                #[inline(always)]
+                |block| sum_where(&self.h[block.clone()], &self.u[block.clone()], &self.contact[block]),
+                |(sum, count), (of_block, count_of_block)| (sum + of_block, count + count_of_block),
+            );
+            if count > 0 {
+                self.approach = sum / count as f64;
             } else if self.has_limited() {
                 // Nothing is in elastic contact: the least approach that holds all elements at their limit.
                 let held = (0..self.h.len()).filter(|&i| self.at_limit[i]).map(|i| self.h[i] + self.u[i]);
@@ -199,45 +232,10 @@ impl Drop for State {
 
 /// The least of all distances; infinite if there is no surface.
 pub fn lowest(h: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(Lowest(h))
-}
-
-/// The least of values. Compiled for the vectors of this machine, on which no bit depends.
-struct Lowest<'a>(&'a [f64]);
-
-impl pulp::NullaryFnOnce for Lowest<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        // Several at a time: that the compiler can vectorise.
-        const LANES: usize = 8;
-        let lesser = |a: f64, b: f64| if a < b { a } else { b };
-        let mut least = [f64::INFINITY; LANES];
-        let lanes = self.0.chunks_exact(LANES);
-        let rest = lanes.remainder();
-        for values in lanes {
-            for (least, value) in least.iter_mut().zip(values) {
-                *least = lesser(*value, *least);
-            }
-        }
-        rest.iter().chain(&least).fold(f64::INFINITY, |least, value| lesser(*value, least))
-    }
-}
-
-/// The sum of values. Compiled for the vectors of this machine, on which no bit depends.
-struct Sum<'a>(&'a [f64]);
-
-impl pulp::NullaryFnOnce for Sum<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let mut sums = Sums::new();
-        sums.add::<f64, 1, 0>([self.0], [], |[value], []| [value]);
-        let [sum] = sums.values();
-        sum
-    }
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || least(h),
+    )
 }
 
 /// What a state had found, but for u: to go back to it.

@@ -6,6 +6,7 @@ use super::effect::Effect;
 use crate::error::{Error, Result};
 use crate::influence::{Coefficients, HalfSpace};
 use crate::scene::Scene;
+use crate::threads::Threads;
 
 /// Number of effects.
 pub(super) const COUNT: usize = 8;
@@ -70,22 +71,23 @@ impl Scene<'_> {
         effects(self).try_fold(coefficients, |coefficients, effect| effect.apply(coefficients))
     }
 
-    /// Checks everything the solver relies on: each effect, the pairs that are not solved, and the bodies if they matter.
-    pub fn check(&self) -> Result<()> {
-        self.check_distance_and_load()?;
+    /// Checks everything the solver relies on: each effect, the pairs that are not solved, and the bodies if they matter. Returns the least distance.
+    pub fn check(&self, threads: &Threads) -> Result<f64> {
+        let lowest = self.check_distance_and_load(threads)?;
         check_effects(self)?;
-        if replace_bodies(self) {
-            return Ok(());
+        if !replace_bodies(self) {
+            self.bodies.check()?;
         }
-        self.bodies.check()
+        Ok(lowest)
     }
 
-    /// Checks what changes from solve to solve.
-    pub fn check_distance_and_load(&self) -> Result<()> {
+    /// Checks what changes from solve to solve. Returns the least distance.
+    pub fn check_distance_and_load(&self, threads: &Threads) -> Result<f64> {
         let plain = self.plain();
-        plain.check_distance()?;
+        let lowest = plain.lowest(threads)?;
         self.load.check()?;
         effects(self).try_for_each(|effect| effect.check_load(&plain, &list(self)))?;
-        plain.check_surface()
+        plain.check_surface(lowest)?;
+        Ok(lowest)
     }
 }

@@ -163,7 +163,7 @@ impl Batch {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
-            run(worker, &scene, options, None, outputs, &mut Buffers::default())
+            run(worker, (&scene, None), options, None, outputs, &mut Buffers::default())
         };
         let outcome = solved().unwrap_or_else(Conclusion::from);
         if !self.statuses.is_null() {

@@ -27,8 +27,8 @@ pub unsafe extern "C" fn contact_normal_solve(
             unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(()))? };
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
-        let mut solver = Solver::new(&scene, &options.options)?;
-        run_watched(&mut solver, &scene, &options, &outputs, &mut buffers)
+        let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
+        run_watched(&mut solver, (&scene, Some(lowest)), &options, &outputs, &mut buffers)
     })
 }
 
@@ -108,10 +108,11 @@ pub(super) fn watcher(options: &Translated) -> Option<impl FnMut(&Progress) -> b
     })
 }
 
-/// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches.
+/// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches. A scene that is checked has its
+/// least distance.
 pub(super) fn run_watched(
     solver: &mut Solver,
-    scene: &Scene<'_>,
+    scene: (&Scene<'_>, Option<f64>),
     options: &Translated,
     outputs: &Outputs,
     buffers: &mut Buffers,
@@ -124,7 +125,7 @@ pub(super) fn run_watched(
 /// Solves with a solver that is set up, and writes the outputs.
 pub(super) fn run(
     solver: &mut Solver,
-    scene: &Scene<'_>,
+    (scene, lowest): (&Scene<'_>, Option<f64>),
     options: &Options,
     progress: Option<ProgressCallback<'_>>,
     outputs: &Outputs,
@@ -133,7 +134,11 @@ pub(super) fn run(
     let n = scene.grid.len();
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
-    let (stop, report) = solver.solve(scene, options, outputs.guess(options, n, buffers)?, progress)?;
+    let guess = outputs.guess(options, n, buffers)?;
+    let (stop, report) = match lowest {
+        Some(lowest) => solver.solve_checked((scene, lowest), options, guess, progress)?,
+        None => solver.solve(scene, options, guess, progress)?,
+    };
     outputs.write_fields(solver);
     outputs.write_report(&report, solver.ledger())?;
     Ok(Conclusion::of(stop, || explain(stop, &report, options.method, Some(solver.state()))))

@@ -116,7 +116,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         // SAFETY: as in contact_normal_solver_new.
         let Request { scene, options, outputs } =
             unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(()))? };
-        run_watched(solver, &scene, &options, &outputs, buffers)
+        run_watched(solver, (&scene, None), &options, &outputs, buffers)
     })
 }
 

@@ -22,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::memory::reserve;
 use crate::methods::{Change, Habits, Step, Task};
 use crate::scene::Load;
+use crate::threads::Threads;
 
 /// The method, and its memory, kept from one solve to the next. A must be symmetric.
 #[derive(Default)]
@@ -154,7 +155,7 @@ impl Descent {
 fn take_over<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     let project = |(i, p): (usize, &mut f64)| *p = if p.is_finite() { set.project(i, *p) } else { 0.0 };
     state.p.iter_mut().enumerate().for_each(project);
-    state.carry_force(set);
+    state.carry_force(set, &problem.threads);
     find_contact(state, set);
     problem.refresh(state, set)
 }
@@ -281,7 +282,7 @@ fn take_step<S: AdmissibleSet>(state: &mut State, set: S, t: &[f64], q: &[f64], 
         state.u[i] += length * q[i];
     }
     let changes = find_contact(state, set);
-    state.fit_approach();
+    state.fit_approach(&Threads::One);
     changes
 }
 

@@ -10,6 +10,8 @@ pub struct Task<'a, 'm, S> {
     pub problem: &'a mut Problem,
     /// The unknowns.
     pub state: &'a mut State,
+    /// The least of their undeformed distances; infinite if there is no surface.
+    pub lowest: f64,
     /// The pressures that are admissible.
     pub set: S,
     /// What is to be reached.

@@ -45,8 +45,9 @@ impl<T: Real> Convolution<T> {
     }
 
     /// The same in another precision, times a factor.
-    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Convolution<S>> {
-        let (columns, spectrum) = (ColumnTransform::new(self.columns.length()), self.spectrum.in_precision(factor)?);
+    pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
+        let columns = ColumnTransform::new(self.columns.length());
+        let spectrum = self.spectrum.in_precision(factor, threads)?;
         Ok(Convolution { columns, spectrum })
     }
 

@@ -163,7 +163,9 @@ impl<T: Real> Operator<T> {
         Ok(Operator {
             rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
-                Columns::Convolution(convolution) => Columns::Convolution(convolution.in_precision(factor)?),
+                Columns::Convolution(convolution) => {
+                    Columns::Convolution(convolution.in_precision(factor, &self.rows.threads)?)
+                }
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },
             reach: self.reach,

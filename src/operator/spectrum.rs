@@ -16,10 +16,14 @@ use std::mem::take;
 use super::fft::{Complex, Real};
 use crate::error::Result;
 use crate::influence::SYMMETRY;
-use crate::memory::{computed, keep};
+use crate::memory::{blank, keep};
+use crate::threads::Threads;
 
 /// What memory is for.
 pub(super) const SPECTRUM: &str = "the operator's spectrum";
+
+/// Values that are converted at a time.
+const PIECE: usize = 1 << 12;
 
 /// The spectrum, the normalisation folded in. Real ones have an even number of columns: the last may be there twice.
 pub(super) enum Spectrum<T: Real> {
@@ -47,18 +51,18 @@ pub(super) fn is_coarse<T: Real>() -> bool {
 
 impl<T: Real> Spectrum<T> {
     /// The same in another precision, times a factor.
-    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Spectrum<S>> {
+    pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Spectrum<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
-        let real = |from: &[T]| computed(from.iter().map(|from| convert(*from)), SPECTRUM);
+        let real = |from: &[T]| converted(from, |from| convert(*from), S::nan(), threads);
         Ok(match self {
             Spectrum::Even(from) => Spectrum::Even(real(from)?),
             Spectrum::Symmetric(from) => Spectrum::Symmetric(real(from)?),
             Spectrum::General(from, true) if is_coarse::<S>() => {
-                Spectrum::Symmetric(computed(from.iter().map(|from| convert(from.re)), SPECTRUM)?)
+                Spectrum::Symmetric(converted(from, |from| convert(from.re), S::nan(), threads)?)
             }
             Spectrum::General(from, symmetric) => {
                 let convert = |from: &Complex<T>| Complex::new(convert(from.re), convert(from.im));
-                Spectrum::General(computed(from.iter().map(convert), SPECTRUM)?, *symmetric)
+                Spectrum::General(converted(from, convert, Complex::new(S::nan(), S::nan()), threads)?, *symmetric)
             }
         })
     }
@@ -139,4 +143,21 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
             upper[k] = Complex::new(value.re * factor, value.im * factor);
         }
     }
+}
+
+/// A spectrum made of another one.
+fn converted<A: Sync, B: Copy + Send + 'static>(
+    from: &[A],
+    convert: impl Fn(&A) -> B + Sync + Send,
+    mark: B,
+    threads: &Threads,
+) -> Result<Vec<B>> {
+    let mut converted = blank(from.len(), mark, SPECTRUM)?;
+    threads.for_a_pass(from.len()).for_each_plain_row(
+        &mut converted,
+        PIECE,
+        #[inline(always)]
+        |k, piece| piece.iter_mut().zip(&from[k * PIECE..]).for_each(|(to, from)| *to = convert(from)),
+    );
+    Ok(converted)
 }

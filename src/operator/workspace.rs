@@ -6,7 +6,7 @@ use super::fft::{Complex, Real};
 use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
 use crate::error::Result;
-use crate::memory::{blank, keep, rest, resting, zeros};
+use crate::memory::{asleep, blank, keep, rest, zeros};
 
 /// What memory is for.
 const WORKSPACE: &str = "the product's workspace";
@@ -37,11 +37,12 @@ impl<T: Real> Workspace<T> {
             Ok(Piece { row: zeros(row, WORKSPACE)?, columns: blank(columns, nan, WORKSPACE)?, scratch })
         };
         let memory = |n| zeros(n, WORKSPACE);
-        let bins = most(Operator::bins);
+        let (bins, mut product_bins) = (most(Operator::bins), Vec::new());
+        asleep(&mut product_bins, bins, nan, WORKSPACE)?;
         Ok(Workspace {
             bins,
             product: Product {
-                bins: resting(bins, nan, WORKSPACE)?,
+                bins: product_bins,
                 pieces: (0..most(Operator::pieces)).map(piece).collect::<Result<_>>()?,
             },
             masked: [memory(masked)?, memory(masked)?],

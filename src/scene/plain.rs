@@ -1,8 +1,11 @@
 //! What every scene has, and every effect may look at.
 
 use super::{Bodies, Load};
+use crate::blocks;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
+use crate::sums::least;
+use crate::threads::Threads;
 
 /// A scene without its effects.
 #[derive(Clone, Copy, Debug)]
@@ -18,37 +21,43 @@ pub struct Plain<'a> {
 }
 
 impl Plain<'_> {
-    /// Refuses distances that are none.
-    pub fn check_distance(&self) -> Result<()> {
+    /// The least distance, infinite where there is no surface at all; refuses distances that are none.
+    pub fn lowest(&self, threads: &Threads) -> Result<f64> {
         let (h, n) = (self.undeformed_distance, self.grid.len());
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));
         }
-        // NaN is not greater than anything. Of all of them first, which the compiler can vectorise.
+        // NaN is not greater than anything.
         let is_number = |v: &f64| *v > f64::NEG_INFINITY;
-        let elements = h.iter();
-        let all = pulp::Arch::new().dispatch(
+        let (lowest, all) = blocks::fold(
+            &self.grid,
+            threads,
+            (f64::INFINITY, true),
             #[inline(always)]
-            || elements.fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg()),
+            |block| {
+                // Of all of them first, which the compiler can vectorise.
+                let h = &h[block];
+                let all = h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg());
+                (least(h), all != 0)
+            },
+            |(lowest, all), (of_block, all_of_block)| (lowest.min(of_block), all & all_of_block),
         );
-        match (all == 0).then(|| h.iter().position(|v| !is_number(v))).flatten() {
+        match (!all).then(|| h.iter().position(|v| !is_number(v))).flatten() {
             Some(i) => Err(Error::NotFinite(format!(
                 "undeformed_distance of {} is {}; it must be a number, or +infinity where there is no surface",
                 self.grid.element(i),
                 h[i]
             ))),
-            None => Ok(()),
+            None => Ok(lowest),
         }
     }
 
-    /// Refuses a force that there is no surface for.
-    pub fn check_surface(&self) -> Result<()> {
+    /// Refuses a force that there is no surface for: the lowest is infinitely far.
+    pub fn check_surface(&self, lowest: f64) -> Result<()> {
         match self.load {
-            Load::Force(force) if force > 0.0 && self.undeformed_distance.iter().all(|v| v.is_infinite()) => {
-                Err(Error::Infeasible(format!(
-                    "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
-                )))
-            }
+            Load::Force(force) if force > 0.0 && lowest.is_infinite() => Err(Error::Infeasible(format!(
+                "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
+            ))),
             _ => Ok(()),
         }
     }

@@ -47,7 +47,7 @@ impl Best {
                 *p = set.limit(i);
             }
         }
-        let left = truncate(state, set);
+        let left = truncate(state, set, &task.problem.threads);
         if left > 0 || state.u_is != Freshness::Exact {
             task.problem.refresh(state, set)?;
         }

@@ -86,7 +86,7 @@ impl ByApproach<'_> {
             return Ok(false);
         }
         let pressures = task.state.p.iter().sum();
-        let is_high = pressures > wanted || task.state.carries();
+        let is_high = pressures > wanted || task.state.carries(&task.problem.threads);
         let end = if is_high { &mut self.bracket.high } else { &mut self.bracket.low };
         end.p.clone_from(&task.state.p);
         (end.approach, end.pressures) = (approach, pressures);

@@ -1,15 +1,14 @@
 //! What a solver refuses before it begins: what is not as at the set-up, a guess that is none, units out of range.
 
 use super::{Guess, InitialGuess, Method, Options, SetUp};
-use crate::contact::{self, Problem};
+use crate::contact::Problem;
 use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::scene::{Load, Scene};
 
 impl SetUp {
-    /// Refuses a scene and options that are not those of the set-up, or not solved together.
+    /// Refuses a scene, whose distance and load are checked, and options that are not those of the set-up, or not solved together.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
-        scene.check_distance_and_load()?;
         self.check_options(options)?;
         if let Some(difference) = scene.grid.differs(&problem.grid) {
             return invalid(difference);
@@ -100,12 +99,16 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
     }
 }
 
-/// Refuses units in which pressures, displacements or their squares leave the range of double precision. `fixed`: a contact
-/// area that is given.
-pub fn range(scene: &Scene<'_>, problem: &Problem, largest: f64, fixed: Option<Guess<'_>>) -> Result<()> {
+/// Refuses units in which pressures, displacements or their squares leave the range of double precision. `lowest`: the least distance; `fixed`:
+/// a contact area that is given.
+pub fn range(
+    (scene, lowest): (&Scene<'_>, f64),
+    problem: &Problem,
+    largest: f64,
+    fixed: Option<Guess<'_>>,
+) -> Result<()> {
     let influence = problem.self_influence();
     let h = scene.undeformed_distance;
-    let lowest = contact::lowest(h);
     // The largest on the given contact area.
     let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
         let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());

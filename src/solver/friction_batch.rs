@@ -68,7 +68,7 @@ pub fn solve_friction_batch(
     mut progress: Option<ProgressCallback<'_>>,
     found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
 ) -> Result<(Outcome, Report)> {
-    scene.check()?;
+    scene.check(&Threads::One)?;
     options.check()?;
     let Some(friction) = &scene.friction else {
         return invalid("friction is not given: there is nothing to solve".into());
@@ -86,9 +86,9 @@ pub fn solve_friction_batch(
         }
         None => {
             let normal = Scene { friction: None, ..scene.clone() };
-            let mut new = Solver::new(&normal, options)?;
+            let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-            let (stop, report) = new.solve(&normal, options, None, watch)?;
+            let (stop, report) = new.solve_checked((&normal, lowest), options, None, watch)?;
             solver = new;
             (stop, report, &solver.state().p[..])
         }

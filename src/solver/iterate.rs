@@ -40,7 +40,7 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // (4.1), the certificate, (4.2)
-        let left = if habits.exchanged_by_loop { truncate(task.state, set) } else { 0 };
+        let left = if habits.exchanged_by_loop { truncate(task.state, set, &task.problem.threads) } else { 0 };
         let mut survey = certify(task, &change, left)?;
         let violation = survey.violation(set);
         let (mut entered, mut last) = (0, survey);
@@ -58,7 +58,10 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.state.carries() {
+        if task.state.u_is == Freshness::Exact
+            && goal.holds(&survey, change.update, set)
+            && task.state.carries(&task.problem.threads)
+        {
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
@@ -100,7 +103,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     if left > 0 || task.state.u_is == Freshness::Stale {
         task.refresh()?;
     } else {
-        task.state.fit_approach();
+        task.state.fit_approach(&task.problem.threads);
     }
     let mut survey = task.survey();
     if task.state.u_is == Freshness::Near

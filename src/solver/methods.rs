@@ -108,7 +108,7 @@ impl Methods {
     ) -> Result<Option<bool>> {
         let Some(survey) = survey else { return Ok(Some(true)) };
         let (state, set) = (&mut *task.state, task.set);
-        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries() {
+        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries(&task.problem.threads) {
             task.monitor.survey = Some(survey);
             return Ok(None);
         }

@@ -108,17 +108,23 @@ struct SetUp {
 
 /// Solves one scene.
 pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, Report)> {
-    let mut solver = Solver::new(scene, options)?;
-    let (stop, report) = solver.solve(scene, options, None, None)?;
+    let (mut solver, lowest) = Solver::for_scene(scene, options)?;
+    let (stop, report) = solver.solve_checked((scene, lowest), options, None, None)?;
     Ok((solver, stop, report))
 }
 
 impl Solver {
     /// Sets up operators and grids; of `scene` the grid, the bodies and the influence coefficients matter.
     pub fn new(scene: &Scene<'_>, options: &Options) -> Result<Solver> {
+        Ok(Solver::for_scene(scene, options)?.0)
+    }
+
+    /// The same, and the least distance of the scene, which is checked.
+    pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
         let began = Instant::now();
-        scene.check()?;
-        options.check()?;
+        let threads = options.check().and_then(|()| Threads::new(options.threads));
+        let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
+        let threads = threads?;
         let influence = scene.coefficients()?;
         let set_up = SetUp {
             named: Named::new(scene),
@@ -129,9 +135,9 @@ impl Solver {
             largest_influence: influence.largest(&scene.grid),
             options: *options,
         };
-        let mut solver = Solver::of(scene.grid, influence, set_up, &Threads::new(options.threads)?)?;
+        let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
         solver.setup_seconds = began.elapsed().as_secs_f64();
-        Ok(solver)
+        Ok((solver, lowest))
     }
 
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
@@ -160,12 +166,24 @@ impl Solver {
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
+        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
+        self.solve_checked((scene, lowest), options, guess, progress)
+    }
+
+    /// The same for a scene whose distance and load are checked, with its least distance.
+    pub(crate) fn solve_checked(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, guess)?;
         let given_contact = guess.filter(|_| options.is_fixed());
-        check::range(scene, &self.problem, self.set_up.largest_influence, given_contact)?;
+        check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = self.solve_normal(scene, options, guess, &mut monitor).and_then(|(stop, tolerance)| {
+        let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
             let (stop, found) = self.solve_friction(scene, options, stop, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {

@@ -2,7 +2,7 @@
 
 use super::best::Best;
 use super::iterate::iterate;
-use crate::contact::{AdmissibleSet, NonNegative, Problem, State};
+use crate::contact::{lowest, AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
 use crate::memory::blank;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
@@ -58,7 +58,7 @@ impl FullMultigrid {
             task.state.start(task.problem.self_influence());
             return Ok(());
         }
-        let highest = task.state.out_of_reach(task.problem.self_influence());
+        let highest = task.state.out_of_reach(task.lowest, task.problem.self_influence());
         self.restrict(task.state, highest);
         for l in (0..count).rev() {
             if !task.monitor.is_cancelled() {
@@ -106,7 +106,8 @@ impl FullMultigrid {
         let cycles =
             if coarsest { goal.max_cycles.max(COARSEST_ITERATIONS) } else { goal.max_cycles.min(COARSE_CYCLES) };
         let goal = Goal { max_cycles: cycles, ..*goal };
-        let mut task = Task { problem, state, set: NonNegative, goal, monitor };
+        let lowest = lowest(&state.h);
+        let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor };
         let stop = if coarsest {
             task.state.start(task.problem.self_influence());
             iterate(norm, &mut task, best)?

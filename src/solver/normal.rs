@@ -11,25 +11,25 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::{PressureLimit, Scene};
 
 impl Solver {
-    /// The normal problem, on the set of pressures that the scene allows.
+    /// The normal problem, on the set of pressures that the scene allows. `lowest`: the least distance.
     pub(super) fn solve_normal(
         &mut self,
-        scene: &Scene<'_>,
+        (scene, lowest): (&Scene<'_>, f64),
         options: &Options,
         guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, f64)> {
         match scene.pressure_limit {
-            _ if options.is_fixed() => self.run(scene, Fixed, options, guess, monitor),
-            None => self.run(scene, NonNegative, options, guess, monitor),
-            Some(limit) => self.run_limited(scene, limit, options, guess, monitor),
+            _ if options.is_fixed() => self.run((scene, lowest), Fixed, options, guess, monitor),
+            None => self.run((scene, lowest), NonNegative, options, guess, monitor),
+            Some(limit) => self.run_limited((scene, lowest), limit, options, guess, monitor),
         }
     }
 
     /// With limits, of which a copy is made: a callback may write into the caller's.
     fn run_limited(
         &mut self,
-        scene: &Scene<'_>,
+        (scene, lowest): (&Scene<'_>, f64),
         limit: PressureLimit<'_>,
         options: &Options,
         guess: Option<Guess<'_>>,
@@ -49,7 +49,7 @@ impl Solver {
                 PressureLimit::PerElement(&limits)
             }
         };
-        let mut outcome = self.run(scene, set, options, guess, monitor);
+        let mut outcome = self.run((scene, lowest), set, options, guess, monitor);
         // An element that e hardly holds at its limit is there by the rounding of an equal pressure.
         let on_the_way = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
@@ -62,11 +62,11 @@ impl Solver {
             monitor.ledger.rows.clear();
             monitor.enter_grid();
             self.methods.forget_iterates();
-            outcome = self.run(scene, NonNegative, options, guess, monitor);
+            outcome = self.run((scene, lowest), NonNegative, options, guess, monitor);
             if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
                 monitor.ledger.rows.clear();
                 monitor.enter_grid();
-                outcome = self.run(scene, set, options, guess, monitor);
+                outcome = self.run((scene, lowest), set, options, guess, monitor);
             }
         }
         self.limits = limits;
@@ -76,7 +76,7 @@ impl Solver {
     /// Solves on an admissible set. Returns the tolerance that was aimed at, too.
     fn run<S: AdmissibleSet>(
         &mut self,
-        scene: &Scene<'_>,
+        (scene, lowest): (&Scene<'_>, f64),
         set: S,
         options: &Options,
         guess: Option<Guess<'_>>,
@@ -94,8 +94,8 @@ impl Solver {
             methods.projected_cg.forget_solutions();
         }
         let (from, survey) = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
-        let mut task = Task { problem, state, set, goal: options.goal(), monitor };
-        let stop = if take_over::is_without_contact(task.state, S::FIXED) {
+        let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
+        let stop = if take_over::is_without_contact(task.state, lowest, S::FIXED) {
             Outcome::Converged
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?

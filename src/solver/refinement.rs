@@ -16,6 +16,7 @@ use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
 use crate::scene::{refine, sample, Scene};
+use crate::threads::Threads;
 use next_grid::{Next, Past};
 use outlook::Outlook;
 
@@ -156,7 +157,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
         scene.bodies.check()?;
         return scene.load.check();
     }
-    scene.check()
+    scene.check(&Threads::One).map(drop)
 }
 
 /// The grid over the same rectangle with twice the elements in both directions, so many times; with half of them if the number is
@@ -205,13 +206,13 @@ fn on_grid(
         Error::NotFinite(message) if surface.is_some() => Error::NotFinite(format!("surface: {message}")),
         other => other,
     };
-    let mut solver = Solver::new(&scene, options).map_err(said)?;
+    let (mut solver, lowest) = Solver::for_scene(&scene, options).map_err(said)?;
     let mut is_late = false;
     let mut watch = |told: &Progress| {
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    let (stop, report) = solver.solve(&scene, options, None, Some(&mut watch))?;
+    let (stop, report) = solver.solve_checked((&scene, lowest), options, None, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let solved = Solved { solver, report, outlook };
     Ok(match stop {

@@ -203,7 +203,8 @@ impl Solver {
         };
         let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: MOST };
-        let mut task = Task { problem: &mut self.problem, state, set: NonNegative, goal, monitor: &mut own };
+        let lowest = lowest(&state.h);
+        let mut task = Task { problem: &mut self.problem, state, lowest, set: NonNegative, goal, monitor: &mut own };
         let method = &mut self.methods.projected_cg;
         match begun {
             // Its displacements are those of sums of directions in single precision.

@@ -1,7 +1,7 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
 use super::{Guess, InitialGuess, Options};
-use crate::contact::{lowest, AdmissibleSet, Freshness, Problem, State, Survey};
+use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::Monitor;
@@ -132,18 +132,17 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -
     if state.u_is != Freshness::Exact {
         return problem.refresh(state, set);
     }
-    match state.carry_force(set) {
+    match state.carry_force(set, &problem.threads) {
         Some(1.0) => {}
         Some(factor) => state.u.iter_mut().for_each(|u| *u *= factor),
         None => return problem.refresh(state, set),
     }
-    state.fit_approach();
+    state.fit_approach(&problem.threads);
     Ok(())
 }
 
-/// Whether nothing touches: no force, or no element penetrated by the approach. Then p = 0 solves the problem.
-pub fn is_without_contact(state: &mut State, fixed: bool) -> bool {
-    let lowest = lowest(&state.h);
+/// Whether nothing touches: no force, or no element penetrated by the approach, not even one of the `lowest` distance. Then p = 0 solves the problem.
+pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     let nothing = match state.load {
         Load::Approach(approach) => !fixed && lowest > approach,
         Load::Force(force) => !fixed && force == 0.0,

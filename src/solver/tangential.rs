@@ -196,7 +196,7 @@ pub fn solve_tangential(
     options: &Options,
     progress: Option<ProgressCallback<'_>>,
 ) -> Result<(Outcome, Solution, super::Report)> {
-    scene.check()?;
+    scene.check(&Threads::One)?;
     options.check()?;
     let Some(friction) = &scene.friction else {
         return invalid("friction is not given: there is nothing to solve".into());

@@ -3,7 +3,7 @@
 use super::superposition::Smaller;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Options, Solver};
-use crate::contact::{Fixed, NonNegative, Survey};
+use crate::contact::{lowest, Fixed, NonNegative, Survey};
 use crate::error::Result;
 use crate::friction::{self, Start};
 use crate::progress::{Monitor, Outcome};
@@ -76,7 +76,7 @@ impl Solver {
             monitor.ledger.rows.pop();
             monitor.enter_grid();
             let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
-            (stop, _) = self.solve_normal(&scene, &options, None, monitor)?;
+            (stop, _) = self.solve_normal((&scene, lowest(distance)), &options, None, monitor)?;
             let (products, seconds) = (found.products, found.seconds);
             (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, Start::Again, monitor)?;
             (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
@@ -90,7 +90,7 @@ impl Solver {
     fn holds_with(&mut self, distance: &[f64], change: f64, turn: &Turn<'_>, monitor: &mut Monitor<'_>) -> bool {
         let Solver { problem, state, .. } = self;
         state.h.copy_from_slice(distance);
-        state.fit_approach();
+        state.fit_approach(&problem.threads);
         let survey = Survey::by(state, &problem.threads);
         let goal = turn.options.goal();
         let holds = match turn.scene.pressure_limit {

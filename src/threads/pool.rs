@@ -3,8 +3,8 @@
 //! Each is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads
 //! that are not there; so does an operator that was set up before the fork.
 //!
-//! *Between two passes* workers look for work for a while before they sleep: a solve has hundreds of passes of some 10 to 1000 us, and
-//! waking a thread that sleeps takes some 50. They do not yield their core meanwhile (docs/notes/2026-11-performance-targets.md).
+//! *Between two passes* workers look for work for a while before they sleep: a solve has hundreds of passes of some 10 to 1000 us, with work of
+//! one thread between them, and waking a thread that sleeps takes some 50. They do not yield their core meanwhile (docs/notes/2026-11-performance-targets.md).
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,7 +24,7 @@ pub struct Pool {
 }
 
 /// So long workers look for more work before they sleep, and a caller for the end of theirs.
-const AWAKE: Duration = Duration::from_micros(60);
+const AWAKE: Duration = Duration::from_micros(150);
 
 /// Prefix of the names of our threads.
 pub(crate) const THREAD_NAME: &str = "contact-normal-";

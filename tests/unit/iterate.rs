@@ -1,8 +1,7 @@
 //! Unit tests of `solver/iterate.rs`.
 
 use super::*;
-use crate::contact::NonNegative;
-use crate::contact::{Problem, State};
+use crate::contact::{lowest, NonNegative, Problem, State};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace};
 use crate::methods::descent::Descent;
@@ -28,7 +27,8 @@ fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Outcome {
     let (mut best, mut monitor) = (Best::default(), Monitor::silent());
     best.forget();
     let mut descent = Descent::default();
-    let mut task = Task { problem, state, set: NonNegative, goal, monitor: &mut monitor };
+    let lowest = lowest(&state.h);
+    let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut monitor };
     iterate(&mut descent, &mut task, &mut best).expect("a solve")
 }
 

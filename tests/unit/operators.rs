@@ -141,7 +141,11 @@ fn no_bit_depends_on_the_products_before() {
 fn what_is_loaded_is_found() {
     let grid = grid();
     for (name, columns, rows, _) in cases() {
-        assert_eq!(loaded(&pressures(&grid, columns.clone(), rows.clone()), grid.mx), Some((columns, rows)), "{name}");
+        assert_eq!(
+            loaded(&pressures(&grid, columns.clone(), rows.clone()), &grid, &Threads::One),
+            Some((columns, rows)),
+            "{name}"
+        );
     }
-    assert_eq!(loaded(&vec![0.0; grid.len()], grid.mx), None);
+    assert_eq!(loaded(&vec![0.0; grid.len()], &grid, &Threads::One), None);
 }

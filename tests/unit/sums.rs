@@ -1,6 +1,6 @@
-//! Sums in lanes against a loop over the elements: of whole numbers, which are added without rounding.
+//! Sums in lanes, and the least value, against a loop over the elements: of whole numbers, which are added without rounding.
 
-use super::Sums;
+use super::{least, sum_where, Sums};
 
 #[test]
 fn sums_are_those_of_all_elements() {
@@ -33,4 +33,29 @@ fn some_of_the_sums() {
     sums.add_from::<f64, 1, 0, 2>(0, [&values], [], |[a], []| [1.0, a]);
     sums.add_from::<f64, 1, 0, 2>(1, [&values], [], |[a], []| [a, a * a]);
     assert_eq!(sums.values(), [9.0, 90.0, 285.0]);
+}
+
+#[test]
+fn the_least_of_all_values() {
+    assert_eq!(least(&[]), f64::INFINITY);
+    for n in 1..=23 {
+        for at in 0..n {
+            let mut values: Vec<f64> = (0..n).map(|i| (i * i % 17) as f64).collect();
+            values[at] = -3.0;
+            assert_eq!(least(&values), -3.0, "{n} values");
+        }
+    }
+}
+
+#[test]
+fn sums_where_it_counts() {
+    for n in 0..=23 {
+        let counts: Vec<bool> = (0..n).map(|i| i % 3 == 1).collect();
+        // No surface where it does not count.
+        let a: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { i as f64 } else { f64::INFINITY }).collect();
+        let b: Vec<f64> = (0..n).map(|i| (7 * i % 11) as f64).collect();
+        let those = || (0..n).filter(|i| i % 3 == 1);
+        let expected = (those().map(|i| a[i] + b[i]).sum(), those().count() as u64);
+        assert_eq!(sum_where(&a, &b, &counts), expected, "{n} values");
+    }
 }

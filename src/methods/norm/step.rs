@@ -101,12 +101,12 @@ impl Norm {
         let (state, set) = (&mut *task.state, task.set);
         if self.guard.allows_all(violators(state, set)) {
             admit(state, set);
-            truncate(state, set);
+            truncate(state, set, &task.problem.threads);
             return Ok(true);
         }
         self.before.keep(state);
         self.u_before.clone_from(&state.u);
-        truncate(state, set);
+        truncate(state, set, &task.problem.threads);
         task.refresh()?;
         self.next = Next::ExchangeOne;
         Ok(false)
@@ -154,12 +154,12 @@ fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
             let even = missing / state.contact_count() as f64;
             state.p.iter_mut().zip(&state.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += even);
         }
-        Load::Force(_) if S::LIMITED && !beside_limits => _ = state.balance_force(),
-        _ => _ = state.carry_force(*set),
+        Load::Force(_) if S::LIMITED && !beside_limits => _ = state.balance_force(&problem.threads),
+        _ => _ = state.carry_force(*set, &problem.threads),
     }
     problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;
-    state.fit_approach();
+    state.fit_approach(&problem.threads);
     Ok(())
 }
 

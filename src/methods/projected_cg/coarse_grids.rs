@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use super::level::Level;
 use super::End;
-use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
+use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -51,6 +51,8 @@ pub struct CoarseGrids {
     threads: Threads,
     /// Whether the coefficients are those of the finest grid now.
     are_current: bool,
+    /// What the last start found on the finest of them.
+    found: Survey,
 }
 
 impl CoarseGrids {
@@ -69,7 +71,8 @@ impl CoarseGrids {
                 limits: Vec::new(),
             });
         }
-        Ok(CoarseGrids { finest: grid.len(), grids, threads: threads.clone(), are_current: true })
+        let (finest, threads) = (grid.len(), threads.clone());
+        Ok(CoarseGrids { finest, grids, threads, are_current: true, found: Survey::default() })
     }
 
     /// The finest grid has other coefficients.
@@ -105,7 +108,7 @@ impl CoarseGrids {
     /// Solves on the coarser grids; the task's state gets what they found. Returns what its u is.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Freshness> {
         let (count, self_influence) = (self.grids.len(), task.problem.self_influence());
-        let Task { state: fine, set, goal, monitor, .. } = task;
+        let Task { state: fine, lowest, set, goal, monitor, .. } = task;
         if count == 0 {
             // A guess that was worth nothing is gone.
             fine.p.fill(0.0);
@@ -113,24 +116,28 @@ impl CoarseGrids {
             fine.start(self_influence);
             return Ok(Freshness::Stale);
         }
-        let highest = self.restrict(fine, *set, self_influence)?;
+        let highest = fine.out_of_reach(*lowest, self_influence);
+        self.restrict(fine, *set, highest)?;
         let coarsest = &mut self.grids[count - 1];
         coarsest.state.p.fill(0.0);
         coarsest.state.start(coarsest.level.self_influence());
-        coarsest.state.carry_force(S::within(&coarsest.limits));
+        coarsest.state.carry_force(S::within(&coarsest.limits), &self.threads);
         let (mut displacement, threads) = (Freshness::Stale, self.threads.clone());
         for l in (0..count).rev() {
             let known = !monitor.is_cancelled();
             if known {
                 monitor.enter_grid();
                 self.iterate::<S>(l, displacement, goal, monitor)?;
+                self.found = Survey::by(&self.grids[l].state, &threads);
+                monitor.survey = Some(self.found);
                 monitor.close_grid(&self.grids[l].state);
                 displacement = Freshness::Near;
             }
             let finer_influence = if l > 0 { self.grids[l - 1].level.self_influence() } else { self_influence };
+            let found = self.found;
             let (to, from) = self.pair(l, fine);
             to.reached_limit |= from.state.reached_limit;
-            if known && residual_norm(&from.state) <= norm_of_distance(&from.state) {
+            if known && found.residual <= found.distance {
                 prolong(&from.state, to, highest, &threads);
             } else {
                 to.p.fill(0.0);
@@ -153,9 +160,9 @@ impl CoarseGrids {
         Ok(displacement)
     }
 
-    /// The distances, the load and the limits of all coarser grids. Returns the distance above which elements are out of reach.
-    fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, self_influence: f64) -> Result<f64> {
-        let (highest, threads) = (fine.out_of_reach(self_influence), self.threads.clone());
+    /// The distances, the load and the limits of all coarser grids. Elements above `highest` are out of reach.
+    fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, highest: f64) -> Result<()> {
+        let threads = self.threads.clone();
         for l in 0..self.grids.len() {
             let (from, to) = self.pair(l, fine);
             transfer::restrict_distance(&from.grid, &to.state.grid, &from.h, highest, &mut to.state.h, &threads);
@@ -169,22 +176,17 @@ impl CoarseGrids {
         if S::LIMITED {
             self.restrict_limits(fine, set)?;
         }
-        Ok(highest)
+        Ok(())
     }
 
-    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over C). Errors of
-    /// `EPSILON u` that change from element to element, all wave numbers k alike, take pressures of `E* |k|/2` times themselves.
-    pub fn noise(&self, fine: &Problem) -> f64 {
-        let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
-        let (mut deepest, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
-        for i in (0..state.p.len()).filter(|&i| state.contact[i]) {
-            deepest = deepest.max(state.approach - state.h[i]);
-            squares += state.p[i] * state.p[i];
-            count += 1.0;
-        }
+    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over C): `state` is what it starts from,
+    /// `lowest` the least of its distances. Errors of `EPSILON u` that change from element to element, all wave numbers k alike, take pressures
+    /// of `E* |k|/2` times themselves.
+    pub fn noise(&self, fine: &Problem, state: &State, lowest: f64) -> f64 {
+        let (deepest, Survey { squares, contact_count, .. }) = (state.approach - lowest, self.found);
         let wave_number = (PI * PI / 3.0).sqrt() * (1.0 / fine.grid.dx).hypot(1.0 / fine.grid.dy);
         let modulus = fine.grid.modulus(fine.self_influence());
-        f64::from(f32::EPSILON) * deepest * 0.5 * modulus * wave_number / f64::sqrt(squares / count)
+        f64::from(f32::EPSILON) * deepest * 0.5 * modulus * wave_number / f64::sqrt(squares / contact_count as f64)
     }
 
     /// Some iterations on grid `l`.

@@ -30,38 +30,27 @@ impl<T: Real> Iteration<T> {
             });
             set.leaves(i, to(p, t, d)) | (held_back & !S::FIXED)
         };
-        // Blocks that no element leaves; the others have a sum of 1.
-        let [_] = self.runs.sum_changing(
+        self.runs.list_changing(
             &mut state.p,
             #[inline(always)]
-            |block, p, sums| {
+            |block, p, left| {
                 for (run, local) in block.runs() {
-                    let elements = p[local].iter().zip(&t[run.clone()]).zip(&d[run.clone()]).zip(run);
-                    if elements.fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d)) {
-                        return sums.add_one([1.0]);
+                    let chunks = t[run.clone()].chunks(CHUNK).zip(d[run.clone()].chunks(CHUNK));
+                    for ((p, (t, d)), first) in p[local].chunks_mut(CHUNK).zip(chunks).zip(run.step_by(CHUNK)) {
+                        let elements = || p.iter().zip(t).zip(d).zip(first..);
+                        // Few elements leave, at the rim: the others the compiler can vectorise.
+                        if elements().fold(false, |some, (((p, t), d), i)| some | leaves(i, *p, *t, *d)) {
+                            let leaving = elements().filter(|(((p, t), d), i)| leaves(*i, **p, **t, **d));
+                            left.extend(leaving.map(|(_, i)| i as u32));
+                        }
+                        p.iter_mut().zip(t).zip(d).for_each(|((p, t), d)| *p = to(*p, *t, *d));
                     }
-                }
-                for (run, local) in block.runs() {
-                    p[local].iter_mut().zip(&t[run.clone()]).zip(&d[run]).for_each(|((p, t), d)| *p = to(*p, *t, *d));
                 }
             },
         );
         let before = self.debts.len();
-        // Of these few elements leave, at the rim: the others the compiler can vectorise.
-        for chunk in self.runs.pieces_of_blocks_with_sum(CHUNK) {
-            let (p, t, d) = (&mut state.p[chunk.clone()], &t[chunk.clone()], &d[chunk.clone()]);
-            let some_leave = |some, (((p, t), d), i): (((&f64, &T), &T), usize)| some | leaves(i, *p, *t, *d);
-            if !p.iter().zip(t).zip(d).zip(chunk.clone()).fold(false, some_leave) {
-                p.iter_mut().zip(t).zip(d).for_each(|((p, t), d)| *p = to(*p, *t, *d));
-                continue;
-            }
-            for (i, (t, d)) in chunk.zip(t.iter().zip(d)) {
-                let p = state.p[i];
-                state.p[i] = to(p, *t, *d);
-                if leaves(i, p, *t, *d) {
-                    self.debts.push((i, leave(state, set, i, *t > T::zero())));
-                }
-            }
+        for i in self.runs.listed() {
+            self.debts.push((i, leave(state, set, i, self.t[i] > T::zero())));
         }
         for &(i, _) in &self.debts[before..] {
             self.t[i] = T::zero();

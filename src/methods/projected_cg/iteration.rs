@@ -87,11 +87,12 @@ impl<T: Real> Iteration<T> {
         self.known.forget();
         if self.preconditioner.is_some() {
             self.limits.forget();
+            self.forget_directions(state.grid.mx);
             self.find_contact(state);
             let mut update = Update::default();
             self.least_energy::<S>(state, &mut update, None);
             if S::LIMITED && state.has_limited() {
-                state.fit_approach();
+                state.fit_approach(&self.threads);
             } else {
                 self.fit_approach(state, &update);
             }
@@ -102,7 +103,7 @@ impl<T: Real> Iteration<T> {
             self.direct(state, 0.0, None);
             self.update_pressures(state, set, (FIRST_STEP, 0.0), None);
             self.debts.clear();
-            state.carry_force(set);
+            state.carry_force(set, &self.threads);
         }
     }
 
@@ -152,8 +153,7 @@ impl<T: Real> Iteration<T> {
 
     /// 4.1 and 4.2 before the first iteration.
     fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Search {
-        self.t.fill(T::zero());
-        self.q.fill(T::zero());
+        self.forget_directions(state.grid.mx);
         self.debts.clear();
         self.find_contact(state);
         let mut update = Update::default();

@@ -115,7 +115,7 @@ impl Level {
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
         if displacement != Freshness::Exact {
-            state.carry_force(set);
+            state.carry_force(set, &self.threads);
         }
         let whole = self.grid;
         self.on_window(state, set, displacement, |inner, window, units, state, set| {
@@ -139,7 +139,7 @@ impl Level {
 
     /// Improves p where u is near A p, without a product; u is not known afterwards.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
-        state.carry_force(set);
+        state.carry_force(set, &self.threads);
         self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| {
             in_either!(inner, inner => inner.correct(state, set));
         })
@@ -197,7 +197,7 @@ impl Level {
     pub fn window(&self, state: &State) -> Window {
         let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
         match self.influence.depends_on_place() {
-            false => Window::around(state, current, self.influence.is_even(&self.grid)),
+            false => Window::around(state, current, self.influence.is_even(&self.grid), &self.threads),
             true => Window::full(&self.grid),
         }
     }

@@ -1,6 +1,7 @@
 //! Scaling for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
 //! powers of two, so that they change no digit.
 
+use crate::blocks;
 use crate::contact::State;
 use crate::scene::Load;
 use crate::threads::Threads;
@@ -8,10 +9,6 @@ use crate::threads::Threads;
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
 /// room in the range 2^-126 to 2^127 then.
 const AS_IT_IS: i32 = 48;
-/// Blocks of rows that threads share at most, and elements of a block at least.
-const BLOCKS: usize = 64;
-const LEAST: usize = 512;
-
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
@@ -65,18 +62,14 @@ impl Scaling {
 
 /// The largest |h - approach| of elements in contact, or below the approach: found for each block of rows, then among the blocks.
 fn farthest(state: &State, threads: &Threads) -> f64 {
-    let (approach, n) = (state.approach, state.h.len());
-    let length = state.grid.rows_of_blocks(BLOCKS, LEAST) * state.grid.mx;
-    let mut of_blocks = [0.0; BLOCKS];
-    threads.for_a_pass(n).for_each(
-        &mut of_blocks[..n.div_ceil(length)],
+    blocks::fold(
+        &state.grid,
+        threads,
+        0.0,
         #[inline(always)]
-        |b, of_block| {
-            let block = b * length..((b + 1) * length).min(n);
-            *of_block = farthest_of(&state.h[block.clone()], &state.contact[block], approach);
-        },
-    );
-    of_blocks.into_iter().fold(0.0, larger)
+        |block| farthest_of(&state.h[block.clone()], &state.contact[block], state.approach),
+        larger,
+    )
 }
 
 /// That of a block, several at a time: that the compiler can vectorise.

@@ -32,6 +32,8 @@ pub struct Segments {
     /// How often it was found anew.
     version: u64,
     sums: Vec<[f64; MOST_SUMS]>,
+    /// Elements of each block.
+    listed: Vec<Vec<u32>>,
     threads: Threads,
 }
 
@@ -52,13 +54,15 @@ impl Segments {
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
         let rows = grid.rows_of_blocks(BLOCKS, LEAST);
         let blocks = grid.my.div_ceil(rows);
-        let mut found = Vec::new();
+        let (mut found, mut listed) = (Vec::new(), vec![Vec::new(); blocks]);
         found.resize_with(blocks, Found::default);
-        for block in &mut found {
+        for (block, listed) in found.iter_mut().zip(&mut listed) {
             reserve(&mut block.runs, rows * grid.mx.div_ceil(2), "the contact area")?;
+            reserve(listed, rows * grid.mx, "the contact area")?;
         }
         let sums = vec![[0.0; MOST_SUMS]; blocks];
-        Ok(Segments { mx: grid.mx, block: rows * grid.mx, found, count: 0, version: 0, sums, threads: threads.clone() })
+        let (mx, block, threads) = (grid.mx, rows * grid.mx, threads.clone());
+        Ok(Segments { mx, block, found, count: 0, version: 0, sums, listed, threads })
     }
 
     /// Number of elements in contact.
@@ -132,6 +136,31 @@ impl Segments {
         self.total()
     }
 
+    /// Changes the elements of `data`: `work(runs, the block's part of data, elements)` lists elements, which [`listed`](Self::listed) gives.
+    pub fn list_changing<A: Send>(
+        &mut self,
+        data: &mut [A],
+        work: impl Fn(Block<'_>, &mut [A], &mut Vec<u32>) + Sync + Send,
+    ) {
+        let (found, block) = (&self.found, self.block);
+        let (data, listed) = ((data, block), (&mut self.listed[..], 1));
+        self.threads.for_each_row_pair(
+            data,
+            listed,
+            #[inline(always)]
+            |b, data, listed| {
+                listed[0].clear();
+                let block = Block { start: b * block, runs: &found[b].runs };
+                work(block, data, &mut listed[0]);
+            },
+        );
+    }
+
+    /// The elements that the last pass listed, in the order of the blocks.
+    pub fn listed(&self) -> impl Iterator<Item = usize> + '_ {
+        self.listed.iter().flatten().map(|&i| i as usize)
+    }
+
     /// As [`sum`](Self::sum), changing the elements of `data` on the way: `work(runs, the block's part of data, sums)`.
     pub fn sum_changing<A: Send, const K: usize>(
         &mut self,
@@ -154,13 +183,6 @@ impl Segments {
         self.total()
     }
 
-    /// The runs of the blocks whose first sum of the last pass was not 0, cut into pieces of at most so many elements.
-    pub fn pieces_of_blocks_with_sum(&self, most: usize) -> impl Iterator<Item = Range<usize>> + '_ {
-        let blocks = self.found.iter().zip(&self.sums).filter(|(_, sums)| sums[0] != 0.0);
-        let runs = blocks.flat_map(|(block, _)| &block.runs).map(|&(start, end)| start as usize..end as usize);
-        runs.flat_map(move |run| run.clone().step_by(most).map(move |start| start..run.end.min(start + most)))
-    }
-
     fn total<const K: usize>(&self) -> [f64; K] {
         let mut total = [0.0; K];
         for sums in &self.sums {
@@ -173,6 +195,7 @@ impl Segments {
 impl Drop for Segments {
     fn drop(&mut self) {
         self.found.iter_mut().for_each(|block| keep([&mut block.runs]));
+        self.listed.iter_mut().for_each(|listed| keep([listed]));
     }
 }
 

@@ -11,7 +11,7 @@ use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::{keep, rest, wake};
+use crate::memory::{asleep, keep, rest, wake};
 use crate::operator::fft::Real;
 use crate::operator::{reserve, Operator, SetUp, Workspace};
 use crate::progress::Goal;
@@ -64,6 +64,9 @@ impl<T: Real> Operators<T> {
     }
 }
 
+/// What memory is for.
+const DIRECTIONS: &str = "search directions";
+
 /// Operator, preconditioner and directions of one grid.
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
@@ -95,7 +98,7 @@ impl<T: Real> Iteration<T> {
         let threads = &threads.for_a_pass(n);
         let directions = || {
             let mut direction = Vec::new();
-            reserve(&mut direction, n, "search directions").map(|()| direction)
+            asleep(&mut direction, n, T::nan(), DIRECTIONS).map(|()| direction)
         };
         let mut debts = Vec::new();
         reserve(&mut debts, n, "truncated elements")?;
@@ -129,7 +132,7 @@ impl<T: Real> Iteration<T> {
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
         self.runs = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
-            reserve(values, n, "search directions")?;
+            asleep(values, n, T::nan(), DIRECTIONS)?;
         }
         reserve(&mut self.debts, n, "truncated elements")?;
         self.entering.resize(grid.my, 0);
@@ -175,7 +178,7 @@ impl<T: Real> Iteration<T> {
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
         self.extension.iter_mut().for_each(|extension| extension.wake(n));
-        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::zero()));
+        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::nan()));
     }
 
     /// Bytes held.
@@ -186,6 +189,15 @@ impl<T: Real> Iteration<T> {
         let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
         let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
         products + extension + directions + self.known.bytes()
+    }
+
+    /// t and q become those of no direction.
+    pub(super) fn forget_directions(&mut self, mx: usize) {
+        let clear = |_, t: &mut [T], q: &mut [T]| {
+            t.fill(T::zero());
+            q.fill(T::zero());
+        };
+        self.threads.for_each_row_pair((&mut self.t, mx), (&mut self.q, mx), clear);
     }
 
     /// `u = A p` in the iteration's precision.

@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
+use crate::bounding_box::bounding_box;
 use crate::contact::State;
-use crate::grid::{self, Grid};
+use crate::grid::Grid;
 use crate::operator::fft::good_length;
 use crate::threads::Threads;
 
@@ -44,13 +45,13 @@ impl Window {
 
     /// The window for a contact area, with a margin of a part of its size; the whole grid where a window is not worthwhile. `even`: whether the
     /// kernel is.
-    pub fn around(state: &State, current: Option<&Window>, even: bool) -> Window {
+    pub fn around(state: &State, current: Option<&Window>, even: bool, threads: &Threads) -> Window {
         let grid = &state.grid;
         let full = Window::full(grid);
         if grid.len() < SMALLEST_GRID {
             return full;
         }
-        let Some(area) = bounding_box(state) else { return full };
+        let Some(area) = area(state, threads) else { return full };
         if let Some(current) = current.filter(|current| current.holds(&area, grid)) {
             return current.clone();
         }
@@ -114,22 +115,21 @@ impl Window {
 }
 
 /// The smallest window that holds the contact area, and what is at its limit; none when it is empty.
-fn bounding_box(state: &State) -> Option<Window> {
-    let area = bounding_box_of(&state.contact, state.grid.mx);
+fn area(state: &State, threads: &Threads) -> Option<Window> {
+    let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
+    let window_of = |elements: &[bool]| {
+        let (x, y) = bounding_box(elements, &state.grid, threads, any, |inside| *inside)?;
+        Some(Window { x, y })
+    };
+    let free = window_of(&state.contact);
     if state.at_limit.is_empty() {
-        return area;
+        return free;
     }
-    match (area, bounding_box_of(&state.at_limit, state.grid.mx)) {
+    match (free, window_of(&state.at_limit)) {
         (Some(a), Some(b)) => {
             let join = |a: &Range<usize>, b: &Range<usize>| a.start.min(b.start)..a.end.max(b.end);
             Some(Window { x: join(&a.x, &b.x), y: join(&a.y, &b.y) })
         }
         (a, b) => a.or(b),
     }
-}
-
-fn bounding_box_of(elements: &[bool], mx: usize) -> Option<Window> {
-    let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
-    let (x, y) = grid::bounding_box(elements, mx, any, |inside| *inside)?;
-    Some(Window { x, y })
 }
