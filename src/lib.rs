@@ -54,6 +54,7 @@
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
 //! | [`threads`] | the pool |
+//! | `blocks`, `bounding_box`, `sums` | passes over a grid, by all threads and in vectors |
 //! | [`ffi`] | the C ABI, translation only |
 
 #![warn(missing_docs)]

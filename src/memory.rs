@@ -89,6 +89,13 @@ pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: 
     allocate(v, n, what)
 }
 
+/// The same where few of them may be put there: in small pages, so that the others take no memory.
+pub(crate) fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
+    let mut v = Vec::new();
+    v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    Ok(v)
+}
+
 /// The same from the system.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {

@@ -7,6 +7,8 @@ use std::array::from_fn;
 
 /// Parts of each sum: an addition does not wait for the one before.
 const LANES: usize = 4;
+/// The same of single sums, and of comparisons.
+const WIDE: usize = 8;
 
 /// What is added in double precision.
 pub trait Value: Copy {
@@ -92,12 +94,11 @@ impl<const K: usize> Sums<K> {
 /// The sum of `a + b` where it `counts`, and in how many places it does. Several at a time: that the compiler can vectorise.
 #[inline(always)]
 pub fn sum_where(a: &[f64], b: &[f64], counts: &[bool]) -> (f64, u64) {
-    const LANES: usize = 8;
     let term = |a: f64, b: f64, counts: bool| if counts { a + b } else { 0.0 };
-    let (a, rest_of_a) = pulp::as_arrays::<LANES, f64>(a);
-    let (b, rest_of_b) = pulp::as_arrays::<LANES, f64>(b);
-    let (lanes, rest) = pulp::as_arrays::<LANES, bool>(counts);
-    let mut sums = [0.0; LANES];
+    let (a, rest_of_a) = pulp::as_arrays::<WIDE, f64>(a);
+    let (b, rest_of_b) = pulp::as_arrays::<WIDE, f64>(b);
+    let (lanes, rest) = pulp::as_arrays::<WIDE, bool>(counts);
+    let mut sums = [0.0; WIDE];
     for ((a, b), counts) in a.iter().zip(b).zip(lanes) {
         sums = from_fn(|lane| sums[lane] + term(a[lane], b[lane], counts[lane]));
     }
@@ -106,13 +107,21 @@ pub fn sum_where(a: &[f64], b: &[f64], counts: &[bool]) -> (f64, u64) {
     (sums.iter().sum::<f64>() + of_rest.sum::<f64>(), count)
 }
 
+/// The lesser of two values; of equal ones the second, whatever the sign of a zero.
+#[inline(always)]
+pub fn lesser(a: f64, b: f64) -> f64 {
+    if a < b {
+        a
+    } else {
+        b
+    }
+}
+
 /// The least of some values that are numbers; infinite if there are none. Several at a time: that the compiler can vectorise.
 #[inline(always)]
 pub fn least(values: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let lesser = |a: f64, b: f64| if a < b { a } else { b };
-    let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
-    let mut least = [f64::INFINITY; LANES];
+    let (lanes, rest) = pulp::as_arrays::<WIDE, f64>(values);
+    let mut least = [f64::INFINITY; WIDE];
     for values in lanes {
         least = from_fn(|lane| lesser(values[lane], least[lane]));
     }

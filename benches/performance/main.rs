@@ -95,6 +95,7 @@ fn main() {
     if wanted("speedup") && threads > 1 {
         measure::by_processor(false);
         targets::speed_up(threads, sizes);
+        targets::speed_up_of_products(threads, sizes);
     }
     measure::by_processor(processor);
     if wanted("one") {

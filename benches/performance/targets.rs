@@ -145,6 +145,20 @@ pub fn speed_up(threads: usize, sizes: &[usize]) {
     }
 }
 
+/// The same for single products, of which a call makes some on each of its grids.
+pub fn speed_up_of_products(threads: usize, sizes: &[usize]) {
+    println!("\n### {threads} threads against one, a product alone\n");
+    println!("| elements | one thread | {threads} threads | ratio |");
+    println!("|---|---|---|---|");
+    for &m in [64, 128].iter().chain(sizes) {
+        let case = ellipse(m);
+        let [mut one, mut several] = [1, threads].map(|threads| Product::new(&case.scene(), threads));
+        let times = in_turns(&mut [&mut || one.run(), &mut || several.run()]);
+        let (one, several) = (median(&times[0]), median(&times[1]));
+        println!("| {m} x {m} | {} | {} | {:.2} |", shown(one), shown(several), one / several);
+    }
+}
+
 /// A cold call of one element with a table of its own.
 pub fn one_element() {
     let grid = Grid::new(1, 1, 1.0, 1.0).expect("a grid");

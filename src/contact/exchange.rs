@@ -23,8 +23,11 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) 
         |block| some_leaves(set, p, contact, block),
         |some, of_block| some | of_block,
     );
+    if !some {
+        return 0;
+    }
     let (n, mx, mut changed) = (state.p.len(), state.grid.mx, 0);
-    for row in (0..n).step_by(mx).map(|start| start..start + mx).filter(|_| some) {
+    for row in (0..n).step_by(mx).map(|start| start..start + mx) {
         if !some_leaves(set, &state.p, &state.contact, row.clone()) {
             continue;
         }

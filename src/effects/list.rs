@@ -84,7 +84,7 @@ impl Scene<'_> {
     /// Checks what changes from solve to solve. Returns the least distance.
     pub fn check_distance_and_load(&self, threads: &Threads) -> Result<f64> {
         let plain = self.plain();
-        let lowest = plain.lowest(threads)?;
+        let lowest = plain.check_distance(threads)?;
         self.load.check()?;
         effects(self).try_for_each(|effect| effect.check_load(&plain, &list(self)))?;
         plain.check_surface(lowest)?;

@@ -26,6 +26,11 @@ impl<S: AdmissibleSet> Task<'_, '_, S> {
         self.problem.refresh(self.state, self.set)
     }
 
+    /// Whether p carries a prescribed force.
+    pub fn carries(&self) -> bool {
+        self.state.carries(&self.problem.threads)
+    }
+
     /// A survey of the state, by the threads of the solve.
     pub fn survey(&self) -> Survey {
         Survey::by(self.state, &self.problem.threads)

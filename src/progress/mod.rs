@@ -79,7 +79,7 @@ pub struct Monitor<'a> {
     pub count: Counters,
     /// What was known on each grid.
     pub ledger: Ledger,
-    /// Of the state that is an answer, where it was surveyed last.
+    /// Of the state of the grid that is closed next, where it was surveyed last.
     pub survey: Option<Survey>,
 }
 

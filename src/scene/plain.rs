@@ -4,7 +4,7 @@ use super::{Bodies, Load};
 use crate::blocks;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
-use crate::sums::least;
+use crate::sums::{least, lesser};
 use crate::threads::Threads;
 
 /// A scene without its effects.
@@ -21,8 +21,8 @@ pub struct Plain<'a> {
 }
 
 impl Plain<'_> {
-    /// The least distance, infinite where there is no surface at all; refuses distances that are none.
-    pub fn lowest(&self, threads: &Threads) -> Result<f64> {
+    /// Refuses distances that are none. Returns the least, infinite where there is no surface at all.
+    pub fn check_distance(&self, threads: &Threads) -> Result<f64> {
         let (h, n) = (self.undeformed_distance, self.grid.len());
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));
@@ -40,7 +40,7 @@ impl Plain<'_> {
                 let all = h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg());
                 (least(h), all != 0)
             },
-            |(lowest, all), (of_block, all_of_block)| (lowest.min(of_block), all & all_of_block),
+            |(lowest, all), (of_block, all_of_block)| (lesser(of_block, lowest), all & all_of_block),
         );
         match (!all).then(|| h.iter().position(|v| !is_number(v))).flatten() {
             Some(i) => Err(Error::NotFinite(format!(

@@ -14,7 +14,7 @@
 
 use super::best::Best;
 use super::iterate::iterate;
-use crate::contact::{lowest, AdmissibleSet, Freshness, State};
+use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::descent::Descent;
@@ -86,7 +86,7 @@ impl ByApproach<'_> {
             return Ok(false);
         }
         let pressures = task.state.p.iter().sum();
-        let is_high = pressures > wanted || task.state.carries(&task.problem.threads);
+        let is_high = pressures > wanted || task.carries();
         let end = if is_high { &mut self.bracket.high } else { &mut self.bracket.low };
         end.p.clone_from(&task.state.p);
         (end.approach, end.pressures) = (approach, pressures);
@@ -97,7 +97,7 @@ impl ByApproach<'_> {
 
     /// The first two approaches, from the one of the state upwards. False if there are none.
     fn enclose<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, wanted: f64) -> Result<bool> {
-        let lowest = lowest(&task.state.h);
+        let lowest = task.lowest;
         let Bracket { low, high, before, .. } = &mut *self.bracket;
         for p in [&mut low.p, &mut high.p, before] {
             reserve(p, task.state.p.len(), "the solutions of two approaches")?;

@@ -58,10 +58,7 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
-        if task.state.u_is == Freshness::Exact
-            && goal.holds(&survey, change.update, set)
-            && task.state.carries(&task.problem.threads)
-        {
+        if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
             if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {

@@ -122,6 +122,7 @@ impl Solver {
     /// The same, and the least distance of the scene, which is checked.
     pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
         let began = Instant::now();
+        // The scene is refused first; threads that cannot be had, and options that are none, after it.
         let threads = options.check().and_then(|()| Threads::new(options.threads));
         let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
         let threads = threads?;

@@ -19,6 +19,7 @@ impl Solver {
         guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, f64)> {
+        take_over::take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
         match scene.pressure_limit {
             _ if options.is_fixed() => self.run((scene, lowest), Fixed, options, guess, monitor),
             None => self.run((scene, lowest), NonNegative, options, guess, monitor),
@@ -73,7 +74,7 @@ impl Solver {
         outcome
     }
 
-    /// Solves on an admissible set. Returns the tolerance that was aimed at, too.
+    /// Solves on an admissible set, with the distances that the state has. Returns the tolerance that was aimed at, too.
     fn run<S: AdmissibleSet>(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),

@@ -6,11 +6,20 @@ use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
+use crate::threads::Threads;
 
 /// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
 
-/// Takes over the undeformed distance, the load and the start: then u is A p, or there is nothing. `solved`: whether `state` holds the
+/// Takes over the undeformed distance: a copy, for a callback may change the caller's.
+pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
+    let mx = state.grid.mx;
+    threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
+        row.copy_from_slice(&given[y * mx..][..row.len()]);
+    });
+}
+
+/// Takes over the load and the start; the undeformed distance is there: then u is A p, or there is nothing. `solved`: whether `state` holds the
 /// solution before. Returns a survey, too, where there is something.
 pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
@@ -22,10 +31,6 @@ pub fn take_over<S: AdmissibleSet>(
 ) -> Result<(Start, Option<Survey>)> {
     let nothing = (Start::Nothing, None);
     let from = take_pressures(state, options, guess, solved);
-    let (given, mx) = (scene.undeformed_distance, state.grid.mx);
-    problem.threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
-        row.copy_from_slice(&given[y * mx..][..row.len()]);
-    });
     state.load = scene.load;
     state.round_off = problem.round_off();
     state.reached_limit = false;

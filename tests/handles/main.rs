@@ -251,6 +251,31 @@ unsafe extern "C" fn spoil(_: *const contact_normal_progress, user: *mut libc::c
     0
 }
 
+/// Limits a little above the largest pressure are reached on the way only: then the scene is solved again, without them.
+#[test]
+fn distances_are_read_before_a_callback_runs() {
+    let _alone = alone();
+    let mut free = new_call(|_| {}, 0);
+    assert_eq!(free.run(Through::Solve, std::ptr::null_mut()).0, CONTACT_NORMAL_OK);
+    let largest = free.pressure.iter().copied().fold(0.0, f64::max);
+    for part in (0..40).map(|k| 1.0 + 0.005 * f64::from(k)) {
+        let new = || {
+            let mut call = new_call(|_| {}, 0);
+            call.each.fill(part * largest);
+            call.set_limit(0, part * largest);
+            call
+        };
+        let mut undisturbed = new();
+        assert_eq!(undisturbed.run(Through::Solve, std::ptr::null_mut()).0, CONTACT_NORMAL_OK);
+        let mut call = new();
+        call.options.known.progress = Some(spoil);
+        call.options.known.user = call.h.as_mut_ptr().cast();
+        assert_eq!(call.run(Through::Solve, std::ptr::null_mut()), (CONTACT_NORMAL_OK, String::new()), "{part}");
+        assert_eq!(call.h[0], 1e-300, "not called");
+        assert_eq!(call.pressure, undisturbed.pressure, "{part}");
+    }
+}
+
 #[test]
 fn limits_are_read_before_a_callback_runs() {
     let _alone = alone();

@@ -179,8 +179,8 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over C): `state` is what it starts from,
-    /// `lowest` the least of its distances. Errors of `EPSILON u` that change from element to element, all wave numbers k alike, take pressures
+    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over what presses): `state` is what it starts
+    /// from, `lowest` the least of its distances, where u is largest. Errors of `EPSILON u` that change from element to element, all wave numbers k alike, take pressures
     /// of `E* |k|/2` times themselves.
     pub fn noise(&self, fine: &Problem, state: &State, lowest: f64) -> f64 {
         let (deepest, Survey { squares, contact_count, .. }) = (state.approach - lowest, self.found);

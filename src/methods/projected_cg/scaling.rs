@@ -9,6 +9,7 @@ use crate::threads::Threads;
 /// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
 /// room in the range 2^-126 to 2^127 then.
 const AS_IT_IS: i32 = 48;
+
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{keep, reserve};
+use crate::memory::{keep, reserve, sparse};
 use crate::sums::Sums;
 use crate::threads::Threads;
 
@@ -54,12 +54,12 @@ impl Segments {
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
         let rows = grid.rows_of_blocks(BLOCKS, LEAST);
         let blocks = grid.my.div_ceil(rows);
-        let (mut found, mut listed) = (Vec::new(), vec![Vec::new(); blocks]);
+        let mut found = Vec::new();
         found.resize_with(blocks, Found::default);
-        for (block, listed) in found.iter_mut().zip(&mut listed) {
+        for block in &mut found {
             reserve(&mut block.runs, rows * grid.mx.div_ceil(2), "the contact area")?;
-            reserve(listed, rows * grid.mx, "the contact area")?;
         }
+        let listed = (0..blocks).map(|_| sparse(rows * grid.mx, "the contact area")).collect::<Result<_>>()?;
         let sums = vec![[0.0; MOST_SUMS]; blocks];
         let (mx, block, threads) = (grid.mx, rows * grid.mx, threads.clone());
         Ok(Segments { mx, block, found, count: 0, version: 0, sums, listed, threads })
@@ -195,7 +195,6 @@ impl Segments {
 impl Drop for Segments {
     fn drop(&mut self) {
         self.found.iter_mut().for_each(|block| keep([&mut block.runs]));
-        self.listed.iter_mut().for_each(|listed| keep([listed]));
     }
 }
 
