@@ -32,7 +32,9 @@ struct Coupled {
     there: Option<((f64, f64), Coupling)>,
     sideways: Vec<Vector>,
     along_normal: Vec<f64>,
-    before: Vec<f64>,
+    /// The scene's own undeformed distance, a copy, and the one with what tractions displace.
+    own: Vec<f64>,
+    displaced: Vec<f64>,
     /// Pressures of the last step.
     last_pressure: Vec<f64>,
 }
@@ -162,22 +164,31 @@ impl Tangent {
         }
     }
 
+    /// The distance of a scene whose normal problem is solved. Of unlike bodies a copy is made: a callback may change the caller's.
+    pub fn take_distance(&mut self, h: &[f64]) {
+        if let Some(coupled) = &mut self.coupled {
+            coupled.own.copy_from_slice(h);
+        }
+    }
+
     /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,
     /// relative to `h - approach`. None where bodies are alike.
-    pub fn distance(&mut self, scene: &Scene<'_>, state: &State) -> Option<(&[f64], f64)> {
-        let Tangent { solver, coupled: Some(Coupled { here, along_normal, before, .. }) } = self else { return None };
+    pub fn distance(&mut self, state: &State) -> Option<(&[f64], f64)> {
+        let Tangent { solver, coupled: Some(Coupled { here, along_normal, own, displaced, .. }) } = self else {
+            return None;
+        };
         here.along_normal(&solver.solution()?.traction, along_normal);
         let (mut changes, mut distances) = (0.0, 0.0);
         for i in 0..along_normal.len() {
-            let h = scene.undeformed_distance[i];
+            let h = own[i];
             if state.contact[i] {
                 changes += (h + along_normal[i] - state.h[i]).powi(2);
                 distances += (state.h[i] - state.approach).powi(2);
             }
-            before[i] = h + along_normal[i];
+            displaced[i] = h + along_normal[i];
         }
         let change = if changes == 0.0 { 0.0 } else { (changes / distances).sqrt() };
-        Some((&before[..], change))
+        Some((&displaced[..], change))
     }
 
     /// The step is done: the next one may continue from its pressures.
@@ -246,7 +257,8 @@ impl Coupled {
             there: None,
             sideways: zeros(n, FIELDS)?,
             along_normal: zeros(n, FIELDS)?,
-            before: zeros(n, FIELDS)?,
+            own: zeros(n, FIELDS)?,
+            displaced: zeros(n, FIELDS)?,
             last_pressure: zeros(n, FIELDS)?,
         })
     }
@@ -254,8 +266,8 @@ impl Coupled {
     /// Bytes held.
     fn bytes(&self) -> usize {
         let there = self.there.as_ref().map_or(0, |(_, there)| there.bytes());
-        let fields = size_of::<Vector>() + 3 * size_of::<f64>();
-        self.source.bytes() + self.here.bytes() + there + self.before.len() * fields
+        let fields = size_of::<Vector>() + 4 * size_of::<f64>();
+        self.source.bytes() + self.here.bytes() + there + self.own.len() * fields
     }
 
     /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures

@@ -36,6 +36,7 @@ impl Solver {
             _ => Box::new(Tangent::new(scene, options, &threads)?),
         };
         let turn = Turn { scene, friction, options, threads: &threads };
+        tangent.take_distance(&self.state.h);
         let outcome = self.take_turns(&mut tangent, &turn, stop, monitor);
         if outcome.is_ok() {
             tangent.keep_pressures(&self.state.p);
@@ -63,7 +64,7 @@ impl Solver {
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
         for solved in 0..=MOST_TURNS {
             let so_far = worse(stop, tangential_stop);
-            let Some((distance, change)) = tangent.distance(turn.scene, &self.state) else {
+            let Some((distance, change)) = tangent.distance(&self.state) else {
                 return Ok((so_far, found));
             };
             // Tractions that displace nothing leave the normal problem as it was found.

@@ -276,6 +276,32 @@ fn distances_are_read_before_a_callback_runs() {
     }
 }
 
+/// The tractions of unlike bodies change the distances: then the scene is solved in turns.
+#[test]
+fn distances_of_unlike_bodies_are_read_before_a_callback_runs() {
+    let _alone = alone();
+    let unlike = |call: &mut Call| {
+        call.scene.known.poisson_ratio = [0.0, 0.45];
+        call.use_friction();
+    };
+    let run = |spoils: bool| {
+        let mut call = new_call(unlike, 0);
+        if spoils {
+            call.options.known.progress = Some(spoil);
+            call.options.known.user = call.h.as_mut_ptr().cast();
+        }
+        assert_eq!(call.run(Through::Solve, std::ptr::null_mut()), (CONTACT_NORMAL_OK, String::new()));
+        assert_eq!(call.h[0] == 1e-300, spoils, "not called");
+        call.pressure
+    };
+    let undisturbed = run(false);
+    let mut alike = new_call(|_| {}, 0);
+    alike.scene.known.poisson_ratio = [0.0, 0.45];
+    assert_eq!(alike.run(Through::Solve, std::ptr::null_mut()).0, CONTACT_NORMAL_OK);
+    assert_ne!(alike.pressure, undisturbed, "tractions change nothing");
+    assert_eq!(run(true), undisturbed);
+}
+
 #[test]
 fn limits_are_read_before_a_callback_runs() {
     let _alone = alone();
