@@ -7,9 +7,11 @@
 //! is larger than that of p = 0 (that is 1): then the next grid starts without it.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use super::level::Level;
 use super::End;
+use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -179,11 +181,14 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over what presses): `state` is what it starts
-    /// from, `lowest` the least of its distances, where u is largest. Errors of `EPSILON u` that change from element to element, all wave numbers k alike, take pressures
-    /// of `E* |k|/2` times themselves.
-    pub fn noise(&self, fine: &Problem, state: &State, lowest: f64) -> f64 {
-        let (deepest, Survey { squares, contact_count, .. }) = (state.approach - lowest, self.found);
+    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over what presses). Errors of
+    /// `EPSILON u` that change from element to element, all wave numbers k alike, take pressures of `E* |k|/2` times themselves.
+    pub fn noise(&self, fine: &Problem) -> f64 {
+        let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
+        let Survey { squares, contact_count, .. } = self.found;
+        let depth = |i: usize| if state.contact[i] { state.approach - state.h[i] } else { 0.0 };
+        let deepest_of = |block: Range<usize>| block.map(depth).fold(0.0, f64::max);
+        let deepest = blocks::fold(&state.grid, &self.threads, 0.0, deepest_of, f64::max);
         let wave_number = (PI * PI / 3.0).sqrt() * (1.0 / fine.grid.dx).hypot(1.0 / fine.grid.dy);
         let modulus = fine.grid.modulus(fine.self_influence());
         f64::from(f32::EPSILON) * deepest * 0.5 * modulus * wave_number / f64::sqrt(squares / contact_count as f64)

@@ -94,7 +94,7 @@ impl ProjectedCg {
         task.state.u_is = coarse.start(task)?;
         let single = self.precision != Precision::Double;
         let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();
-        let noisy = near && single && coarse.noise(task.problem, task.state, task.lowest) > NOISE * task.goal.tolerance;
+        let noisy = near && single && coarse.noise(task.problem) > NOISE * task.goal.tolerance;
         if rests(task.state.p.len()) {
             self.coarse = None;
             release();
