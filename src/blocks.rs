@@ -2,6 +2,7 @@
 //!
 //! The blocks do not depend on the number of threads: nor do the bits of what is joined.
 
+use std::array::from_fn;
 use std::ops::Range;
 
 use crate::grid::Grid;
@@ -13,7 +14,7 @@ const LEAST: usize = 1024;
 
 /// Joins what `work(elements)` returns for each block to `nothing`, in the order of the blocks.
 #[inline(always)]
-pub fn fold<A: Copy + Send>(
+pub fn fold<A: Clone + Send>(
     grid: &Grid,
     threads: &Threads,
     nothing: A,
@@ -31,15 +32,16 @@ pub fn fold<A: Copy + Send>(
         );
     };
     if threads.count() == 1 {
-        return (0..count).fold(nothing, |so_far, b| {
-            let mut found = [nothing];
+        return (0..count).fold(nothing.clone(), |so_far, b| {
+            let mut found = [nothing.clone()];
             pass(&mut found, b);
-            join(so_far, found[0])
+            let [found] = found;
+            join(so_far, found)
         });
     }
-    let mut found = [nothing; BLOCKS];
+    let mut found: [A; BLOCKS] = from_fn(|_| nothing.clone());
     pass(&mut found[..count], 0);
-    found[..count].iter().fold(nothing, |so_far, found| join(so_far, *found))
+    found.into_iter().take(count).fold(nothing, join)
 }
 
 #[cfg(test)]

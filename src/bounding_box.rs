@@ -7,11 +7,7 @@ use crate::grid::Grid;
 use crate::threads::Threads;
 
 /// Columns and rows.
-#[derive(Clone, Copy)]
-struct Corners {
-    x: (usize, usize),
-    y: (usize, usize),
-}
+pub type Part = (Range<usize>, Range<usize>);
 
 /// The columns and the rows outside of which nothing counts: `any` looks at some values of a row together, `counts` at one. None where
 /// nothing does.
@@ -21,26 +17,24 @@ pub fn bounding_box<A: Sync>(
     threads: &Threads,
     any: impl Fn(&[A]) -> bool + Sync + Send,
     counts: impl Fn(&A) -> bool + Sync + Send,
-) -> Option<(Range<usize>, Range<usize>)> {
+) -> Option<Part> {
     let mx = grid.mx;
-    let found = blocks::fold(
+    blocks::fold(
         grid,
         threads,
         None,
         #[inline(always)]
         |block| in_rows(&values[block.clone()], (mx, block.start / mx), &any, &counts),
-        |a: Option<Corners>, b| match (a, b) {
-            (Some(a), Some(b)) => Some(a.joined(&b)),
-            (a, b) => a.or(b),
-        },
-    )?;
-    Some((found.x.0..found.x.1, found.y.0..found.y.1))
+        joined,
+    )
 }
 
-impl Corners {
-    fn joined(&self, other: &Corners) -> Corners {
-        let join = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
-        Corners { x: join(self.x, other.x), y: join(self.y, other.y) }
+/// The box of two.
+pub fn joined(a: Option<Part>, b: Option<Part>) -> Option<Part> {
+    let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
+    match (a, b) {
+        (Some(a), Some(b)) => Some((join(a.0, b.0), join(a.1, b.1))),
+        (a, b) => a.or(b),
     }
 }
 
@@ -51,7 +45,7 @@ fn in_rows<A>(
     (mx, first_row): (usize, usize),
     any: &impl Fn(&[A]) -> bool,
     counts: &impl Fn(&A) -> bool,
-) -> Option<Corners> {
+) -> Option<Part> {
     let row = |y: usize| &values[y * mx..(y + 1) * mx];
     let (mut first, mut end_of_rows) = (0, values.len() / mx);
     while first < end_of_rows && !any(row(first)) {
@@ -73,5 +67,5 @@ fn in_rows<A>(
             end = row.iter().rposition(counts).map_or(end, |last| last + 1);
         }
     }
-    Some(Corners { x: (start, end), y: (first_row + first, first_row + end_of_rows) })
+    Some((start..end, first_row + first..first_row + end_of_rows))
 }

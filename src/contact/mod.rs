@@ -20,4 +20,4 @@ pub use exchange::{admit, truncate};
 pub use guard::ExchangeGuard;
 pub use outline::Outline;
 pub use problem::Problem;
-pub use state::{lowest, Freshness, Snapshot, State};
+pub use state::{lowest, presses, Freshness, Snapshot, State};

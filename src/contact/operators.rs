@@ -11,6 +11,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::state::presses;
 use crate::bounding_box::bounding_box;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -164,12 +165,6 @@ fn fit<'a>(
         None => (periods, operator.workspace()?),
     };
     Ok(&mut workspace.insert(fitting).1)
-}
-
-/// Whether some pressure is not 0.
-#[inline(always)]
-fn presses(p: &[f64]) -> bool {
-    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
 }
 
 /// The columns and rows outside of which p is 0; none where it is 0 everywhere.

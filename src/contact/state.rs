@@ -230,6 +230,12 @@ impl Drop for State {
     }
 }
 
+/// Whether one of some pressures is not 0.
+#[inline(always)]
+pub fn presses(p: &[f64]) -> bool {
+    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
+}
+
 /// The least of all distances; infinite if there is no surface.
 pub fn lowest(h: &[f64]) -> f64 {
     pulp::Arch::new().dispatch(

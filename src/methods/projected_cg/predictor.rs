@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::known::Last;
 use super::Window;
-use crate::contact::{Freshness, State};
+use crate::contact::{presses, Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
 use crate::operator::zeros;
@@ -125,12 +125,6 @@ impl Predictor {
             (scale, 0.0)
         }
     }
-}
-
-/// Whether one of some pressures is not 0.
-#[inline(always)]
-fn presses(p: &[f64]) -> bool {
-    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
 }
 
 /// C is where p is not 0; what presses where there is no surface does not any more. Returns whether anything did.

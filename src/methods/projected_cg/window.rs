@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::bounding_box::bounding_box;
+use crate::bounding_box::{bounding_box, joined};
 use crate::contact::State;
 use crate::grid::Grid;
 use crate::operator::fft::good_length;
@@ -117,19 +117,8 @@ impl Window {
 /// The smallest window that holds the contact area, and what is at its limit; none when it is empty.
 fn area(state: &State, threads: &Threads) -> Option<Window> {
     let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
-    let window_of = |elements: &[bool]| {
-        let (x, y) = bounding_box(elements, &state.grid, threads, any, |inside| *inside)?;
-        Some(Window { x, y })
-    };
-    let free = window_of(&state.contact);
-    if state.at_limit.is_empty() {
-        return free;
-    }
-    match (free, window_of(&state.at_limit)) {
-        (Some(a), Some(b)) => {
-            let join = |a: &Range<usize>, b: &Range<usize>| a.start.min(b.start)..a.end.max(b.end);
-            Some(Window { x: join(&a.x, &b.x), y: join(&a.y, &b.y) })
-        }
-        (a, b) => a.or(b),
-    }
+    let box_of = |elements: &[bool]| bounding_box(elements, &state.grid, threads, any, |inside| *inside);
+    let free = box_of(&state.contact);
+    let at_limit = if state.at_limit.is_empty() { None } else { box_of(&state.at_limit) };
+    joined(free, at_limit).map(|(x, y)| Window { x, y })
 }
