@@ -12,7 +12,7 @@ use crate::operator::fft::Real;
 use crate::threads::Threads;
 
 /// An iteration takes so many times as long as a product of one component.
-const WORK: usize = 3;
+const WORK: usize = 4;
 
 /// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
 pub struct Operators {

@@ -23,8 +23,8 @@ pub enum Threads {
     Pool(Pool),
 }
 
-/// Elements of a grid from which on several threads multiply faster than one.
-const WORTH_WAKING: usize = 64 * 64;
+/// Elements of a grid from which on a solve is faster if several threads share its products; a product alone is from 64 x 64 on.
+const WORTH_WAKING: usize = 110 * 110;
 
 /// Pieces that work is cut into, per thread: a thread held up by others leaves its share to them.
 const PIECES: usize = 8;
@@ -205,9 +205,9 @@ impl Threads {
         );
     }
 
-    /// These threads for a pass over arrays of so many elements, which takes about a tenth of the time of a product.
+    /// These threads for a pass over arrays of so many elements, which gains by them from twice as many elements on.
     pub fn for_a_pass(&self, elements: usize) -> Threads {
-        self.suited_to(elements / 6)
+        self.suited_to(elements / 2)
     }
 
     /// These threads for work on so many elements: the caller's own where waking the others takes longer than the work.

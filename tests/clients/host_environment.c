@@ -14,8 +14,8 @@
 
 #include "contact_normal.h"
 
-/* Not a divisor of anything, so that rounding matters everywhere. */
-enum { M = 45, N = M * M };
+/* A prime, so that rounding matters everywhere, and so many elements that workers share each pass. */
+enum { M = 167, N = M * M };
 
 static double h[N];
 

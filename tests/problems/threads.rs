@@ -58,16 +58,19 @@ fn same_for_any_number_of_threads(case: &Case) {
     }
 }
 
+/// So many elements that passes are shared, also on the window around C.
 #[test]
 fn the_ellipse() {
-    same_for_any_number_of_threads(&ellipse(100));
+    same_for_any_number_of_threads(&ellipse(280));
 }
 
+/// So many that passes are shared on the whole grid, of which there is no window.
 #[test]
 fn the_rough_surface() {
-    same_for_any_number_of_threads(&rough(128));
+    same_for_any_number_of_threads(&rough(160));
 }
 
+/// So few that only the calling thread works.
 #[test]
 fn wheel_and_rail() {
     same_for_any_number_of_threads(&wheel_rail("y0_10kN", 1));
