@@ -16,6 +16,7 @@ use std::ops::Deref;
 use std::sync::Mutex;
 
 use crate::error::{Error, Result};
+use crate::threads::Threads;
 
 /// Bytes that are kept in the process, at most: more than a solve on 2048 x 2048 elements takes.
 const MOST_KEPT: usize = 512 << 20;
@@ -26,6 +27,8 @@ const TOO_LARGE_TO_KEEP: usize = 96 << 20;
 /// Arrays of so many values rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
 /// product.
 const RESTS: usize = 1 << 23;
+/// Values that a thread writes at a time, at a first touch.
+const TOUCHED: usize = 1 << 12;
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {
@@ -53,8 +56,14 @@ pub(crate) fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) ->
 }
 
 /// Makes v n values long that are all written before they are read: it may hold anything, where it can a `mark`, which shows if they
-/// are not.
-pub(crate) fn unwritten<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, mark: A, what: &str) -> Result<()> {
+/// are not. The threads first touch its pages together.
+pub(crate) fn unwritten<A: Copy + Send + Sync + 'static>(
+    v: &mut Vec<A>,
+    n: usize,
+    mark: A,
+    what: &str,
+    threads: &Threads,
+) -> Result<()> {
     if v.capacity() < n {
         match find(n) {
             Some(kept) => keep_one(replace(v, kept)),
@@ -64,14 +73,14 @@ pub(crate) fn unwritten<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, mark
             }
         }
     }
-    v.resize(n, mark);
+    wake(v, n, mark, threads);
     Ok(())
 }
 
 /// A new array of n values that are all written before they are read.
-pub(crate) fn blank<A: Copy + Send + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
+pub(crate) fn blank<A: Copy + Send + Sync + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    unwritten(&mut v, n, mark, what)?;
+    unwritten(&mut v, n, mark, what, &Threads::One)?;
     Ok(v)
 }
 
@@ -143,11 +152,17 @@ fn least_resting() -> usize {
 }
 
 /// Makes room for n values that wake when they are first needed, and are all written before they are read. Small arrays are awake.
-pub(crate) fn asleep<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, mark: A, what: &str) -> Result<()> {
+pub(crate) fn asleep<A: Copy + Send + Sync + 'static>(
+    v: &mut Vec<A>,
+    n: usize,
+    mark: A,
+    what: &str,
+    threads: &Threads,
+) -> Result<()> {
     if rests(n) {
         reserve(v, n, what)
     } else {
-        unwritten(v, n, mark, what)
+        unwritten(v, n, mark, what, threads)
     }
 }
 
@@ -159,10 +174,24 @@ pub(crate) fn rest<A>(values: &mut Vec<A>) {
     }
 }
 
-/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
-pub(crate) fn wake<A: Copy>(values: &mut Vec<A>, n: usize, mark: A) {
-    debug_assert!(n <= values.capacity(), "room for {n} values");
-    values.resize(n, mark);
+/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did: the threads write them together,
+/// because the system clears each page at its first touch, which takes as long as several passes.
+#[allow(unsafe_code)]
+pub(crate) fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
+    let known = values.len();
+    let threads = threads.for_a_pass(n.saturating_sub(known));
+    if threads.count() == 1 {
+        debug_assert!(n <= values.capacity(), "room for {n} values");
+        return values.resize(n, mark);
+    }
+    let new = &mut values.spare_capacity_mut()[..n - known];
+    threads.for_each_plain_row(new, TOUCHED, |_, piece| {
+        piece.iter_mut().for_each(|value| {
+            value.write(mark);
+        });
+    });
+    // SAFETY: each of the values up to n has just been written, in the room of the array, beyond which the slice above would not go.
+    unsafe { values.set_len(n) };
 }
 
 /// Keeps the memory of arrays that nobody needs any more: they are empty then.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{blank, keep, reserve, rest, zeros};
+use crate::memory::{asleep, blank, keep, reserve, rest, wake, zeros};
 use crate::scene::Load;
 use crate::sums::{least, sum_where, Sums};
 use crate::threads::Threads;
@@ -56,6 +56,21 @@ impl State {
     /// is prescribed.
     pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
         let n = grid.len();
+        let (p, u) = (blank(n, f64::NAN, "pressures")?, blank(n, f64::NAN, "displacements")?);
+        State::of((grid, load, estimate), [h, p, u])
+    }
+
+    /// Of which a large h, p and u [wake](crate::memory::wake) when they are first needed.
+    pub fn at_rest(grid: Grid, (load, estimate): (Load, f64), threads: &Threads) -> Result<State> {
+        let mut arrays = [Vec::new(), Vec::new(), Vec::new()];
+        for (values, what) in arrays.iter_mut().zip(["undeformed distances", "pressures", "displacements"]) {
+            asleep(values, grid.len(), f64::NAN, what, threads)?;
+        }
+        State::of((grid, load, estimate), arrays)
+    }
+
+    fn of((grid, load, estimate): (Grid, Load, f64), [h, p, u]: [Vec<f64>; 3]) -> Result<State> {
+        let n = grid.len();
         let approach = match load {
             Load::Approach(approach) => approach,
             Load::Force(_) => estimate,
@@ -63,8 +78,8 @@ impl State {
         Ok(State {
             grid,
             h,
-            p: blank(n, f64::NAN, "pressures")?,
-            u: blank(n, f64::NAN, "displacements")?,
+            p,
+            u,
             u_is: Freshness::Stale,
             contact: zeros(n, "contact")?,
             at_limit: Vec::new(),
@@ -73,6 +88,12 @@ impl State {
             load,
             round_off: 0.0,
         })
+    }
+
+    /// h, p and u are needed.
+    pub fn wake(&mut self, threads: &Threads) {
+        let n = self.grid.len();
+        [&mut self.h, &mut self.p, &mut self.u].into_iter().for_each(|values| wake(values, n, f64::NAN, threads));
     }
 
     /// h, p and u are not needed for a while.

@@ -37,7 +37,7 @@ impl Solver {
     /// The tractions of the last result become those before the step.
     pub(super) fn keep_tractions(&mut self) -> Result<()> {
         let last = &self.solution.traction;
-        unwritten(&mut self.before, last.len(), [f64::NAN; 2], FIELDS)?;
+        unwritten(&mut self.before, last.len(), [f64::NAN; 2], FIELDS, &self.threads)?;
         self.before.copy_from_slice(last);
         Ok(())
     }

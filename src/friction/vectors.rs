@@ -20,7 +20,7 @@ impl Fields {
     /// A field of n elements, which holds anything.
     pub fn take(&mut self, n: usize) -> Result<Vec<Vector>> {
         let mut field = self.free.pop().unwrap_or_default();
-        unwritten(&mut field, n, [f64::NAN; 2], "the iteration of Newton's method")?;
+        unwritten(&mut field, n, [f64::NAN; 2], "the iteration of Newton's method", &Threads::One)?;
         Ok(field)
     }
 

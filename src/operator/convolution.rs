@@ -95,7 +95,7 @@ impl<T: Real> Convolution<T> {
         let half = py / 2 + 1;
         let scale = 1.0 / (px as f64 * py as f64);
         let mut spectrum = Vec::new();
-        unwritten(&mut spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
+        unwritten(&mut spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM, &Threads::One)?;
         for (i, out) in spectrum[..nb * half].iter_mut().enumerate() {
             *out = T::of(scale * value(i / half, i % half));
         }

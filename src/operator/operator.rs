@@ -240,7 +240,7 @@ impl<T: Real> Operator<T> {
     /// Transforms the rows that hold pressures; returns which.
     fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
         let n = product.bins.len().max(self.bins());
-        wake(&mut product.bins, n, Complex::new(T::nan(), T::nan()));
+        wake(&mut product.bins, n, Complex::new(T::nan(), T::nan()), self.threads());
         self.rows.forward(p, product)
     }
 

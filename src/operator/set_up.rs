@@ -83,7 +83,7 @@ impl<'a> Transforms<'a> {
         for piece in pieces {
             piece.row.resize(self.rows.at_a_time() * px, 0.0);
             let length = self.rows.bins().max(PAIRS * py);
-            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS)?;
+            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS, &Threads::One)?;
             self.rows.fit(&mut piece.rows);
             self.columns.fit(&mut piece.columns);
         }
@@ -102,7 +102,7 @@ impl<'a> Transforms<'a> {
         G: Fn(f64) -> f64 + Sync + Send,
     {
         let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
-        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS)?;
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
         self.suit(pieces)?;
         self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row[..px];
@@ -115,7 +115,7 @@ impl<'a> Transforms<'a> {
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
         let (half, scale) = (py / 2 + 1, self.scale());
-        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM)?;
+        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM, self.threads)?;
         self.threads.for_each_row(spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
             let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
             let block = &mut piece.column[..pairs * py];
@@ -142,7 +142,7 @@ impl<'a> Transforms<'a> {
         fill: impl Fn(i64, usize, &mut [f64]) + Sync + Send,
     ) -> Result<()> {
         let (px, nb, together) = (self.rows.length(), self.rows.bins(), self.rows.at_a_time());
-        unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS)?;
+        unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS, self.threads)?;
         self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
             let rows = &mut piece.row[..out.len() / nb * px];
             for (i, row) in rows.chunks_exact_mut(px).enumerate() {
@@ -167,7 +167,7 @@ impl<'a> Transforms<'a> {
         let (py, nb, Grid { mx, my, .. }) = (self.columns.length(), self.rows.bins(), *grid);
         self.suit(pieces)?;
         self.of_rows(my, in_x, pieces, mx, |kx, ky, row| coefficients.fill_symmetric_row(kx, ky as i64, row))?;
-        unwritten(spectrum, (nb + nb % 2) * py, T::nan(), SPECTRUM)?;
+        unwritten(spectrum, (nb + nb % 2) * py, T::nan(), SPECTRUM, self.threads)?;
         let scale = factor * self.scale();
         self.threads.for_each_row(spectrum, PAIRS * 2 * py, pieces, |block, out, piece| {
             let first = PAIRS * 2 * block;
@@ -200,7 +200,7 @@ impl<'a> Transforms<'a> {
             let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
             coefficients.fill_row(kx, ky, row);
         })?;
-        unwritten(spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM)?;
+        unwritten(spectrum, nb * py, Complex::new(T::nan(), T::nan()), SPECTRUM, self.threads)?;
         let (scale, gap) = (factor * self.scale(), py - (2 * my - 1));
         self.threads.for_each_row(spectrum, PAIRS * py, pieces, |block, out, piece| {
             let first = PAIRS * block;

@@ -16,7 +16,7 @@ use std::mem::take;
 use super::fft::{Complex, Real};
 use crate::error::Result;
 use crate::influence::SYMMETRY;
-use crate::memory::{blank, keep};
+use crate::memory::{keep, unwritten};
 use crate::threads::Threads;
 
 /// What memory is for.
@@ -146,13 +146,14 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
 }
 
 /// A spectrum made of another one.
-fn converted<A: Sync, B: Copy + Send + 'static>(
+fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
     from: &[A],
     convert: impl Fn(&A) -> B + Sync + Send,
     mark: B,
     threads: &Threads,
 ) -> Result<Vec<B>> {
-    let mut converted = blank(from.len(), mark, SPECTRUM)?;
+    let mut converted = Vec::new();
+    unwritten(&mut converted, from.len(), mark, SPECTRUM, threads)?;
     threads.for_a_pass(from.len()).for_each_plain_row(
         &mut converted,
         PIECE,

@@ -7,6 +7,7 @@ use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
 use crate::error::Result;
 use crate::memory::{asleep, blank, keep, rest, zeros};
+use crate::threads::Threads;
 
 /// What memory is for.
 const WORKSPACE: &str = "the product's workspace";
@@ -38,7 +39,8 @@ impl<T: Real> Workspace<T> {
         };
         let memory = |n| zeros(n, WORKSPACE);
         let (bins, mut product_bins) = (most(Operator::bins), Vec::new());
-        asleep(&mut product_bins, bins, nan, WORKSPACE)?;
+        let threads = operators.clone().next().map_or(&Threads::One, Operator::threads);
+        asleep(&mut product_bins, bins, nan, WORKSPACE, threads)?;
         Ok(Workspace {
             bins,
             product: Product {

@@ -44,7 +44,6 @@ use crate::error::{invalid, Result};
 use crate::friction;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
-use crate::memory::blank;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
@@ -144,10 +143,11 @@ impl Solver {
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
         problem.given = set_up.given;
-        let h = blank(grid.len(), f64::NAN, "undeformed distances")?;
+        let mut state = State::at_rest(grid, (Load::Approach(0.0), 0.0), threads)?;
+        state.wake(threads);
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
-            state: State::new(grid, h, Load::Approach(0.0), 0.0)?,
+            state,
             problem,
             set_up,
             has_result: false,

@@ -39,7 +39,7 @@ fn no_more_is_kept_than_the_bound() {
     keep_one(Vec::<u8>::with_capacity(MOST_KEPT + 1));
     let shelf = SHELF.lock().unwrap();
     assert!(shelf.bytes <= MOST_KEPT);
-    assert_eq!(shelf.bytes, shelf.blocks.iter().map(|kept| kept.bytes).sum());
+    assert_eq!(shelf.bytes, shelf.blocks.iter().map(|kept| kept.bytes).sum::<usize>());
     assert!(shelf.blocks.iter().all(|kept| kept.bytes >= LEAST_KEPT));
 }
 
@@ -88,6 +88,21 @@ fn what_rests_is_empty_and_has_its_room() {
     LEAST_RESTING.set(RESTS);
     assert!(values.is_empty() && values.capacity() >= n);
     let room = values.as_ptr();
-    wake(&mut values, n, 1.0);
+    wake(&mut values, n, 1.0, &Threads::One);
     assert!(values.as_ptr() == room && values.iter().all(|value| *value == 1.0));
+}
+
+#[test]
+fn what_threads_write_together_is_what_one_writes() {
+    let threads = Threads::new(3).expect("threads");
+    for (known, n) in [(0, 1 << 20), (5, 1 << 20), (12345, (1 << 20) + 77), (1 << 20, 1 << 19)] {
+        let values = |threads: &Threads| {
+            let mut values: Vec<f64> = Vec::with_capacity(known.max(n));
+            values.extend((0..known).map(|i| i as f64));
+            wake(&mut values, n, -1.0, threads);
+            values
+        };
+        assert!(values(&threads) == values(&Threads::One), "{known} values and then {n}");
+        assert_eq!(values(&threads).len(), n);
+    }
 }

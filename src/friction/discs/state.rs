@@ -18,17 +18,17 @@ impl<T: Real> Discs<T> {
     pub fn load(&mut self, problem: &Problem, state: &State) -> Result<()> {
         let (n, all) = (problem.count(), problem.grid.len());
         let (zero, nothing) = ([f64::NAN; 2], [T::nan(); 2]);
-        unwritten(&mut self.bound, n, f64::NAN, FIELDS)?;
-        unwritten(&mut self.curvature, n, T::nan(), FIELDS)?;
+        unwritten(&mut self.bound, n, f64::NAN, FIELDS, problem.threads())?;
+        unwritten(&mut self.curvature, n, T::nan(), FIELDS, problem.threads())?;
         for field in [&mut self.slip, &mut self.q, &mut self.u, &mut self.normal] {
-            unwritten(field, n, zero, FIELDS)?;
+            unwritten(field, n, zero, FIELDS, problem.threads())?;
         }
         let Way { z, direction, chord, product, debt } = &mut self.way;
         for field in [&mut self.driving, z, direction, chord, product, debt] {
-            unwritten(field, n, nothing, FIELDS)?;
+            unwritten(field, n, nothing, FIELDS, problem.threads())?;
         }
         for field in [&mut self.given, &mut self.answer] {
-            unwritten(field, all, nothing, FIELDS)?;
+            unwritten(field, all, nothing, FIELDS, problem.threads())?;
         }
         self.extension.fit(&problem.grid, problem.threads())?;
         self.extension.contact_changed(&problem.bound);

@@ -16,7 +16,6 @@ use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::blank;
 use crate::methods::multigrid::{coarsen, transfer};
 use crate::methods::Task;
 use crate::operator::reserve;
@@ -65,11 +64,11 @@ impl CoarseGrids {
         while let Some(coarse) = coarsen(&fine, COARSEST) {
             influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
-            let h = blank(fine.len(), f64::NAN, "undeformed distances")?;
-            let load = crate::scene::Load::Approach(0.0);
+            let mut state = State::at_rest(fine, (crate::scene::Load::Approach(0.0), 0.0), threads)?;
+            state.wake(threads);
             grids.push(Coarse {
                 level: Level::new(fine, influence.clone(), precision, threads),
-                state: State::new(fine, h, load, 0.0)?,
+                state,
                 limits: Vec::new(),
             });
         }

@@ -141,8 +141,8 @@ impl<T: Real> Extension<T> {
         if self.near.len() < n {
             self.version = None;
         }
-        wake(&mut self.values, n, T::zero());
-        wake(&mut self.near, n, 0);
+        wake(&mut self.values, n, T::zero(), &self.threads);
+        wake(&mut self.near, n, 0, &self.threads);
     }
 
     /// Bytes held, for n elements.

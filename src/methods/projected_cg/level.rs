@@ -11,7 +11,6 @@ use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::blank;
 use crate::operator::Precision;
 use crate::operator::{reserve, Operator};
 use crate::progress::{Goal, Monitor};
@@ -213,12 +212,7 @@ impl Level {
         let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None
         } else {
-            Some(|| {
-                let h = blank(grid.len(), f64::NAN, "undeformed distances")?;
-                let mut part = State::new(grid, h, state.load, state.approach)?;
-                part.rest();
-                Ok(part)
-            })
+            Some(|| State::at_rest(grid, (state.load, state.approach), &self.threads))
         };
         // The operator of a window depends on its size only.
         let whole = self.operator.as_deref().filter(|_| window.is_full(&self.grid));

@@ -30,14 +30,14 @@ pub(super) fn enter<S: AdmissibleSet>(
     }
     window.extract(&whole, &state.contact, &mut part.contact, threads);
     let extract = |from: &[f64], to: &mut Vec<f64>| {
-        wake(to, n, f64::NAN);
+        wake(to, n, f64::NAN, threads);
         window.extract(&whole, from, to, threads);
     };
     extract(&state.h, &mut part.h);
     extract(&state.p, &mut part.p);
     rest(&mut state.p);
     if displacement == Freshness::Stale {
-        wake(&mut part.u, n, f64::NAN);
+        wake(&mut part.u, n, f64::NAN, threads);
     } else {
         extract(&state.u, &mut part.u);
     }
@@ -60,7 +60,7 @@ pub(super) fn leave<S: AdmissibleSet>(
         units.convert_back(part);
     }
     let whole = state.grid;
-    [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, whole.len(), f64::NAN));
+    [&mut state.p, &mut state.u].into_iter().for_each(|values| wake(values, whole.len(), f64::NAN, threads));
     window.insert(&whole, &part.p, &mut state.p, 0.0, threads);
     window.insert(&whole, &part.contact, &mut state.contact, false, threads);
     if S::LIMITED && part.reached_limit {

@@ -98,7 +98,7 @@ impl<T: Real> Iteration<T> {
         let threads = &threads.for_a_pass(n);
         let directions = || {
             let mut direction = Vec::new();
-            asleep(&mut direction, n, T::nan(), DIRECTIONS).map(|()| direction)
+            asleep(&mut direction, n, T::nan(), DIRECTIONS, threads).map(|()| direction)
         };
         let mut debts = Vec::new();
         reserve(&mut debts, n, "truncated elements")?;
@@ -132,7 +132,7 @@ impl<T: Real> Iteration<T> {
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
         self.runs = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
-            asleep(values, n, T::nan(), DIRECTIONS)?;
+            asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;
         }
         reserve(&mut self.debts, n, "truncated elements")?;
         self.entering.resize(grid.my, 0);
@@ -178,7 +178,8 @@ impl<T: Real> Iteration<T> {
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
         self.extension.iter_mut().for_each(|extension| extension.wake(n));
-        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::nan()));
+        let threads = &self.threads;
+        [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::nan(), threads));
     }
 
     /// Bytes held.
