@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{asleep, blank, keep, reserve, rest, wake, zeros};
+use crate::memory::{asleep, keep, rest, wake, zeros};
 use crate::scene::Load;
 use crate::sums::{least, sum_where, Sums};
 use crate::threads::Threads;
@@ -55,9 +55,11 @@ impl State {
     /// Of the undeformed distance h; pressures and displacements are not known yet. `estimate` is the approach to start from when the force
     /// is prescribed.
     pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
-        let n = grid.len();
-        let (p, u) = (blank(n, f64::NAN, "pressures")?, blank(n, f64::NAN, "displacements")?);
-        State::of((grid, load, estimate), [h, p, u])
+        let alone = &Threads::One;
+        let mut state = State::at_rest(grid, (load, estimate), alone)?;
+        state.h = h;
+        state.wake(alone);
+        Ok(state)
     }
 
     /// Of which a large h, p and u [wake](crate::memory::wake) when they are first needed.
@@ -66,11 +68,7 @@ impl State {
         for (values, what) in arrays.iter_mut().zip(["undeformed distances", "pressures", "displacements"]) {
             asleep(values, grid.len(), f64::NAN, what, threads)?;
         }
-        State::of((grid, load, estimate), arrays)
-    }
-
-    fn of((grid, load, estimate): (Grid, Load, f64), [h, p, u]: [Vec<f64>; 3]) -> Result<State> {
-        let n = grid.len();
+        let [h, p, u] = arrays;
         let approach = match load {
             Load::Approach(approach) => approach,
             Load::Force(_) => estimate,
@@ -81,7 +79,7 @@ impl State {
             p,
             u,
             u_is: Freshness::Stale,
-            contact: zeros(n, "contact")?,
+            contact: zeros(grid.len(), "contact")?,
             at_limit: Vec::new(),
             reached_limit: false,
             approach,
@@ -263,50 +261,4 @@ pub fn lowest(h: &[f64]) -> f64 {
         #[inline(always)]
         || least(h),
     )
-}
-
-/// What a state had found, but for u: to go back to it.
-#[derive(Default)]
-pub struct Snapshot {
-    p: Vec<f64>,
-    contact: Vec<bool>,
-    at_limit: Vec<bool>,
-    approach: f64,
-}
-
-impl Snapshot {
-    /// Room for a state; `what` the memory is for.
-    pub fn reserve(&mut self, state: &State, what: &str) -> Result<()> {
-        reserve(&mut self.p, state.p.len(), what)?;
-        reserve(&mut self.contact, state.p.len(), what)?;
-        reserve(&mut self.at_limit, state.at_limit.len(), what)
-    }
-
-    /// Keeps what a state has found.
-    pub fn keep(&mut self, state: &State) {
-        self.p.clone_from(&state.p);
-        self.contact.clone_from(&state.contact);
-        self.at_limit.clone_from(&state.at_limit);
-        self.approach = state.approach;
-    }
-
-    /// The state has found what was kept; its u is another.
-    pub fn give_back(&self, state: &mut State) {
-        state.p.copy_from_slice(&self.p);
-        state.contact.copy_from_slice(&self.contact);
-        state.at_limit.copy_from_slice(&self.at_limit);
-        state.approach = self.approach;
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        self.p.len() * (size_of::<f64>() + size_of::<bool>())
-    }
-}
-
-impl Drop for Snapshot {
-    fn drop(&mut self) {
-        keep([&mut self.p]);
-        keep([&mut self.contact, &mut self.at_limit]);
-    }
 }

@@ -9,6 +9,8 @@
 //! *At rest.* The arrays of one solve are not all needed at the same time. A large one that nobody needs for a while [rests](rest): its
 //! room stays reserved, so that it [wakes](wake) without an error, and the system has its pages.
 
+mod pages;
+
 use std::any::{Any, TypeId};
 use std::collections::VecDeque;
 use std::mem::{replace, take};
@@ -17,6 +19,7 @@ use std::sync::Mutex;
 
 use crate::error::{Error, Result};
 use crate::threads::Threads;
+use pages::{ask_for_huge_pages, give_pages_back, lengthen_together};
 
 /// Bytes that are kept in the process, at most: more than a solve on 2048 x 2048 elements takes.
 const MOST_KEPT: usize = 512 << 20;
@@ -27,8 +30,6 @@ const TOO_LARGE_TO_KEEP: usize = 96 << 20;
 /// Arrays of so many values rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
 /// product.
 const RESTS: usize = 1 << 23;
-/// Values that a thread writes at a time, at a first touch.
-const TOUCHED: usize = 1 << 12;
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {
@@ -174,24 +175,15 @@ pub(crate) fn rest<A>(values: &mut Vec<A>) {
     }
 }
 
-/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did: the threads write them together,
-/// because the system clears each page at its first touch, which takes as long as several passes.
-#[allow(unsafe_code)]
+/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
 pub(crate) fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
-    let known = values.len();
-    let threads = threads.for_a_pass(n.saturating_sub(known));
+    debug_assert!(n <= values.capacity(), "room for {n} values");
+    let threads = threads.for_a_pass(n.saturating_sub(values.len()));
     if threads.count() == 1 {
-        debug_assert!(n <= values.capacity(), "room for {n} values");
-        return values.resize(n, mark);
+        values.resize(n, mark);
+    } else {
+        lengthen_together(values, n, mark, &threads);
     }
-    let new = &mut values.spare_capacity_mut()[..n - known];
-    threads.for_each_plain_row(new, TOUCHED, |_, piece| {
-        piece.iter_mut().for_each(|value| {
-            value.write(mark);
-        });
-    });
-    // SAFETY: each of the values up to n has just been written, in the room of the array, beyond which the slice above would not go.
-    unsafe { values.set_len(n) };
 }
 
 /// Keeps the memory of arrays that nobody needs any more: they are empty then.
@@ -245,48 +237,6 @@ pub(crate) fn release() {
     }
 }
 
-/// Smaller blocks gain nothing: measured with 512 x 512, 1024 x 1024 and 2048 x 2048 elements, a solve takes 4, 6 and 18 % less time.
-#[cfg(target_os = "linux")]
-const LARGE: usize = 1 << 20;
-/// Linux's, or a part of one: advice for less than a page is advice for all of it.
-#[cfg(target_os = "linux")]
-const PAGE: usize = 1 << 12;
-
-/// Advice that the system may ignore. The pages at both ends are asked for, too: neighbouring blocks then share huge pages.
-#[cfg(target_os = "linux")]
-#[allow(unsafe_code)]
-fn ask_for_huge_pages(block: *mut libc::c_void, bytes: usize) {
-    if bytes < LARGE {
-        return;
-    }
-    let before = block as usize % PAGE;
-    let start = block.wrapping_byte_sub(before);
-    // SAFETY: the advice changes in which pages the range is held, not what it holds: it is right for any range of addresses.
-    unsafe { libc::madvise(start, (before + bytes).next_multiple_of(PAGE), libc::MADV_HUGEPAGE) };
-}
-
-#[cfg(not(target_os = "linux"))]
-fn ask_for_huge_pages(_: *mut libc::c_void, _: usize) {}
-
-/// Gives the pages within the room of an empty array back; they are entered again when they are touched.
-#[cfg(target_os = "linux")]
-#[allow(unsafe_code)]
-fn give_pages_back<A>(values: &mut Vec<A>) {
-    assert!(values.is_empty());
-    let (room, bytes) = (values.as_mut_ptr(), values.capacity() * size_of::<A>());
-    // SAFETY: it reads a constant of the system.
-    let Ok(page) = usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }) else { return };
-    let before = (room as usize).next_multiple_of(page) - room as usize;
-    let whole = bytes.saturating_sub(before) / page * page;
-    if whole > 0 {
-        // SAFETY: whole pages of the array's own room, which is borrowed mutably and holds no values.
-        unsafe { libc::madvise(room.wrapping_byte_add(before).cast(), whole, libc::MADV_DONTNEED) };
-    }
-}
-
-#[cfg(not(target_os = "linux"))]
-fn give_pages_back<A>(_: &mut Vec<A>) {}
-
 /// Values that are computed, of any type: their memory is not kept.
 pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
     let mut collected = Vec::new();
@@ -307,5 +257,5 @@ pub(crate) fn computed<A: Copy + Send + 'static>(
 }
 
 #[cfg(test)]
-#[path = "../tests/unit/memory.rs"]
+#[path = "../../tests/unit/memory.rs"]
 mod tests;
