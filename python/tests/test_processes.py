@@ -30,10 +30,13 @@ def forked(work):
 
 
 class Forks(unittest.TestCase):
-    H = ball(64, 0.001)
+    # So many elements that threads share the work.
+    M = 281
+    H = ball(M, 0.001 * (64 / M) ** 2)
+    SIZE = 12.8 / M
 
     def solve(self, threads):
-        return cn.solve(self.H, 0.2, 0.2, force=1e4, threads=threads, **STEEL).pressure.tobytes()
+        return cn.solve(self.H, self.SIZE, self.SIZE, force=1e4, threads=threads, **STEEL).pressure.tobytes()
 
     def test_a_forked_process_solves_after_a_threaded_solve(self):
         before = self.solve(2)
@@ -43,7 +46,7 @@ class Forks(unittest.TestCase):
 
     def test_a_handle_of_before_the_fork_solves_after_it(self):
         before = self.solve(2)
-        handle = cn.Solver(64, 64, 0.2, 0.2, threads=2, **STEEL)
+        handle = cn.Solver(self.M, self.M, self.SIZE, self.SIZE, threads=2, **STEEL)
         self.assertEqual(len(handle.solve_batch([self.H, self.H], force=1e4)), 2)
 
         def with_handle():

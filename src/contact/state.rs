@@ -52,17 +52,15 @@ pub struct State {
 }
 
 impl State {
-    /// Of the undeformed distance h; pressures and displacements are not known yet. `estimate` is the approach to start from when the force
-    /// is prescribed.
-    pub fn new(grid: Grid, h: Vec<f64>, load: Load, estimate: f64) -> Result<State> {
-        let alone = &Threads::One;
-        let mut state = State::at_rest(grid, (load, estimate), alone)?;
-        state.h = h;
-        state.wake(alone);
+    /// Its undeformed distance, pressures and displacements are not known yet. With the load comes the approach to start from when the force is
+    /// prescribed.
+    pub fn new(grid: Grid, load: (Load, f64), threads: &Threads) -> Result<State> {
+        let mut state = State::at_rest(grid, load, threads)?;
+        state.wake(threads);
         Ok(state)
     }
 
-    /// Of which a large h, p and u [wake](crate::memory::wake) when they are first needed.
+    /// The same, of which large arrays rest: [`wake`](State::wake) them before they are used.
     pub fn at_rest(grid: Grid, (load, estimate): (Load, f64), threads: &Threads) -> Result<State> {
         let mut arrays = [Vec::new(), Vec::new(), Vec::new()];
         for (values, what) in arrays.iter_mut().zip(["undeformed distances", "pressures", "displacements"]) {

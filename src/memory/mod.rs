@@ -178,7 +178,8 @@ pub(crate) fn rest<A>(values: &mut Vec<A>) {
 /// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
 pub(crate) fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     debug_assert!(n <= values.capacity(), "room for {n} values");
-    let threads = threads.for_a_pass(n.saturating_sub(values.len()));
+    let bytes = n.saturating_sub(values.len()).saturating_mul(size_of::<A>());
+    let threads = threads.for_a_pass(bytes / size_of::<f64>());
     if threads.count() == 1 {
         values.resize(n, mark);
     } else {

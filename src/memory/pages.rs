@@ -44,8 +44,8 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
 #[cfg(not(target_os = "linux"))]
 pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 
-/// Values that a thread writes at a time, at a first touch.
-const TOUCHED: usize = 1 << 12;
+/// Bytes that one thread touches first, at least: a huge page.
+const TOUCHED: usize = 2 << 20;
 
 /// Makes an array n values long, in the room that it has. The threads write the new ones together: the system clears each page at its first
 /// touch, which takes as long as several passes.
@@ -53,7 +53,7 @@ const TOUCHED: usize = 1 << 12;
 pub(super) fn lengthen_together<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     let missing = n - values.len();
     let new = &mut values.spare_capacity_mut()[..missing];
-    threads.for_each_plain_row(new, TOUCHED, |_, piece| {
+    threads.for_each_plain_row(new, (TOUCHED / size_of::<A>().max(1)).max(1), |_, piece| {
         piece.iter_mut().for_each(|value| {
             value.write(mark);
         });

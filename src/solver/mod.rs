@@ -143,11 +143,9 @@ impl Solver {
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
         problem.given = set_up.given;
-        let mut state = State::at_rest(grid, (Load::Approach(0.0), 0.0), threads)?;
-        state.wake(threads);
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
-            state,
+            state: State::new(grid, (Load::Approach(0.0), 0.0), threads)?,
             problem,
             set_up,
             has_result: false,

@@ -4,7 +4,6 @@ use super::best::Best;
 use super::iterate::iterate;
 use crate::contact::{lowest, AdmissibleSet, NonNegative, Problem, State};
 use crate::error::Result;
-use crate::memory::blank;
 use crate::methods::multigrid::{transfer, CycleShape, Cycles, Multigrid, Workspace};
 use crate::methods::norm::Norm;
 use crate::methods::Task;
@@ -34,8 +33,7 @@ impl FullMultigrid {
             let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
             let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
-            let h = blank(level.grid.len(), f64::NAN, "undeformed distances")?;
-            coarser.push((own, State::new(level.grid, h, Load::Approach(0.0), 0.0)?));
+            coarser.push((own, State::new(level.grid, (Load::Approach(0.0), 0.0), threads)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
     }

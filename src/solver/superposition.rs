@@ -178,12 +178,11 @@ impl Solver {
     /// The state of another load, with the distance of which p is the exact solution.
     fn without_residual(&self, load: Load) -> Result<State> {
         let State { grid, h, u, contact, approach, round_off, .. } = &self.state;
-        let mut distance = blank(h.len(), f64::NAN, "the distance of a smaller load")?;
+        let mut state = State::new(*grid, (load, *approach), &self.problem.threads)?;
         let known = h.iter().zip(u).zip(contact);
-        for (distance, ((h, u), inside)) in distance.iter_mut().zip(known) {
+        for (distance, ((h, u), inside)) in state.h.iter_mut().zip(known) {
             *distance = if *inside { approach - u } else { *h };
         }
-        let mut state = State::new(*grid, distance, load, *approach)?;
         state.round_off = *round_off;
         state.forget();
         Ok(state)

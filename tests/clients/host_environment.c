@@ -14,8 +14,8 @@
 
 #include "contact_normal.h"
 
-/* A prime, so that rounding matters everywhere, and so many elements that workers share each pass. */
-enum { M = 167, N = M * M };
+/* A prime, so that rounding matters everywhere, and so many elements that workers share each pass, also on the window around C. */
+enum { M = 281, N = M * M };
 
 static double h[N];
 

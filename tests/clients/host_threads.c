@@ -9,8 +9,8 @@
 
 #include "contact_normal.h"
 
-/* So many elements that workers share each pass. */
-enum { M = 160, N = M * M, THREADS = 8, ROUNDS = 20 };
+/* So many elements that workers share each pass, also on the window around C. */
+enum { M = 280, N = M * M, THREADS = 8, ROUNDS = 20 };
 
 static double h[THREADS][N], expected[THREADS][N];
 
@@ -32,7 +32,7 @@ static contact_normal_scene scene(int k)
     scene.dy = 12.0 / M;
     for (i = 0; i < N; i++) {
         const double x = (i % M + 0.5) * scene.dx - 10.0, y = (i / M + 0.5) * scene.dy - 6.0;
-        h[k][i] = 0.0016681 * x * x + 0.001 * (k + 2) * y * y;
+        h[k][i] = 0.0016681 * x * x + 0.0002 * (k + 10) * y * y;
     }
     scene.undeformed_distance = h[k];
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
@@ -47,20 +47,21 @@ static int rounds(const contact_normal_scene *scene, int threads, const double *
     contact_normal_options options;
     contact_normal_fields fields;
     contact_normal_solver *solver = NULL;
-    double p[N];
-    int round, good = 1;
+    double *p = malloc(N * sizeof *p);
+    int round, good = p != NULL;
 
     contact_normal_options_init(&options);
     options.threads = threads;
     contact_normal_fields_init(&fields);
     fields.pressure = p;
-    if (contact_normal_solver_new(scene, &options, &solver) != CONTACT_NORMAL_OK) return 0;
+    if (contact_normal_solver_new(scene, &options, &solver) != CONTACT_NORMAL_OK) good = 0;
     for (round = 0; round < ROUNDS && good; round++) {
-        memset(p, 0, sizeof p);
+        memset(p, 0, N * sizeof *p);
         good = contact_normal_solver_solve(solver, scene, &options, &fields, NULL) == CONTACT_NORMAL_OK
-            && memcmp(p, bits, sizeof p) == 0;
+            && memcmp(p, bits, N * sizeof *p) == 0;
     }
     contact_normal_solver_free(solver);
+    free(p);
     return good;
 }
 

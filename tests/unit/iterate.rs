@@ -17,7 +17,8 @@ fn scene(load: Load, wave: f64) -> (Problem, State) {
     let h = (0..grid.len()).map(h).collect();
     let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
     let problem = Problem::new(grid, influence, &Threads::One).expect("a problem");
-    let mut state = State::new(grid, h, load, 0.0).expect("a state");
+    let mut state = State::new(grid, (load, 0.0), &Threads::One).expect("a state");
+    state.h = h;
     state.unload();
     (problem, state)
 }

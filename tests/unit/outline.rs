@@ -3,6 +3,7 @@
 use super::*;
 use crate::grid::Grid;
 use crate::scene::Load;
+use crate::threads::Threads;
 
 #[test]
 fn changes_and_edges_of_a_corner() {
@@ -12,7 +13,8 @@ fn changes_and_edges_of_a_corner() {
     let grid = Grid::new(3, 3, 1.0, 2.0).unwrap();
     let mut h = vec![0.0; 9];
     h[4] = f64::INFINITY;
-    let mut state = State::new(grid, h, Load::Approach(0.0), 0.0).unwrap();
+    let mut state = State::new(grid, (Load::Approach(0.0), 0.0), &Threads::One).unwrap();
+    state.h = h;
     for i in [0, 1, 3] {
         state.contact[i] = true;
     }
@@ -27,7 +29,8 @@ fn changes_and_edges_of_a_corner() {
 #[test]
 fn a_circle_has_eight_changes_a_radius() {
     let grid = Grid::new(140, 140, 1.0, 1.0).unwrap();
-    let mut state = State::new(grid, vec![0.0; 140 * 140], Load::Approach(0.0), 0.0).unwrap();
+    let mut state = State::new(grid, (Load::Approach(0.0), 0.0), &Threads::One).unwrap();
+    state.h.fill(0.0);
     for step in 0..40 {
         let r = 50.0 + 0.25 * step as f64;
         for i in 0..140 * 140 {

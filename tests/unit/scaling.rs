@@ -8,7 +8,8 @@ fn the_farthest_element_is_found_in_any_part_of_a_grid() {
         for far in [0, n / 2, n - 2] {
             // In contact above the approach, or below it; its neighbour is nearer, the others are beyond reach.
             for (h, inside, beyond) in [(9.0, true, 1e9), (-5.0, false, f64::INFINITY), (2.5, true, 1e9)] {
-                let mut state = State::new(grid, vec![beyond; n], Load::Approach(2.0), 2.0).unwrap();
+                let mut state = State::new(grid, (Load::Approach(2.0), 2.0), &Threads::One).unwrap();
+                state.h.fill(beyond);
                 (state.h[far], state.contact[far]) = (h, inside);
                 for nearer in [far + 1, (far + n / 2) % n] {
                     (state.h[nearer], state.contact[nearer]) = (2.25, true);

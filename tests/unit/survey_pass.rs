@@ -4,6 +4,7 @@ use super::super::certificate::Survey;
 use super::super::State;
 use crate::grid::Grid;
 use crate::scene::Load;
+use crate::threads::Threads;
 
 const APPROACH: f64 = 3.0;
 
@@ -30,8 +31,9 @@ fn state(mx: usize, my: usize, kind: Kind) -> State {
     };
     let n = mx * my;
     let h = (0..n).map(|_| if number(9) == 0 { f64::INFINITY } else { number(30) as f64 }).collect();
-    let mut state =
-        State::new(Grid { mx, my, dx: 1.0, dy: 1.0 }, h, Load::Approach(APPROACH), APPROACH).expect("memory");
+    let mut state = State::new(Grid { mx, my, dx: 1.0, dy: 1.0 }, (Load::Approach(APPROACH), APPROACH), &Threads::One)
+        .expect("memory");
+    state.h = h;
     let limited = matches!(kind, Kind::Limited | Kind::DeepAtLimit);
     state.at_limit = vec![false; if limited { n } else { 0 }];
     state.reached_limit = limited;

@@ -21,6 +21,7 @@ use crate::methods::Task;
 use crate::operator::reserve;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal, Monitor};
+use crate::scene::Load;
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -64,11 +65,9 @@ impl CoarseGrids {
         while let Some(coarse) = coarsen(&fine, COARSEST) {
             influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
-            let mut state = State::at_rest(fine, (crate::scene::Load::Approach(0.0), 0.0), threads)?;
-            state.wake(threads);
             grids.push(Coarse {
                 level: Level::new(fine, influence.clone(), precision, threads),
-                state,
+                state: State::new(fine, (Load::Approach(0.0), 0.0), threads)?,
                 limits: Vec::new(),
             });
         }
