@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::state::presses;
-use crate::bounding_box::bounding_box;
+use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -168,7 +168,7 @@ fn fit<'a>(
 }
 
 /// The columns and rows outside of which p is 0; none where it is 0 everywhere.
-fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<(Range<usize>, Range<usize>)> {
+fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Part> {
     bounding_box(p, grid, threads, presses, |p| *p != 0.0)
 }
 

@@ -19,7 +19,7 @@ use std::sync::Mutex;
 
 use crate::error::{Error, Result};
 use crate::threads::Threads;
-use pages::{ask_for_huge_pages, give_pages_back, lengthen_together};
+use pages::{ask_for_huge_pages, give_pages_back, lengthen};
 
 /// Bytes that are kept in the process, at most: more than a solve on 2048 x 2048 elements takes.
 const MOST_KEPT: usize = 512 << 20;
@@ -102,18 +102,23 @@ pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: 
 /// The same where few of them may be put there: in small pages, so that the others take no memory.
 pub(crate) fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    v.try_reserve_exact(n).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    ask_for_room(&mut v, n, what)?;
     Ok(v)
 }
 
-/// The same from the system.
+/// Room for n values from the system, in huge pages.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {
         release();
     }
-    v.try_reserve_exact(n - v.len()).map_err(|_| Error::OutOfMemory(format!("no memory for {n} values of {what}")))?;
+    ask_for_room(v, n, what)?;
     ask_for_huge_pages(v.as_mut_ptr().cast(), v.capacity() * size_of::<A>());
     Ok(())
+}
+
+fn ask_for_room<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
+    let refused = |_| Error::OutOfMemory(format!("no memory for {n} values of {what}"));
+    v.try_reserve_exact(n - v.len()).map_err(refused)
 }
 
 /// The smallest block that is kept for `n` values, and is not far too large for them.
@@ -178,13 +183,7 @@ pub(crate) fn rest<A>(values: &mut Vec<A>) {
 /// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
 pub(crate) fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     debug_assert!(n <= values.capacity(), "room for {n} values");
-    let bytes = n.saturating_sub(values.len()).saturating_mul(size_of::<A>());
-    let threads = threads.for_a_pass(bytes / size_of::<f64>());
-    if threads.count() == 1 {
-        values.resize(n, mark);
-    } else {
-        lengthen_together(values, n, mark, &threads);
-    }
+    lengthen(values, n, mark, threads);
 }
 
 /// Keeps the memory of arrays that nobody needs any more: they are empty then.

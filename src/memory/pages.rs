@@ -47,17 +47,19 @@ pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 /// Bytes that one thread touches first, at least: a huge page.
 const TOUCHED: usize = 2 << 20;
 
-/// Makes an array n values long, in the room that it has. The threads write the new ones together: the system clears each page at its first
+/// Makes an array n values long, in the room that it has. The threads write many new ones together: the system clears each page at its first
 /// touch, which takes as long as several passes.
 #[allow(unsafe_code)]
-pub(super) fn lengthen_together<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
-    let missing = n - values.len();
-    let new = &mut values.spare_capacity_mut()[..missing];
-    threads.for_each_plain_row(new, (TOUCHED / size_of::<A>().max(1)).max(1), |_, piece| {
-        piece.iter_mut().for_each(|value| {
+pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
+    let (known, piece) = (values.len(), TOUCHED / size_of::<A>());
+    if threads.count() == 1 || n <= known + piece {
+        return values.resize(n, mark);
+    }
+    threads.for_each_plain_row(&mut values.spare_capacity_mut()[..n - known], piece, |_, new| {
+        new.iter_mut().for_each(|value| {
             value.write(mark);
         });
     });
-    // SAFETY: each of the values up to n has been written: those up to the old length before, and the others, within the room, above.
+    // SAFETY: each of the values up to n has been written: the known ones before, and the others, within the room, above.
     unsafe { values.set_len(n) };
 }

@@ -1,6 +1,7 @@
 //! Normal and tangential problem in turns. Of unlike bodies each changes the other.
 
 use super::superposition::Smaller;
+use super::take_over::take_distance;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Options, Solver};
 use crate::contact::{lowest, Fixed, NonNegative, Survey};
@@ -90,7 +91,7 @@ impl Solver {
     /// reported. Says whether it holds.
     fn holds_with(&mut self, distance: &[f64], change: f64, turn: &Turn<'_>, monitor: &mut Monitor<'_>) -> bool {
         let Solver { problem, state, .. } = self;
-        state.h.copy_from_slice(distance);
+        take_distance(state, distance, &problem.threads);
         state.fit_approach(&problem.threads);
         let survey = Survey::by(state, &problem.threads);
         let goal = turn.options.goal();
