@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::{
-    assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed, EXAMPLES_OF_EFFECTS,
+    assert_certified, finished, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed,
+    EXAMPLES_OF_EFFECTS,
 };
 use contact_normal::ffi::*;
 use contact_normal::grid::Grid;
@@ -174,8 +175,7 @@ fn an_example_fails_with_the_message_of_the_library() {
     let program = compile(compiler("cc", "c99"), "c_examples/wheel_rail.c", &folder);
     let data = folder.join("bad.txt");
     std::fs::write(&data, "#\n#\n#\n1 1 0.2 0.2 0.1 -5 82000 0.28\n0 0 0\n").expect("a writable scratch folder");
-    let output =
-        Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder).output().expect("a program that runs");
+    let output = finished(Command::new(program).arg(&data).env("LD_LIBRARY_PATH", &folder));
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("force is -5") && output.stdout.is_empty(), "{said}");

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::support::{assert_certified, recompute, root, run, scratch, Recomputed};
+use crate::support::{assert_certified, finished, recompute, root, run, scratch, Recomputed};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
@@ -40,6 +40,8 @@ pub fn python_in(folder: &Path) -> Command {
         .env("CONTACT_NORMAL_LIBRARY", folder.join("libcontact_normal.so"))
         .env("PYTHONPATH", root().join("python"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
+        // Where a program stands that hangs.
+        .env("PYTHONFAULTHANDLER", "1")
         // matplotlib keeps its cache there, and complains when it cannot.
         .env("MPLCONFIGDIR", folder);
     command
@@ -68,7 +70,7 @@ fn recomputed(arrays: &Path) -> Recomputed {
 fn the_tests_of_the_package_pass() {
     let mut command = python_in(&scratch("python_package"));
     let tests = root().join("python/tests");
-    let output = command.args(["-m", "unittest", "discover", "-s"]).arg(&tests).output().expect("a Python");
+    let output = finished(command.args(["-m", "unittest", "discover", "-s"]).arg(&tests));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
     // "Ran 15 tests in ...": none found would be a success, too.

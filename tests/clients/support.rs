@@ -2,8 +2,11 @@
 //! certificate recomputed from the arrays that a client wrote.
 #![allow(dead_code)] // each test uses its part
 
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output, Stdio};
+use std::sync::mpsc;
+use std::time::Duration;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Coefficients;
@@ -43,9 +46,45 @@ pub fn scratch(test: &str) -> PathBuf {
     folder
 }
 
+/// What a program may take: several times as long as the slowest one, under valgrind on a busy machine. One that hangs then fails.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Runs a program to its end.
+pub fn finished(command: &mut Command) -> Output {
+    finished_within(PATIENCE, command)
+}
+
+/// Runs a program to its end, or aborts it and all that it started: a Python then tells on stderr where its threads stand.
+fn finished_within(patience: Duration, command: &mut Command) -> Output {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
+    let program = command.spawn().unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let group = format!("-{}", program.id());
+    let (ended, end) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            if end.recv_timeout(patience) == Err(mpsc::RecvTimeoutError::Timeout) {
+                Command::new("kill").args(["-ABRT", "--", &group]).status().expect("kill");
+            }
+        });
+        let output = program.wait_with_output().expect("its output");
+        drop(ended);
+        output
+    })
+}
+
+#[test]
+fn a_program_that_hangs_is_ended_with_what_it_started() {
+    let output = finished_within(
+        Duration::from_millis(200),
+        Command::new("sh").args(["-c", "echo begun; sleep 3600; echo woken"]),
+    );
+    assert!(!output.status.success(), "{}", output.status);
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "begun\n");
+}
+
 /// Runs a command to its end; it must succeed. Returns what it printed.
 pub fn run(command: &mut Command) -> String {
-    let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let output = finished(command);
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{command:?}: {}\n{out}\n{err}", output.status);
     assert!(err.trim().is_empty(), "{command:?} wrote to stderr:\n{err}");
