@@ -165,6 +165,18 @@ impl<T: Real> Block<'_, T> {
         self.columns
     }
 
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The block's columns from the k-th on.
+    pub fn tail(&mut self, k: usize) -> Block<'_, T> {
+        assert!(k <= self.columns);
+        let Block { data, rows, width, .. } = *self;
+        Block { data, rows, width, first: self.first + k, columns: self.columns - k, owner: PhantomData }
+    }
+
     /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
     pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>]) {
         let columns = self.columns();
@@ -217,14 +229,17 @@ impl<T: Real> Block<'_, T> {
     }
 
     /// The block's part of a row.
-    fn row(&self, row: usize) -> &[Complex<T>] {
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[Complex<T>] {
         assert!(row < self.rows);
         // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which those who make
         // blocks borrow exclusively, and no other block overlaps this one.
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 
-    fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
+    /// The same, to be written.
+    #[inline(always)]
+    pub fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
         assert!(row < self.rows);
         // SAFETY: as in `row`; this block is borrowed mutably.
         unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), self.columns()) }

@@ -9,10 +9,11 @@
 use std::ops::Range;
 
 use super::columns::for_each_block;
+use super::even_columns::{EvenColumns, GROUP};
 use super::fft::{ColumnTransform, Real};
 use super::rows::{Product, Rows};
 use super::set_up::{Even, SetUp, Transforms};
-use super::spectrum::{is_coarse, Spectrum, SPECTRUM};
+use super::spectrum::{is_coarse, EvenOrder, Spectrum, SPECTRUM};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -35,20 +36,31 @@ pub(super) fn room_of_column(length: usize) -> usize {
 /// Transforms in y, and the spectrum.
 pub(super) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
+    /// Of groups of columns, by an even spectrum.
+    even: Option<EvenColumns<T>>,
     spectrum: Spectrum<T>,
 }
 
 impl<T: Real> Convolution<T> {
     /// Transforms of period py; the spectrum is still to be computed.
     pub fn new(py: usize) -> Convolution<T> {
-        Convolution { columns: ColumnTransform::new(py), spectrum: Spectrum::Even(Vec::new()) }
+        Convolution {
+            columns: ColumnTransform::new(py),
+            even: EvenColumns::new(py),
+            spectrum: Spectrum::Even(Vec::new()),
+        }
     }
 
-    /// The same in another precision, times a factor.
-    pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
-        let columns = ColumnTransform::new(self.columns.length());
-        let spectrum = self.spectrum.in_precision(factor, threads)?;
-        Ok(Convolution { columns, spectrum })
+    /// How an even spectrum of so many columns is kept.
+    fn order(&self, columns: usize) -> EvenOrder<'_, T> {
+        EvenOrder { groups: self.even.as_ref(), columns, py: self.columns.length() }
+    }
+
+    /// The same in another precision, times a factor, of `nb` columns.
+    pub fn in_precision<S: Real>(&self, nb: usize, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
+        let mut other = Convolution::new(self.columns.length());
+        other.spectrum = self.spectrum.in_precision((self.order(nb), other.order(nb)), factor, threads)?;
+        Ok(other)
     }
 
     pub fn bytes(&self) -> usize {
@@ -59,18 +71,26 @@ impl<T: Real> Convolution<T> {
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
         let Product { bins, pieces } = product;
         let (nb, length) = (rows.transform.bins(), self.columns.length());
-        let room = room_of_column(length);
+        let (room, order) = (room_of_column(length), self.order(nb));
         for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
-            let columns = &mut piece.columns[..block.columns() * room];
-            block.gather(loaded.clone(), room, columns);
             #[cfg(feature = "test-panics")]
             crate::panics::at_a_block();
+            let mut together = 0;
+            if let (Some(even), Spectrum::Even(values)) = (&self.even, &self.spectrum) {
+                together = even.multiply(block, loaded.clone(), values, &mut piece.columns);
+            }
+            let mut block = block.tail(together);
+            if block.columns() == 0 {
+                return;
+            }
+            let columns = &mut piece.columns[..block.columns() * room];
+            block.gather(loaded.clone(), room, columns);
             // Long columns one by one, in the nearest cache.
             let (together, used) = if room > length { (room, length) } else { (columns.len(), columns.len()) };
             for (c, columns) in columns.chunks_exact_mut(together).enumerate() {
                 let columns = &mut columns[..used];
                 self.columns.forward(columns, &mut piece.scratch);
-                self.spectrum.multiply(block.first() + c, columns, length);
+                self.spectrum.multiply(block.first() + c, order, columns);
                 self.columns.inverse(columns, &mut piece.scratch);
             }
             block.scatter(0..rows.my, room, columns);
@@ -84,20 +104,27 @@ impl<T: Real> Convolution<T> {
         G: Fn(f64) -> f64 + Sync + Send,
     {
         let mut values = self.spectrum.take_real();
-        Transforms::new((px, self.columns.length()), threads).of_even(even, set_up, &mut values)?;
+        let transforms = Transforms::new((px, self.columns.length()), threads);
+        transforms.of_even(even, set_up, self.even.as_ref(), &mut values)?;
         self.spectrum = Spectrum::Even(values);
         Ok(())
     }
 
     /// Takes a spectrum of even coefficients, `value(x, y)` of the bins >= 0; `px` is the period in x.
     pub fn set_values(&mut self, (nb, px): (usize, usize), value: impl Fn(usize, usize) -> f64) -> Result<()> {
-        let py = self.columns.length();
-        let half = py / 2 + 1;
+        let (py, order) = (self.columns.length(), self.order(nb));
         let scale = 1.0 / (px as f64 * py as f64);
+        let value = |x: usize, y: usize| T::of(scale * value(x, y));
         let mut spectrum = Vec::new();
-        unwritten(&mut spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM, &Threads::One)?;
-        for (i, out) in spectrum[..nb * half].iter_mut().enumerate() {
-            *out = T::of(scale * value(i / half, i % half));
+        unwritten(&mut spectrum, order.len(), T::nan(), SPECTRUM, &Threads::One)?;
+        let (grouped, half) = (order.of_column(order.grouped()), order.half());
+        if let Some(groups) = order.groups {
+            for (k, group) in spectrum[..grouped].chunks_exact_mut(order.group()).enumerate() {
+                groups.write(group, |column, bin| value(k * GROUP + column, bin));
+            }
+        }
+        for (x, column) in (order.grouped()..nb).zip(spectrum[grouped..].chunks_exact_mut(half)) {
+            column.iter_mut().enumerate().for_each(|(y, out)| *out = value(x, y));
         }
         self.spectrum = Spectrum::Even(spectrum);
         Ok(())

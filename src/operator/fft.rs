@@ -11,10 +11,14 @@ use rustfft::num_traits::{Float, FromPrimitive};
 
 use rustfft::{Fft, FftNum, FftPlanner};
 
+use super::even_columns::EvenPlan;
+use super::lanes::Lanes;
 use crate::sums::Value;
 
 /// `f32` or `f64`.
-pub trait Real: Value + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign {
+pub trait Real:
+    Value + Lanes + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign
+{
     #[doc(hidden)]
     fn with_plans<R>(use_it: impl FnOnce(&mut Plans<Self>) -> R) -> R;
 
@@ -31,13 +35,15 @@ pub struct Plans<T: Real> {
     planner: FftPlanner<T>,
     /// Of transforms of real rows, by their length.
     twiddles: HashMap<usize, Arc<[Complex<T>]>>,
+    /// Of columns of even coefficients, by theirs.
+    even: HashMap<usize, Option<Arc<EvenPlan<T>>>>,
 }
 
 macro_rules! real {
     ($t:ty, $plans:ident) => {
         thread_local! {
             static $plans: RefCell<Plans<$t>> =
-                RefCell::new(Plans { planner: FftPlanner::new(), twiddles: HashMap::new() });
+                RefCell::new(Plans { planner: FftPlanner::new(), twiddles: HashMap::new(), even: HashMap::new() });
         }
         impl Real for $t {
             fn with_plans<R>(use_it: impl FnOnce(&mut Plans<$t>) -> R) -> R {
@@ -52,6 +58,11 @@ real!(f32, PLANS_F32);
 /// The twiddles of real rows of length `n`, computed once.
 pub(super) fn twiddles<T: Real>(n: usize, compute: impl FnOnce() -> Vec<Complex<T>>) -> Arc<[Complex<T>]> {
     T::with_plans(|plans| plans.twiddles.entry(n).or_insert_with(|| compute().into()).clone())
+}
+
+/// The stages of columns of even coefficients, computed once.
+pub(super) fn even_plan<T: Real>(length: usize) -> Option<Arc<EvenPlan<T>>> {
+    T::with_plans(|plans| plans.even.entry(length).or_insert_with(|| EvenPlan::new(length).map(Arc::new)).clone())
 }
 
 /// Work of a transform of length `2^a 3^b 5^c` relative to one of `2^a 3^b` with many twos: measured, in single precision, where it

@@ -1,11 +1,15 @@
 //! The operator of the contact problem: `u = A p`.
 
+mod butterflies;
 mod circulant;
 #[allow(unsafe_code)] // the kernel
 pub mod columns;
 mod convolution;
 pub mod dense;
+mod even_columns;
+mod even_stages;
 pub mod fft;
+mod lanes;
 #[allow(clippy::module_inception)]
 mod operator;
 mod periods;

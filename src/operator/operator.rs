@@ -164,7 +164,8 @@ impl<T: Real> Operator<T> {
             rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
                 Columns::Convolution(convolution) => {
-                    Columns::Convolution(convolution.in_precision(factor, &self.rows.threads)?)
+                    let nb = self.rows.transform.bins();
+                    Columns::Convolution(convolution.in_precision(nb, factor, &self.rows.threads)?)
                 }
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },

@@ -1,10 +1,12 @@
 //! How a spectrum is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
 
+use super::columns::parts;
+use super::even_columns::EvenColumns;
 use super::fft::{ColumnTransform, Complex, Real};
 use super::row_transform::RowTransform;
 use super::set_up_columns::{fill_pairs, gather, Parts, Scaled, PAIRS};
-use super::spectrum::SPECTRUM;
+use super::spectrum::{EvenOrder, SPECTRUM};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -95,6 +97,7 @@ impl<'a> Transforms<'a> {
         &self,
         even: &Even<F, G>,
         SetUp { real: in_x, pieces, .. }: &mut SetUp,
+        groups: Option<&EvenColumns<T>>,
         spectrum: &mut Vec<T>,
     ) -> Result<()>
     where
@@ -114,18 +117,24 @@ impl<'a> Transforms<'a> {
             self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
-        let (half, scale) = (py / 2 + 1, self.scale());
-        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM, self.threads)?;
-        self.threads.for_each_row(spectrum, PAIRS * 2 * half, pieces, |block, out, piece| {
-            let (first, pairs) = (PAIRS * block, out.len() / (2 * half));
+        let (order, scale) = (EvenOrder { groups, columns: nb, py }, self.scale());
+        let (half, value) = (order.half(), |value: f64| T::of(scale * (even.finish)(value)));
+        unwritten(spectrum, order.len(), T::nan(), SPECTRUM, self.threads)?;
+        self.threads.for_each_row(spectrum, order.group(), pieces, |k, out, piece| {
+            let first = 2 * PAIRS * k;
+            let group = groups.filter(|_| first < order.grouped());
+            let pairs = if group.is_some() { PAIRS } else { out.len() / (2 * half) };
             let block = &mut piece.column[..pairs * py];
-            fill_pairs((in_x, nb), rows_given, 2 * first, (block, py), |re, im| [Complex::new(re, im); 2]);
+            fill_pairs((in_x, nb), rows_given, first, (block, py), |re, im| [Complex::new(re, im); 2]);
             self.columns.forward(block, &mut piece.columns);
+            if let Some(group) = group {
+                // Columns 2 k and 2 k + 1 are the real and the imaginary parts of pair k.
+                return group.write(out, |column, bin| value(parts(block)[2 * (column / 2 * py + bin) + column % 2]));
+            }
             for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
                 let (re, im) = out.split_at_mut(half);
                 for ((bin, re), im) in column.iter().zip(re).zip(im) {
-                    *re = T::of(scale * (even.finish)(bin.re));
-                    *im = T::of(scale * (even.finish)(bin.im));
+                    (*re, *im) = (value(bin.re), value(bin.im));
                 }
             }
         });

@@ -2,6 +2,7 @@
 
 use super::columns::BLOCK;
 use super::convolution::room_of_column;
+use super::even_columns::MARGIN;
 use super::fft::{Complex, Real};
 use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
@@ -90,7 +91,7 @@ impl<T: Real> Operator<T> {
 
     /// Values of a block of columns.
     fn column_room(&self) -> usize {
-        BLOCK * room_of_column(self.periods().1)
+        BLOCK * room_of_column(self.periods().1) + MARGIN
     }
 
     /// Elements of a grid with patches.

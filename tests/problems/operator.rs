@@ -81,6 +81,30 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
     }
 }
 
+/// Columns are transformed eight at a time and the rest one by one, and lengths are of many kinds: all numbers of columns and many
+/// lengths, in both precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
+#[test]
+fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
+    let mut random = Random(7);
+    for (mx, my) in (1..=20).map(|k| (2 * k - 1, 3 * k + 2)).chain([(40, 3), (9, 61), (33, 41), (16, 46)]) {
+        let grid = Grid::new(mx, my, 0.5, 0.25).unwrap();
+        let influence = Coefficients::from(HalfSpace::new(0.5, 0.25, 1.0));
+        let p: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
+        check(&influence, &grid, &p);
+        let mut exact = vec![0.0; grid.len()];
+        dense::apply(&influence, &grid, &p, &mut exact);
+        let double = Operator::<f64>::new(&influence, &grid, &Threads::One).unwrap();
+        let of_double = double.in_precision::<f32>(1.0).unwrap();
+        for operator in [Operator::<f32>::new(&influence, &grid, &Threads::One).unwrap(), of_double] {
+            let single: Vec<f32> = p.iter().map(|&value| value as f32).collect();
+            let mut u = vec![f32::NAN; grid.len()];
+            operator.apply(&single, &mut u, &mut operator.workspace().unwrap());
+            let difference = u.iter().zip(&exact).fold(0.0, |m: f64, (a, b)| m.max((f64::from(*a) - b).abs()));
+            assert!(difference <= 1e-6 * largest(&exact), "{grid:?}: {difference} of {}", largest(&exact));
+        }
+    }
+}
+
 #[test]
 fn direct_summation_gives_the_displacement_of_a_uniform_pressure() {
     // Uniform pressure on a rectangle 2a x 2b: u at its centre is 4 [a asinh(b/a) + b asinh(a/b)]/(pi E*) (Love).

@@ -1,0 +1,189 @@
+//! The stages of transforms of many columns at a time (Cooley and Tukey 1965).
+//!
+//! A stage of radix R cuts a transform of `n = R m` rows in R of m rows, with `w = exp(-2 pi i/n)`:
+//!
+//! ```text
+//! forward     x_(j + q m) <- w^(q j) sum_k x_(j + k m) exp(-2 pi i q k/R)      bins q, q + R, q + 2 R .. are now in rows q m .. (q + 1) m
+//! backwards   x_(j + k m) <- sum_q w^(q j) x_(j + q m) exp(-2 pi i q k/R)
+//! ```
+//!
+//! So all is done in place, and bins stay in the order in which the stages leave them. The inverse is the transform of numbers whose real
+//! and imaginary parts are swapped, swapped back.
+//!
+//! Loops run over indices of slices of one length: with iterators they take 3 to 7 % longer.
+#![allow(clippy::needless_range_loop)]
+
+use pulp::Simd;
+
+use super::butterflies::{butterfly, LONGEST};
+use super::fft::{Complex, Real};
+use super::lanes::{Arithmetic, Lanes, Parts, C};
+
+/// One row of `M/2` complex vectors: the real and the imaginary parts of the first, of the second ..
+pub(super) type Row<T, S, const M: usize> = [<T as Lanes>::Vector<S>; M];
+
+/// Of one radix.
+pub(super) struct Stage<T: Real> {
+    pub radix: usize,
+    /// `w^(q j)` of q = 1 .. R - 1 for j = 0, the same for j = 1 ..
+    pub twiddles: Vec<Complex<T>>,
+}
+
+impl<T: Real> Stage<T> {
+    /// m.
+    pub fn stride(&self) -> usize {
+        self.twiddles.len() / (self.radix - 1)
+    }
+}
+
+#[inline(always)]
+fn get<T: Real, S: Simd, const M: usize>(row: &Row<T, S, M>, v: usize) -> C<T, S> {
+    Parts { re: row[2 * v], im: row[2 * v + 1] }
+}
+
+#[inline(always)]
+fn put<T: Real, S: Simd, const M: usize>(row: &mut Row<T, S, M>, v: usize, value: C<T, S>) {
+    (row[2 * v], row[2 * v + 1]) = (value.re, value.im);
+}
+
+/// Rows 0 .. m, m .. 2 m, .., R times.
+#[inline(always)]
+fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
+    let mut cut: [&mut [A]; LONGEST] = [&mut [], &mut [], &mut [], &mut [], &mut []];
+    let mut rest = &mut rows[..R * m];
+    for k in 0..R {
+        let (part, behind) = rest.split_at_mut(m);
+        (cut[k], rest) = (&mut part[..m], behind);
+    }
+    cut
+}
+
+/// The first stage, of rows that `load(row, vector)` gives.
+#[inline(always)]
+pub(super) fn first<T: Real, S: Simd, const R: usize, const M: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S, M>],
+    load: impl Fn(usize, usize) -> C<T, S>,
+) {
+    let m = stage.stride();
+    let rows = cut::<_, R>(rows, m);
+    for j in 0..m {
+        let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+        for v in 0..M / 2 {
+            let mut x = [load(j, v); LONGEST];
+            for k in 1..R {
+                x[k] = load(j + k * m, v);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            put::<T, S, M>(&mut rows[0][j], v, x[0]);
+            for q in 1..R {
+                put::<T, S, M>(&mut rows[q][j], v, a.turn(x[q], w[q - 1]));
+            }
+        }
+    }
+}
+
+/// A stage forward.
+#[inline(always)]
+pub(super) fn forward<T: Real, S: Simd, const R: usize, const M: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S, M>],
+) {
+    let m = stage.stride();
+    for rows in rows.chunks_exact_mut(R * m) {
+        let rows = cut::<_, R>(rows, m);
+        for j in 0..m {
+            let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+            for v in 0..M / 2 {
+                let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
+                for k in 1..R {
+                    x[k] = get::<T, S, M>(&rows[k][j], v);
+                }
+                butterfly::<T, S, R>(a, &mut x);
+                put::<T, S, M>(&mut rows[0][j], v, x[0]);
+                for q in 1..R {
+                    put::<T, S, M>(&mut rows[q][j], v, a.turn(x[q], w[q - 1]));
+                }
+            }
+        }
+    }
+}
+
+/// The last stage forward, the product by `factor(block of R rows, q, vector)`, and the first stage backwards.
+#[inline(always)]
+pub(super) fn multiply<T: Real, S: Simd, const R: usize, const M: usize>(
+    a: Arithmetic<T, S>,
+    rows: &mut [Row<T, S, M>],
+    factor: impl Fn(usize, usize, usize) -> T::Vector<S>,
+) {
+    for (b, rows) in rows.chunks_exact_mut(R).enumerate() {
+        for v in 0..M / 2 {
+            let mut x = [get::<T, S, M>(&rows[0], v); LONGEST];
+            for k in 1..R {
+                x[k] = get::<T, S, M>(&rows[k], v);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            for q in 0..R {
+                let Parts { re, im } = a.scale(x[q], factor(b, q, v));
+                x[q] = Parts { re: im, im: re };
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            for k in 0..R {
+                put::<T, S, M>(&mut rows[k], v, x[k]);
+            }
+        }
+    }
+}
+
+/// A stage backwards.
+#[inline(always)]
+pub(super) fn backwards<T: Real, S: Simd, const R: usize, const M: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S, M>],
+) {
+    let m = stage.stride();
+    for rows in rows.chunks_exact_mut(R * m) {
+        let rows = cut::<_, R>(rows, m);
+        for j in 0..m {
+            let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+            for v in 0..M / 2 {
+                let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
+                for q in 1..R {
+                    x[q] = a.turn(get::<T, S, M>(&rows[q][j], v), w[q - 1]);
+                }
+                butterfly::<T, S, R>(a, &mut x);
+                for k in 0..R {
+                    put::<T, S, M>(&mut rows[k][j], v, x[k]);
+                }
+            }
+        }
+    }
+}
+
+/// The last stage backwards, to `store(row, vector, value)`.
+#[inline(always)]
+pub(super) fn last<T: Real, S: Simd, const R: usize, const M: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S, M>],
+    mut store: impl FnMut(usize, usize, C<T, S>),
+) {
+    let m = stage.stride();
+    let rows = cut::<_, R>(rows, m);
+    for j in 0..m {
+        let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+        for v in 0..M / 2 {
+            let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
+            for q in 1..R {
+                x[q] = a.turn(get::<T, S, M>(&rows[q][j], v), w[q - 1]);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            for k in 0..R {
+                store(j + k * m, v, Parts { re: x[k].im, im: x[k].re });
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Groups of columns by another implementation's transforms, rustfft's.
+
+use super::super::columns::for_each_block;
+use super::super::fft::ColumnTransform;
+use super::*;
+use crate::threads::Threads;
+
+/// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
+/// largest value.
+fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) -> f64 {
+    let even = EvenColumns::<T>::new(length).expect("a plan");
+    let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
+    let s = |column: usize, bin: usize| T::of(((column * 31 + bin * 17) % 97) as f64 / 97.0 + 0.1);
+    let mut matrix: Vec<Complex<T>> = (0..my * width).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
+
+    let (transform, mut scratch) = (ColumnTransform::<f64>::new(length), ColumnTransform::<f64>::new(length).scratch());
+    let mut expected = Vec::new();
+    for x in 0..width {
+        let double = |z: Complex<T>| Complex::new(z.re.to_double(), z.im.to_double());
+        let row = |y: usize| if loaded.contains(&y) { double(matrix[y * width + x]) } else { Complex::default() };
+        let mut column: Vec<Complex<f64>> = (0..length).map(row).collect();
+        transform.forward(&mut column, &mut scratch);
+        column.iter_mut().enumerate().for_each(|(k, z)| *z *= s(x, k.min(length - k)).to_double());
+        transform.inverse(&mut column, &mut scratch);
+        expected.push(column);
+    }
+
+    let grouped = EvenColumns::<T>::grouped(width);
+    let mut spectrum = vec![T::nan(); grouped * even.kept_rows()];
+    for (g, group) in spectrum.chunks_exact_mut(GROUP * even.kept_rows()).enumerate() {
+        even.write(group, |column, bin| s(g * GROUP + column, bin));
+    }
+    let given = matrix.clone();
+    let memory = vec![Complex::new(T::nan(), T::nan()); 2 * GROUP * length + MARGIN];
+    for_each_block(&mut matrix, width, &Threads::One, &mut [()], |block, ()| {
+        even.multiply(block, loaded.clone(), &spectrum, &mut memory.clone());
+    });
+    let (mut difference, mut largest) = (0.0, 0.0);
+    for (y, (row, given)) in matrix.chunks_exact(width).zip(given.chunks_exact(width)).enumerate() {
+        assert!(row[grouped..] == given[grouped..], "columns in no group have changed");
+        for (value, column) in row[..grouped].iter().zip(&expected) {
+            let (re, im) = (value.re.to_double() - column[y].re, value.im.to_double() - column[y].im);
+            difference = f64::max(difference, re.hypot(im));
+            largest = f64::max(largest, column[y].norm());
+        }
+    }
+    assert!(!difference.is_nan() && largest > 0.0);
+    difference / largest
+}
+
+/// Lengths of every radix at every place: the factors of each are in [`radices`].
+const LENGTHS: [usize; 16] = [6, 8, 9, 10, 15, 16, 20, 25, 27, 32, 48, 50, 60, 120, 450, 1024];
+
+#[test]
+fn a_group_of_columns_has_the_product_of_each() {
+    if EvenColumns::<f64>::new(16).is_none() {
+        // Without vectors columns go one by one, as tests/problems/operator.rs checks.
+        return assert!(EvenColumns::<f32>::new(16).is_none());
+    }
+    for length in LENGTHS {
+        for width in [8, 11, 16, 24, 40, 47] {
+            for (my, loaded) in
+                [(length, 0..length), (length / 2 + 1, 0..length / 2), (length / 2 + 1, 1..2), (1, 0..1)]
+            {
+                // Each of log2(length) steps rounds once or twice.
+                let allowed = 2.0 * (length as f64).log2();
+                let (double, single) =
+                    (error::<f64>(length, width, my, loaded.clone()), error::<f32>(length, width, my, loaded));
+                assert!(double <= allowed * f64::EPSILON, "{length}, {width} columns: {double}");
+                assert!(single <= allowed * f64::from(f32::EPSILON), "{length}, {width} columns: {single}");
+            }
+        }
+    }
+}
+
+#[test]
+fn some_lengths_have_no_plan() {
+    for length in [1, 2, 3, 4 * 7, 5, 11, 22] {
+        assert!(EvenPlan::<f64>::new(length).is_none(), "{length}");
+    }
+}
