@@ -22,9 +22,6 @@ use super::lanes::{places, Arithmetic, Parts, C};
 
 /// Columns of a group.
 pub(super) const GROUP: usize = 8;
-/// Values that the beginning of memory may be moved by: vectors that begin a line of the cache are in one.
-pub(super) const MARGIN: usize = GROUP;
-const LINE: usize = 64;
 
 /// The stages of one length.
 pub struct EvenPlan<T: Real> {
@@ -151,8 +148,7 @@ impl<T: Real> EvenColumns<T> {
         there.column_in.map(|column| self.column_in.iter().position(|&c| c == column).unwrap_or_default())
     }
 
-    /// Multiplies the groups of a block, rows `loaded` of which hold values, in memory for [`MARGIN`] values more than they need. Returns
-    /// how many columns they are.
+    /// Multiplies the groups of a block, rows `loaded` of which hold values, in memory for its columns. Returns how many columns they are.
     pub fn multiply(
         &self,
         block: &mut Block<'_, T>,
@@ -163,14 +159,7 @@ impl<T: Real> EvenColumns<T> {
         let (columns, at) = (EvenColumns::<T>::grouped(block.columns()), block.first());
         if columns > 0 {
             let spectrum = &spectrum[at * self.kept_rows()..][..columns * self.kept_rows()];
-            pulp::Arch::new().dispatch(Multiply {
-                plan: &self.plan,
-                columns: 0..columns,
-                block,
-                loaded,
-                spectrum,
-                memory,
-            });
+            pulp::Arch::new().dispatch(Multiply { plan: &self.plan, columns, block, loaded, spectrum, memory });
         }
         columns
     }
@@ -198,10 +187,10 @@ impl<T: Real> WithSimd for ColumnIn<T> {
     }
 }
 
-/// One pass over some groups of a block.
+/// One pass over the groups of a block.
 struct Multiply<'a, 'b, T: Real> {
     plan: &'a EvenPlan<T>,
-    columns: Range<usize>,
+    columns: usize,
     block: &'a mut Block<'b, T>,
     loaded: Range<usize>,
     spectrum: &'a [T],
@@ -211,13 +200,11 @@ struct Multiply<'a, 'b, T: Real> {
 impl<T: Real> WithSimd for Multiply<'_, '_, T> {
     type Output = ();
 
+    /// One vector of columns after the other: so a column of [`LONG`](super::convolution::LONG) values stays in the nearest cache.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match self.columns.len() / places::<T, S>() {
-            1 => self.by::<S, 2>(simd),
-            2 => self.by::<S, 4>(simd),
-            4 => self.by::<S, 8>(simd),
-            _ => self.one_by_one(simd),
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        for column in (0..self.columns).step_by(places::<T, S>()) {
+            self.one_vector(simd, column);
         }
     }
 }
@@ -226,47 +213,31 @@ impl<T: Real> WithSimd for Multiply<'_, '_, T> {
 macro_rules! of_radix {
     ($radix:expr, $stage:ident, $($argument:expr),*) => {
         match $radix {
-            2 => $stage::<T, S, 2, M>($($argument),*),
-            3 => $stage::<T, S, 3, M>($($argument),*),
-            4 => $stage::<T, S, 4, M>($($argument),*),
-            _ => $stage::<T, S, 5, M>($($argument),*),
+            2 => $stage::<T, S, 2>($($argument),*),
+            3 => $stage::<T, S, 3>($($argument),*),
+            4 => $stage::<T, S, 4>($($argument),*),
+            _ => $stage::<T, S, 5>($($argument),*),
         }
     };
 }
 
 impl<T: Real> Multiply<'_, '_, T> {
-    /// Of vectors that are too many for all groups at a time.
+    /// The columns of one vector, from the given one of the block on.
     #[inline(always)]
-    fn one_by_one<S: Simd>(self, simd: S) {
-        let Multiply { plan, columns, block, loaded, spectrum, memory } = self;
-        let groups = columns.step_by(GROUP).zip(spectrum.chunks_exact(GROUP * plan.bins.len()));
-        for (first, spectrum) in groups {
-            let loaded = loaded.clone();
-            let columns = first..first + GROUP;
-            let group = Multiply { plan, columns, block: &mut *block, loaded, spectrum, memory: &mut *memory };
-            match GROUP / places::<T, S>() {
-                1 => group.by::<S, 2>(simd),
-                2 => group.by::<S, 4>(simd),
-                _ => group.by::<S, 8>(simd),
-            }
-        }
-    }
-
-    /// All at a time, M/2 vectors.
-    #[inline(always)]
-    fn by<S: Simd, const M: usize>(self, simd: S) {
-        let Multiply { plan, columns, block, loaded, spectrum, memory } = self;
-        let (a, kept_rows) = (Arithmetic::<T, S>::new(simd), plan.bins.len());
-        let rows = &mut rows_of::<T, S, M>(memory)[..plan.kept.len() * plan.last];
+    fn one_vector<S: Simd>(&mut self, simd: S, column: usize) {
+        let Multiply { plan, block, loaded, spectrum, memory, .. } = self;
+        let (a, places) = (Arithmetic::<T, S>::new(simd), places::<T, S>());
+        let values = 2 * column..2 * (column + places);
+        let rows = &mut rows_of::<T, S>(memory)[..plan.kept.len() * plan.last];
         let zero = Parts { re: a.splat(T::zero()), im: a.splat(T::zero()) };
         let load = inlined(
             #[inline(always)]
-            |row: usize, v: usize| -> C<T, S> {
+            |row: usize| -> C<T, S> {
                 if !loaded.contains(&row) {
                     return zero;
                 }
-                let values = T::vectors::<S>(&parts(block.row(row))[2 * columns.start..2 * columns.end]);
-                let [re, im] = T::part(simd, [values[2 * v], values[2 * v + 1]]);
+                let values = T::vectors::<S>(&parts(block.row(row))[values.clone()]);
+                let [re, im] = T::part(simd, [values[0], values[1]]);
                 Parts { re, im }
             },
         );
@@ -274,14 +245,14 @@ impl<T: Real> Multiply<'_, '_, T> {
         for stage in &plan.middle {
             of_radix!(stage.radix, forward, a, stage, rows);
         }
-        // Vectors of a group, and of its row.
-        let (spectrum, in_group) = (T::vectors::<S>(spectrum), GROUP / places::<T, S>());
+        let group = plan.bins.len() * GROUP;
+        let spectrum = T::vectors::<S>(&spectrum[column / GROUP * group..][..group]);
+        let (vectors, vector) = (GROUP / places, column % GROUP / places);
         let factor = inlined(
             #[inline(always)]
-            |b: usize, q: usize, v: usize| {
+            |b: usize, q: usize| {
                 let Kept { first, step } = plan.kept[b];
-                let row = first.wrapping_add_signed(step * q as isize);
-                spectrum[(v / in_group * kept_rows + row) * in_group + v % in_group]
+                spectrum[first.wrapping_add_signed(step * q as isize) * vectors + vector]
             },
         );
         of_radix!(plan.last, multiply, a, rows, factor);
@@ -291,11 +262,10 @@ impl<T: Real> Multiply<'_, '_, T> {
         let my = block.rows();
         let store = inlined(
             #[inline(always)]
-            |row: usize, v: usize, value: C<T, S>| {
+            |row: usize, value: C<T, S>| {
                 if row < my {
-                    let values = &mut parts_mut(block.row_mut(row))[2 * columns.start..2 * columns.end];
-                    let values = T::vectors_mut::<S>(values);
-                    [values[2 * v], values[2 * v + 1]] = T::join(simd, [value.re, value.im]);
+                    let values = T::vectors_mut::<S>(&mut parts_mut(block.row_mut(row))[values.clone()]);
+                    [values[0], values[1]] = T::join(simd, [value.re, value.im]);
                 }
             },
         );
@@ -309,15 +279,12 @@ fn inlined<F>(closure: F) -> F {
     closure
 }
 
-/// Rows of vectors, from the beginning of a line of the cache on.
+/// Rows of vectors.
 #[inline(always)]
-fn rows_of<T: Real, S: Simd, const M: usize>(memory: &mut [Complex<T>]) -> &mut [Row<T, S, M>] {
+fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
     let values = parts_mut(memory);
-    let beyond = values.as_ptr() as usize % LINE;
-    let skipped = if beyond == 0 { 0 } else { (LINE - beyond) / size_of::<T>() };
-    let vectors = &mut values[skipped..];
-    let whole = vectors.len() - vectors.len() % places::<T, S>();
-    pulp::as_arrays_mut::<M, _>(T::vectors_mut::<S>(&mut vectors[..whole])).0
+    let whole = values.len() - values.len() % places::<T, S>();
+    pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
 #[cfg(test)]

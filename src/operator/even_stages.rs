@@ -19,8 +19,8 @@ use super::butterflies::{butterfly, LONGEST};
 use super::fft::{Complex, Real};
 use super::lanes::{Arithmetic, Lanes, Parts, C};
 
-/// One row of `M/2` complex vectors: the real and the imaginary parts of the first, of the second ..
-pub(super) type Row<T, S, const M: usize> = [<T as Lanes>::Vector<S>; M];
+/// One row of a vector of columns: the real and the imaginary parts.
+pub(super) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
 
 /// Of one radix.
 pub(super) struct Stage<T: Real> {
@@ -37,13 +37,13 @@ impl<T: Real> Stage<T> {
 }
 
 #[inline(always)]
-fn get<T: Real, S: Simd, const M: usize>(row: &Row<T, S, M>, v: usize) -> C<T, S> {
-    Parts { re: row[2 * v], im: row[2 * v + 1] }
+fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {
+    Parts { re: row[0], im: row[1] }
 }
 
 #[inline(always)]
-fn put<T: Real, S: Simd, const M: usize>(row: &mut Row<T, S, M>, v: usize, value: C<T, S>) {
-    (row[2 * v], row[2 * v + 1]) = (value.re, value.im);
+fn put<T: Real, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
+    (row[0], row[1]) = (value.re, value.im);
 }
 
 /// Rows 0 .. m, m .. 2 m, .., R times.
@@ -58,132 +58,118 @@ fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
     cut
 }
 
-/// The first stage, of rows that `load(row, vector)` gives.
+/// The first stage, of rows that `load(row)` gives.
 #[inline(always)]
-pub(super) fn first<T: Real, S: Simd, const R: usize, const M: usize>(
+pub(super) fn first<T: Real, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
-    rows: &mut [Row<T, S, M>],
-    load: impl Fn(usize, usize) -> C<T, S>,
+    rows: &mut [Row<T, S>],
+    load: impl Fn(usize) -> C<T, S>,
 ) {
     let m = stage.stride();
     let rows = cut::<_, R>(rows, m);
     for j in 0..m {
         let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-        for v in 0..M / 2 {
-            let mut x = [load(j, v); LONGEST];
-            for k in 1..R {
-                x[k] = load(j + k * m, v);
-            }
-            butterfly::<T, S, R>(a, &mut x);
-            put::<T, S, M>(&mut rows[0][j], v, x[0]);
-            for q in 1..R {
-                put::<T, S, M>(&mut rows[q][j], v, a.turn(x[q], w[q - 1]));
-            }
+        let mut x = [load(j); LONGEST];
+        for k in 1..R {
+            x[k] = load(j + k * m);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        put::<T, S>(&mut rows[0][j], x[0]);
+        for q in 1..R {
+            put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
         }
     }
 }
 
 /// A stage forward.
 #[inline(always)]
-pub(super) fn forward<T: Real, S: Simd, const R: usize, const M: usize>(
-    a: Arithmetic<T, S>,
-    stage: &Stage<T>,
-    rows: &mut [Row<T, S, M>],
-) {
+pub(super) fn forward<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, stage: &Stage<T>, rows: &mut [Row<T, S>]) {
     let m = stage.stride();
     for rows in rows.chunks_exact_mut(R * m) {
         let rows = cut::<_, R>(rows, m);
         for j in 0..m {
             let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-            for v in 0..M / 2 {
-                let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
-                for k in 1..R {
-                    x[k] = get::<T, S, M>(&rows[k][j], v);
-                }
-                butterfly::<T, S, R>(a, &mut x);
-                put::<T, S, M>(&mut rows[0][j], v, x[0]);
-                for q in 1..R {
-                    put::<T, S, M>(&mut rows[q][j], v, a.turn(x[q], w[q - 1]));
-                }
+            let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+            for k in 1..R {
+                x[k] = get::<T, S>(&rows[k][j]);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            put::<T, S>(&mut rows[0][j], x[0]);
+            for q in 1..R {
+                put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
             }
         }
     }
 }
 
-/// The last stage forward, the product by `factor(block of R rows, q, vector)`, and the first stage backwards.
+/// The last stage forward, the product by `factor(block of R rows, q)`, and the first stage backwards.
 #[inline(always)]
-pub(super) fn multiply<T: Real, S: Simd, const R: usize, const M: usize>(
+pub(super) fn multiply<T: Real, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
-    rows: &mut [Row<T, S, M>],
-    factor: impl Fn(usize, usize, usize) -> T::Vector<S>,
+    rows: &mut [Row<T, S>],
+    factor: impl Fn(usize, usize) -> T::Vector<S>,
 ) {
     for (b, rows) in rows.chunks_exact_mut(R).enumerate() {
-        for v in 0..M / 2 {
-            let mut x = [get::<T, S, M>(&rows[0], v); LONGEST];
-            for k in 1..R {
-                x[k] = get::<T, S, M>(&rows[k], v);
-            }
-            butterfly::<T, S, R>(a, &mut x);
-            for q in 0..R {
-                let Parts { re, im } = a.scale(x[q], factor(b, q, v));
-                x[q] = Parts { re: im, im: re };
-            }
-            butterfly::<T, S, R>(a, &mut x);
-            for k in 0..R {
-                put::<T, S, M>(&mut rows[k], v, x[k]);
-            }
+        let mut x = [get::<T, S>(&rows[0]); LONGEST];
+        for k in 1..R {
+            x[k] = get::<T, S>(&rows[k]);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for q in 0..R {
+            let Parts { re, im } = a.scale(x[q], factor(b, q));
+            x[q] = Parts { re: im, im: re };
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            put::<T, S>(&mut rows[k], x[k]);
         }
     }
 }
 
 /// A stage backwards.
 #[inline(always)]
-pub(super) fn backwards<T: Real, S: Simd, const R: usize, const M: usize>(
+pub(super) fn backwards<T: Real, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
-    rows: &mut [Row<T, S, M>],
+    rows: &mut [Row<T, S>],
 ) {
     let m = stage.stride();
     for rows in rows.chunks_exact_mut(R * m) {
         let rows = cut::<_, R>(rows, m);
         for j in 0..m {
             let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-            for v in 0..M / 2 {
-                let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
-                for q in 1..R {
-                    x[q] = a.turn(get::<T, S, M>(&rows[q][j], v), w[q - 1]);
-                }
-                butterfly::<T, S, R>(a, &mut x);
-                for k in 0..R {
-                    put::<T, S, M>(&mut rows[k][j], v, x[k]);
-                }
+            let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+            for q in 1..R {
+                x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            for k in 0..R {
+                put::<T, S>(&mut rows[k][j], x[k]);
             }
         }
     }
 }
 
-/// The last stage backwards, to `store(row, vector, value)`.
+/// The last stage backwards, to `store(row, value)`.
 #[inline(always)]
-pub(super) fn last<T: Real, S: Simd, const R: usize, const M: usize>(
+pub(super) fn last<T: Real, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
-    rows: &mut [Row<T, S, M>],
-    mut store: impl FnMut(usize, usize, C<T, S>),
+    rows: &mut [Row<T, S>],
+    mut store: impl FnMut(usize, C<T, S>),
 ) {
     let m = stage.stride();
     let rows = cut::<_, R>(rows, m);
     for j in 0..m {
         let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-        for v in 0..M / 2 {
-            let mut x = [get::<T, S, M>(&rows[0][j], v); LONGEST];
-            for q in 1..R {
-                x[q] = a.turn(get::<T, S, M>(&rows[q][j], v), w[q - 1]);
-            }
-            butterfly::<T, S, R>(a, &mut x);
-            for k in 0..R {
-                store(j + k * m, v, Parts { re: x[k].im, im: x[k].re });
-            }
+        let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+        for q in 1..R {
+            x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            store(j + k * m, Parts { re: x[k].im, im: x[k].re });
         }
     }
 }

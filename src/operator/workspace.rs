@@ -2,7 +2,6 @@
 
 use super::columns::BLOCK;
 use super::convolution::room_of_column;
-use super::even_columns::MARGIN;
 use super::fft::{Complex, Real};
 use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
@@ -91,7 +90,7 @@ impl<T: Real> Operator<T> {
 
     /// Values of a block of columns.
     fn column_room(&self) -> usize {
-        BLOCK * room_of_column(self.periods().1) + MARGIN
+        BLOCK * room_of_column(self.periods().1)
     }
 
     /// Elements of a grid with patches.

@@ -31,7 +31,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
         even.write(group, |column, bin| s(g * GROUP + column, bin));
     }
     let given = matrix.clone();
-    let memory = vec![Complex::new(T::nan(), T::nan()); 2 * GROUP * length + MARGIN];
+    let memory = vec![Complex::new(T::nan(), T::nan()); 2 * GROUP * length];
     for_each_block(&mut matrix, width, &Threads::One, &mut [()], |block, ()| {
         even.multiply(block, loaded.clone(), &spectrum, &mut memory.clone());
     });
