@@ -5,111 +5,21 @@
 //! ```
 //!
 //! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and
-//! the first stage of the inverse are one pass. Between them bins stay in the order in which the stages leave them
-//! ([`even_stages`](super::even_stages)): of each block of bins that comes out of the last stage the mirror image, the bins py - k, is a
-//! block too, from behind, so one of the two is kept of S: `[group][kept row][place]`.
+//! the first stage of the inverse are one pass. S is kept as `[group][kept row][place]` ([`even_plan`](super::even_plan)).
 
-use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
 use super::columns::{parts, parts_mut, Block};
-use super::even_stages::{backwards, first, forward, last, multiply, Row, Stage};
+use super::even_plan::EvenPlan;
+use super::even_stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of};
 use super::fft::{even_plan, Complex, Real};
 use super::lanes::{places, Arithmetic, Parts, C};
 
 /// Columns of a group.
 pub(super) const GROUP: usize = 8;
-
-/// The stages of one length.
-pub struct EvenPlan<T: Real> {
-    /// The first, and those in the middle.
-    first: Stage<T>,
-    middle: Vec<Stage<T>>,
-    /// The radix of the last.
-    last: usize,
-    /// Where S is kept, for each block of the last stage.
-    kept: Vec<Kept>,
-    /// The bin of each kept row, at most py/2.
-    bins: Vec<usize>,
-}
-
-/// The kept rows of a block: the first, and the step to the next.
-#[derive(Clone, Copy)]
-struct Kept {
-    first: usize,
-    step: isize,
-}
-
-impl<T: Real> EvenPlan<T> {
-    /// None for lengths of other factors than 2, 3 and 5, or of one stage.
-    pub fn new(length: usize) -> Option<EvenPlan<T>> {
-        let radices = radices(length)?;
-        let (&last, rest) = radices.split_last()?;
-        let mut n = length;
-        let mut stage = |&radix: &usize| {
-            let m = n / radix;
-            let angle = |j: usize, q: usize| -2.0 * PI * (j * q) as f64 / n as f64;
-            let of_row = |j: usize| (1..radix).map(move |q| angle(j, q));
-            let twiddles = (0..m).flat_map(of_row).map(|angle| Complex::new(T::of(angle.cos()), T::of(angle.sin())));
-            let stage = Stage { radix, twiddles: twiddles.collect() };
-            n = m;
-            stage
-        };
-        let (first, middle) = rest.split_first()?;
-        let (first, middle) = (stage(first), middle.iter().map(&mut stage).collect());
-        let (kept, bins) = kept_rows(length, rest, last);
-        Some(EvenPlan { first, middle, last, kept, bins })
-    }
-}
-
-/// Factors of a length, the largest number of fours at both ends.
-fn radices(length: usize) -> Option<Vec<usize>> {
-    let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
-    while rest % 4 == 0 {
-        (rest, fours) = (rest / 4, fours + 1);
-    }
-    for radix in [5, 3, 2] {
-        while rest % radix == 0 {
-            rest /= radix;
-            others.push(radix);
-        }
-    }
-    let first = fours.min(1);
-    let radices = [vec![4; first], others, vec![4; fours - first]].concat();
-    (rest == 1 && radices.len() > 1).then_some(radices)
-}
-
-/// Where S is kept of each block of the last stage, and the bin of each kept row. Block b holds bins `lowest(b) + q length/last`.
-fn kept_rows(length: usize, before: &[usize], last: usize) -> (Vec<Kept>, Vec<usize>) {
-    let blocks = length / last;
-    // Row b of the stages before the last holds bin lowest(b) of a transform of their length: digits from behind.
-    let lowest = |b: usize| {
-        let (mut rest, mut below, mut bin) = (b, blocks, 0);
-        let mut weight = 1;
-        for radix in before {
-            below /= radix;
-            bin += weight * (rest / below);
-            rest %= below;
-            weight *= radix;
-        }
-        bin
-    };
-    let lowest: Vec<usize> = (0..blocks).map(lowest).collect();
-    let (mut block_of, mut bins) = (vec![0; blocks], Vec::new());
-    let is_kept = |bin: usize| 2 * bin <= blocks;
-    for &bin in lowest.iter().filter(|&&bin| is_kept(bin)) {
-        block_of[bin] = bins.len();
-        bins.extend((0..last).map(|q| bin + q * blocks).map(|bin| bin.min(length - bin)));
-    }
-    let kept = lowest.iter().map(|&bin| match is_kept(bin) {
-        true => Kept { first: block_of[bin], step: 1 },
-        false => Kept { first: block_of[blocks - bin] + last - 1, step: -1 },
-    });
-    (kept.collect(), bins)
-}
 
 /// Products of groups of columns of one length.
 #[derive(Clone)]
@@ -200,25 +110,13 @@ struct Multiply<'a, 'b, T: Real> {
 impl<T: Real> WithSimd for Multiply<'_, '_, T> {
     type Output = ();
 
-    /// One vector of columns after the other: so a column of [`LONG`](super::convolution::LONG) values stays in the nearest cache.
+    /// One vector of columns after the other: what is worked on stays in the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         for column in (0..self.columns).step_by(places::<T, S>()) {
             self.one_vector(simd, column);
         }
     }
-}
-
-/// Calls a stage of the radix that there is.
-macro_rules! of_radix {
-    ($radix:expr, $stage:ident, $($argument:expr),*) => {
-        match $radix {
-            2 => $stage::<T, S, 2>($($argument),*),
-            3 => $stage::<T, S, 3>($($argument),*),
-            4 => $stage::<T, S, 4>($($argument),*),
-            _ => $stage::<T, S, 5>($($argument),*),
-        }
-    };
 }
 
 impl<T: Real> Multiply<'_, '_, T> {
@@ -250,10 +148,7 @@ impl<T: Real> Multiply<'_, '_, T> {
         let (vectors, vector) = (GROUP / places, column % GROUP / places);
         let factor = inlined(
             #[inline(always)]
-            |b: usize, q: usize| {
-                let Kept { first, step } = plan.kept[b];
-                spectrum[first.wrapping_add_signed(step * q as isize) * vectors + vector]
-            },
+            |b: usize, q: usize| spectrum[plan.kept[b].row(q) * vectors + vector],
         );
         of_radix!(plan.last, multiply, a, rows, factor);
         for stage in plan.middle.iter().rev() {
@@ -271,20 +166,6 @@ impl<T: Real> Multiply<'_, '_, T> {
         );
         of_radix!(plan.first.radix, last, a, &plan.first, rows, store);
     }
-}
-
-/// A closure with an attribute, which expressions alone may not have.
-#[inline(always)]
-fn inlined<F>(closure: F) -> F {
-    closure
-}
-
-/// Rows of vectors.
-#[inline(always)]
-fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
-    let values = parts_mut(memory);
-    let whole = values.len() - values.len() % places::<T, S>();
-    pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
 #[cfg(test)]

@@ -16,8 +16,9 @@
 use pulp::Simd;
 
 use super::butterflies::{butterfly, LONGEST};
+use super::columns::parts_mut;
 use super::fft::{Complex, Real};
-use super::lanes::{Arithmetic, Lanes, Parts, C};
+use super::lanes::{places, Arithmetic, Lanes, Parts, C};
 
 /// One row of a vector of columns: the real and the imaginary parts.
 pub(super) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
@@ -35,6 +36,33 @@ impl<T: Real> Stage<T> {
         self.twiddles.len() / (self.radix - 1)
     }
 }
+
+/// Rows of vectors.
+#[inline(always)]
+pub(super) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
+    let values = parts_mut(memory);
+    let whole = values.len() - values.len() % places::<T, S>();
+    pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
+}
+
+/// A closure with an attribute, which expressions alone may not have.
+#[inline(always)]
+pub(super) fn inlined<F>(closure: F) -> F {
+    closure
+}
+
+/// Calls a stage of the radix that there is.
+macro_rules! of_radix {
+    ($radix:expr, $stage:ident, $($argument:expr),*) => {
+        match $radix {
+            2 => $stage::<T, S, 2>($($argument),*),
+            3 => $stage::<T, S, 3>($($argument),*),
+            4 => $stage::<T, S, 4>($($argument),*),
+            _ => $stage::<T, S, 5>($($argument),*),
+        }
+    };
+}
+pub(super) use of_radix;
 
 #[inline(always)]
 fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {

@@ -11,7 +11,7 @@ use rustfft::num_traits::{Float, FromPrimitive};
 
 use rustfft::{Fft, FftNum, FftPlanner};
 
-use super::even_columns::EvenPlan;
+use super::even_plan::EvenPlan;
 use super::lanes::Lanes;
 use crate::sums::Value;
 

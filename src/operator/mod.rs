@@ -7,6 +7,7 @@ pub mod columns;
 mod convolution;
 pub mod dense;
 mod even_columns;
+mod even_plan;
 mod even_stages;
 pub mod fft;
 mod lanes;
