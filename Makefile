@@ -80,14 +80,17 @@ soak:
 BENCH ?=
 OLD := 9fd3772
 OLD_LIBRARY := build/old-$(OLD)/target/release/libcontact_normal.so
+OLD_PROGRAM := build/old-$(OLD)/target/release/performance
 bench: all $(OLD_LIBRARY)
-	CONTACT_NORMAL_OLD="$(CURDIR)/$(OLD_LIBRARY)" CONTACT_NORMAL_NEW="$(CURDIR)/target/release/libcontact_normal.so" \
+	CONTACT_NORMAL_OLD="$(CURDIR)/$(OLD_LIBRARY)" CONTACT_NORMAL_OLD_PROGRAM="$(CURDIR)/$(OLD_PROGRAM)" \
+		CONTACT_NORMAL_NEW="$(CURDIR)/target/release/libcontact_normal.so" \
 		$(CARGO) bench --locked --bench performance -- $(BENCH)
 
 $(OLD_LIBRARY):
 	@mkdir -p build/old-$(OLD)
 	git archive $(OLD) | tar -x -C build/old-$(OLD)
-	cd build/old-$(OLD) && CARGO_TARGET_DIR=target $(CARGO) build --release --locked --lib
+	cd build/old-$(OLD) && CARGO_TARGET_DIR=target $(CARGO) build --release --locked --lib --bench performance
+	cp "$$(ls -t build/old-$(OLD)/target/release/deps/performance-* | grep -v '\.d$$' | head -n 1)" $(OLD_PROGRAM)
 
 # The yardstick of tables of creep forces: 204800 ellipses of 35 x 35 elements on two processes. TABLE="--sample 0.01" extrapolates from a
 # hundredth of them; TABLE="--errors" compares the estimated errors with finer grids.

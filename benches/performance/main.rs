@@ -14,6 +14,7 @@ mod influence;
 mod limits;
 mod measure;
 mod methods;
+mod old;
 mod summary;
 mod targets;
 mod versus;

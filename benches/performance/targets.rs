@@ -9,7 +9,7 @@ use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Problem, Re
 
 use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
 use crate::measure::{by_processor, cold, in_turns, median, seconds, shown, size, Product};
-use crate::summary;
+use crate::{old, summary};
 
 /// What the small grids may cost on top of their products.
 const SMALL_GRID_EXTRA: f64 = 50e-6;
@@ -29,8 +29,8 @@ fn options(threads: usize) -> Options {
 /// Cold calls against products.
 pub fn cold_calls(threads: usize, sizes: &[usize]) {
     println!("\n### Cold calls, {threads} thread(s)\n");
-    println!("| case | elements | in contact | call | product | products | of them counted | at most | |");
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("| case | elements | in contact | call | product | products | of 9fd3772 | of them counted | at most | |");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let ellipses = sizes.iter().map(|&m| (ellipse(m), 12.0));
     let roughs = sizes.iter().map(|&m| (rough(m), 24.0));
     let as_given = ["y0_10kN", "y4_82kN", "y10_10kN"].map(|name| (wheel_rail(name, 1), 20.0));
@@ -53,21 +53,27 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     let call = &mut || _ = cold(&scene, &options);
     let times = in_turns(&mut [call, &mut || product.run()]);
     let (call, product) = (median(&times[0]), median(&times[1]));
+    let old = old::product(&case.name, threads);
     match (case.name.split_once(' '), threads) {
         (Some(("ellipse", "16")), 1) => summary::note(summary::SMALL_16, 1e6 * call),
         (Some(("ellipse", "64")), 1) => summary::note(summary::SMALL_64, 1e6 * call),
-        (Some(("ellipse", m)), 1) if m != "32" => summary::note(summary::ELLIPSE, call / product),
-        (Some(("rough", _)), 1) => summary::note(summary::ROUGH, call / product),
+        (Some(("ellipse", m)), 1) if m != "32" => {
+            summary::note_products([summary::ELLIPSE, summary::ELLIPSE_OLD], call, [Some(product), old])
+        }
+        (Some(("rough", _)), 1) => {
+            summary::note_products([summary::ROUGH, summary::ROUGH_OLD], call, [Some(product), old])
+        }
         _ => {}
     }
     println!(
-        "| {} | {} | {:.1} % | {} | {} | {:.1} | {:.1} | {at_most} | {} |",
+        "| {} | {} | {:.1} % | {} | {} | {:.1} | {} | {:.1} | {at_most} | {} |",
         case.name,
         size(&case.grid),
         100.0 * report.measures.contact_count as f64 / case.grid.len() as f64,
         shown(call),
         shown(product),
         call / product,
+        old::in_products(call, &case.name, threads),
         report.count.work_units,
         mark(call, limit(product))
     );
@@ -81,8 +87,8 @@ pub fn time_steps(threads: usize) {
     println!(
         "\n### Time stepping: the approach changes by 1 % a step, {CLIMB} steps up, {CLIMB} down; {threads} thread(s)\n"
     );
-    println!("| case | first step | later steps | product | products, first / later | at most | |");
-    println!("|---|---|---|---|---|---|---|");
+    println!("| case | first step | later steps | product | products, first / later | later, of 9fd3772 | at most | |");
+    println!("|---|---|---|---|---|---|---|---|");
     let cases = [ellipse(64), ellipse(256), ellipse(512), ellipse(1024), rough(256), rough(512), rough(1024)];
     for case in cases.into_iter().chain([wheel_rail("y4_82kN", 1), wheel_rail("y4_82kN", 2)]) {
         let mut first = Solver::new(&case.scene(), &options(threads)).expect("a solver");
@@ -115,16 +121,18 @@ pub fn time_steps(threads: usize) {
         let [later, product] = [0, 1].map(|i| median(&times[i]));
         let first = median(&first_steps);
         if threads == 1 {
-            summary::note(summary::STEPS, later / product);
+            let old = old::product(&case.name, threads);
+            summary::note_products([summary::STEPS, summary::STEPS_OLD], later, [Some(product), old]);
         }
         println!(
-            "| {} | {} | {} | {} | {:.1} / {:.1} | 5 | {} |",
+            "| {} | {} | {} | {} | {:.1} / {:.1} | {} | 5 | {} |",
             case.name,
             shown(first),
             shown(later),
             shown(product),
             first / product,
             later / product,
+            old::in_products(later, &case.name, threads),
             mark(first.max(later), 5.0 * product)
         );
     }

@@ -1,0 +1,47 @@
+//! The product of commit 9fd3772, which the targets count in: its own program measures it, in the same run.
+
+use std::collections::HashMap;
+use std::process::Command;
+use std::sync::Mutex;
+
+static PRODUCTS: Mutex<Option<HashMap<(usize, String), f64>>> = Mutex::new(None);
+
+/// Seconds of one product of that commit for a case; None without `CONTACT_NORMAL_OLD_PROGRAM`, which `make bench` sets.
+pub fn product(case: &str, threads: usize) -> Option<f64> {
+    let program = std::env::var("CONTACT_NORMAL_OLD_PROGRAM").ok()?;
+    let mut products = PRODUCTS.lock().expect("the products");
+    let products = products.get_or_insert_default();
+    if !products.keys().any(|(of, _)| *of == threads) {
+        products.extend(measured(&program, threads).into_iter().map(|(case, seconds)| ((threads, case), seconds)));
+    }
+    products.get(&(threads, case.to_owned())).copied()
+}
+
+/// Cases and the seconds of their products, of the table of cold calls that a program prints.
+fn measured(program: &str, threads: usize) -> Vec<(String, f64)> {
+    let out =
+        Command::new(program).args(["--bench", "--threads", &threads.to_string(), "cold"]).output().expect("a process");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let text = String::from_utf8_lossy(&out.stdout);
+    // With several threads it prints the table for one first.
+    let wanted = format!("### Cold calls, {threads} thread(s)");
+    let table = text.split(&wanted).nth(1).expect("its table of cold calls");
+    let rows = table.lines().skip(1).take_while(|line| !line.starts_with("###"));
+    rows.filter_map(|line| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        Some((cells.get(1)?.to_string(), seconds(cells.get(5)?)?))
+    })
+    .collect()
+}
+
+/// A time as the tables show it.
+fn seconds(shown: &str) -> Option<f64> {
+    let (number, unit) = shown.split_once(' ')?;
+    let scale = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6)].into_iter().find(|(name, _)| *name == unit)?.1;
+    number.parse::<f64>().ok().map(|number| scale * number)
+}
+
+/// A time in those products; "" without them.
+pub fn in_products(time: f64, case: &str, threads: usize) -> String {
+    product(case, threads).map_or(String::new(), |product| format!("{:.1}", time / product))
+}
