@@ -81,12 +81,13 @@ BENCH ?=
 OLD := 9fd3772
 OLD_LIBRARY := build/old-$(OLD)/target/release/libcontact_normal.so
 OLD_PROGRAM := build/old-$(OLD)/target/release/performance
-bench: all $(OLD_LIBRARY)
+bench: all $(OLD_PROGRAM)
 	CONTACT_NORMAL_OLD="$(CURDIR)/$(OLD_LIBRARY)" CONTACT_NORMAL_OLD_PROGRAM="$(CURDIR)/$(OLD_PROGRAM)" \
 		CONTACT_NORMAL_NEW="$(CURDIR)/target/release/libcontact_normal.so" \
 		$(CARGO) bench --locked --bench performance -- $(BENCH)
 
-$(OLD_LIBRARY):
+# And its library, beside it.
+$(OLD_PROGRAM):
 	@mkdir -p build/old-$(OLD)
 	git archive $(OLD) | tar -x -C build/old-$(OLD)
 	cd build/old-$(OLD) && CARGO_TARGET_DIR=target $(CARGO) build --release --locked --lib --bench performance

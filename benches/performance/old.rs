@@ -17,10 +17,12 @@ pub fn product(case: &str, threads: usize) -> Option<f64> {
     products.get(&(threads, case.to_owned())).copied()
 }
 
-/// Cases and the seconds of their products, of the table of cold calls that a program prints.
+/// Cases and the seconds of their products, of the table of cold calls that a program prints: measured as here.
 fn measured(program: &str, threads: usize) -> Vec<(String, f64)> {
-    let out =
-        Command::new(program).args(["--bench", "--threads", &threads.to_string(), "cold"]).output().expect("a process");
+    let mut command = Command::new(program);
+    command.args(["--bench", "--threads", &threads.to_string(), "cold"]);
+    command.args(std::env::args().filter(|argument| ["--quick", "--processor"].contains(&&argument[..])));
+    let out = command.output().expect("a process");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let text = String::from_utf8_lossy(&out.stdout);
     // With several threads it prints the table for one first.

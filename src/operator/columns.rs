@@ -24,7 +24,7 @@ pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// One block of columns of a row-major matrix: no two of them overlap.
+/// One block of columns of a row-major matrix: no two of them overlap, but for a [`tail`](Block::tail) and the block that it borrows.
 pub struct Block<'a, T> {
     data: *mut Complex<T>,
     rows: usize,
@@ -160,7 +160,7 @@ impl<T: Real> Block<'_, T> {
         self.first
     }
 
-    /// Number of columns: all blocks but the last have [`BLOCK`].
+    /// Number of columns: all blocks of a matrix but the last have [`BLOCK`].
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -170,7 +170,7 @@ impl<T: Real> Block<'_, T> {
         self.rows
     }
 
-    /// The block's columns from the k-th on.
+    /// The block's columns from the k-th on: a part of it, by which it is borrowed.
     pub fn tail(&mut self, k: usize) -> Block<'_, T> {
         assert!(k <= self.columns);
         let Block { data, rows, width, .. } = *self;
@@ -233,7 +233,7 @@ impl<T: Real> Block<'_, T> {
     pub fn row(&self, row: usize) -> &[Complex<T>] {
         assert!(row < self.rows);
         // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which those who make
-        // blocks borrow exclusively, and no other block overlaps this one.
+        // blocks borrow exclusively, and no other block that is in use overlaps this one: a tail borrows its block.
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 

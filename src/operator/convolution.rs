@@ -4,7 +4,8 @@
 //! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
 //! ```
 //!
-//! Per block of columns: gather, transform, multiply, transform back, scatter.
+//! Per block of columns: groups of columns by even coefficients as [`EvenColumns`] have them; the others are gathered, transformed, multiplied,
+//! transformed back and scattered.
 
 use std::ops::Range;
 

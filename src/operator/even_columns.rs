@@ -22,7 +22,6 @@ use super::lanes::{places, Arithmetic, Parts, C};
 pub(super) const GROUP: usize = 8;
 
 /// Products of groups of columns of one length.
-#[derive(Clone)]
 pub(super) struct EvenColumns<T: Real> {
     plan: Arc<EvenPlan<T>>,
     /// The column, of a group, in each place.
@@ -30,7 +29,7 @@ pub(super) struct EvenColumns<T: Real> {
 }
 
 impl<T: Real> EvenColumns<T> {
-    /// None where the machine has no vectors, or the length no plan.
+    /// None where the machine has no vectors, or longer ones than a group, or the length no plan.
     pub fn new(length: usize) -> Option<EvenColumns<T>> {
         let column_in = pulp::Arch::new().dispatch(ColumnIn::<T>(std::marker::PhantomData))?;
         Some(EvenColumns { plan: even_plan(length)?, column_in })
@@ -66,6 +65,8 @@ impl<T: Real> EvenColumns<T> {
         spectrum: &[T],
         memory: &mut [Complex<T>],
     ) -> usize {
+        let length = self.plan.kept.len() * self.plan.last;
+        assert!(block.rows() <= length && loaded.end <= block.rows());
         let (columns, at) = (EvenColumns::<T>::grouped(block.columns()), block.first());
         if columns > 0 {
             let spectrum = &spectrum[at * self.kept_rows()..][..columns * self.kept_rows()];

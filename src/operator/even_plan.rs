@@ -50,7 +50,7 @@ impl<T: Real> EvenPlan<T> {
     }
 }
 
-/// Factors of a length, the largest number of fours at both ends.
+/// Factors of a length: a four first, the other fours last, what else there is between them.
 fn radices(length: usize) -> Option<Vec<usize>> {
     let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
     while rest % 4 == 0 {

@@ -65,7 +65,7 @@ pub(super) fn even_plan<T: Real>(length: usize) -> Option<Arc<EvenPlan<T>>> {
     T::with_plans(|plans| plans.even.entry(length).or_insert_with(|| EvenPlan::new(length).map(Arc::new)).clone())
 }
 
-/// Work of a transform of length `2^a 3^b 5^c` relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
+/// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
 /// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives, unless one stands beside many twos alone.
 fn relative_work(twos: u32, has_threes: bool, fives: u32) -> f64 {
     let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);

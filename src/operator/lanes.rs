@@ -14,13 +14,9 @@ pub trait Lanes: Copy {
     type Vector<S: Simd>: Pod;
 
     /// A slice as vectors; its length is a multiple of theirs.
-    fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>]
-    where
-        Self: Sized;
+    fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>];
     /// The same, to be written.
-    fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>]
-    where
-        Self: Sized;
+    fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>];
     /// One value in all places.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// a + b.
