@@ -13,8 +13,8 @@ use std::sync::Arc;
 use pulp::{Simd, WithSimd};
 
 use super::columns::{parts, parts_mut, Block};
-use super::even_plan::EvenPlan;
-use super::even_stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of};
+use super::even_plan::{EvenPlan, Kept};
+use super::even_stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of, Row};
 use super::fft::{even_plan, Complex, Real};
 use super::lanes::{places, Arithmetic, Parts, C};
 
@@ -141,20 +141,14 @@ impl<T: Real> Multiply<'_, '_, T> {
             },
         );
         of_radix!(plan.first.radix, first, a, &plan.first, rows, load);
-        for stage in &plan.middle {
-            of_radix!(stage.radix, forward, a, stage, rows);
-        }
         let group = plan.bins.len() * GROUP;
         let spectrum = T::vectors::<S>(&spectrum[column / GROUP * group..][..group]);
         let (vectors, vector) = (GROUP / places, column % GROUP / places);
         let factor = inlined(
             #[inline(always)]
-            |b: usize, q: usize| spectrum[plan.kept[b].row(q) * vectors + vector],
+            |kept: &Kept, q: usize| spectrum[kept.row(q) * vectors + vector],
         );
-        of_radix!(plan.last, multiply, a, rows, factor);
-        for stage in plan.middle.iter().rev() {
-            of_radix!(stage.radix, backwards, a, stage, rows);
-        }
+        between(a, plan, rows, factor);
         let my = block.rows();
         let store = inlined(
             #[inline(always)]
@@ -166,6 +160,38 @@ impl<T: Real> Multiply<'_, '_, T> {
             },
         );
         of_radix!(plan.first.radix, last, a, &plan.first, rows, store);
+    }
+}
+
+/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`.
+#[inline(always)]
+fn between<T: Real, S: Simd>(
+    a: Arithmetic<T, S>,
+    plan: &EvenPlan<T>,
+    rows: &mut [Row<T, S>],
+    factor: impl Fn(&Kept, usize) -> T::Vector<S>,
+) {
+    let (wide, near) = plan.middle.split_at(plan.wide);
+    for stage in wide {
+        of_radix!(stage.radix, forward, a, stage, rows);
+    }
+    // Then part by part, in the nearest cache.
+    let blocks = plan.part / plan.last;
+    for (rows, kept) in rows.chunks_exact_mut(plan.part).zip(plan.kept.chunks_exact(blocks)) {
+        for stage in near {
+            of_radix!(stage.radix, forward, a, stage, rows);
+        }
+        let factor = inlined(
+            #[inline(always)]
+            |b: usize, q: usize| factor(&kept[b], q),
+        );
+        of_radix!(plan.last, multiply, a, rows, factor);
+        for stage in near.iter().rev() {
+            of_radix!(stage.radix, backwards, a, stage, rows);
+        }
+    }
+    for stage in wide.iter().rev() {
+        of_radix!(stage.radix, backwards, a, stage, rows);
     }
 }
 

@@ -8,11 +8,17 @@ use std::f64::consts::PI;
 use super::even_stages::Stage;
 use super::fft::{Complex, Real};
 
+/// Rows of a vector, 64 bytes each with AVX2, that the nearest cache holds beside what else is read.
+const NEAR: usize = 256;
+
 /// The stages of one length.
 pub struct EvenPlan<T: Real> {
     /// The first, and those in the middle.
     pub(super) first: Stage<T>,
     pub(super) middle: Vec<Stage<T>>,
+    /// Of those in the middle, how many go over all rows; the others go over parts of so many rows.
+    pub(super) wide: usize,
+    pub(super) part: usize,
     /// The radix of the last.
     pub(super) last: usize,
     /// Where S is kept, for each block of the last stage.
@@ -44,9 +50,10 @@ impl<T: Real> EvenPlan<T> {
             stage
         };
         let (first, middle) = rest.split_first()?;
-        let (first, middle) = (stage(first), middle.iter().map(&mut stage).collect());
+        let (first, middle): (_, Vec<_>) = (stage(first), middle.iter().map(&mut stage).collect());
+        let (wide, part) = near_parts(&middle, length, first.stride());
         let (kept, bins) = kept_rows(length, rest, last);
-        Some(EvenPlan { first, middle, last, kept, bins })
+        Some(EvenPlan { first, middle, wide, part, last, kept, bins })
     }
 }
 
@@ -65,6 +72,16 @@ fn radices(length: usize) -> Option<Vec<usize>> {
     let first = fours.min(1);
     let radices = [vec![4; first], others, vec![4; fours - first]].concat();
     (rest == 1 && radices.len() > 1).then_some(radices)
+}
+
+/// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
+fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
+    if length <= 2 * NEAR {
+        return (0, length);
+    }
+    let after = |stages: usize| middle[..stages].last().map_or(after_first, Stage::stride);
+    let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR).unwrap_or(middle.len());
+    (wide, after(wide))
 }
 
 /// Where S is kept of each block of the last stage, and the bin of each kept row. Block b holds bins `lowest(b) + q length/last`.

@@ -48,8 +48,8 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     difference / largest
 }
 
-/// Lengths of every radix at every place: the factors of each are in [`radices`].
-const LENGTHS: [usize; 16] = [6, 8, 9, 10, 15, 16, 20, 25, 27, 32, 48, 50, 60, 120, 450, 1024];
+/// Lengths of every radix at every place, three of them in parts: the factors of each are in [`radices`].
+const LENGTHS: [usize; 18] = [6, 8, 9, 10, 15, 16, 20, 25, 27, 32, 48, 50, 60, 120, 450, 1024, 2160, 4096];
 
 #[test]
 fn a_group_of_columns_has_the_product_of_each() {
