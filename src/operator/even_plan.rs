@@ -75,6 +75,7 @@ fn radices(length: usize) -> Option<Vec<usize>> {
 }
 
 /// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
+/// Twice as many rows still fit by themselves, so such lengths are one part.
 fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length <= 2 * NEAR {
         return (0, length);
