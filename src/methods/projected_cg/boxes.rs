@@ -3,6 +3,8 @@
 //! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
 //! C.
 
+use std::ops::Range;
+
 use crate::operator::fft::Real;
 
 /// Elements of a box in each direction.
@@ -10,6 +12,10 @@ pub(super) const BOX: usize = 2 * REACH + 1;
 pub(super) const REACH: usize = 4;
 /// Elements of a row that are worked on together, or not at all where they are far from the rim of C.
 pub(super) const CHUNK: usize = 64;
+/// Chunks whose columns are summed before the first of them is summed across: what was just written in one vector cannot be read in another.
+const TOGETHER: usize = 8;
+/// Columns of a chunk's boxes.
+const LENGTH: usize = CHUNK + BOX - 1;
 
 /// The counts of row y.
 pub(super) struct Count<'a> {
@@ -26,16 +32,23 @@ impl pulp::NullaryFnOnce for Count<'_> {
     fn call(self) {
         let Count { contact, y, near, rim } = self;
         let mx = near.len();
-        let here = contact[y * mx..][..mx].chunks(CHUNK);
-        for (k, ((near, rim), inside)) in near.chunks_mut(CHUNK).zip(rim).zip(here).enumerate() {
-            let counts = box_sums(contact, (y, mx), k * CHUNK, u8::from);
-            let mut any = 0;
-            for ((near, count), inside) in near.iter_mut().zip(&counts).zip(inside) {
-                *near = if *inside { 0 } else { *count };
-                any |= *near;
-            }
-            *rim = any != 0;
-        }
+        let here = &contact[y * mx..][..mx];
+        box_sums(
+            (contact, mx),
+            y,
+            u8::from,
+            #[inline(always)]
+            |_| true,
+            #[inline(always)]
+            |k, elements, counts| {
+                let mut any = 0;
+                for ((near, count), inside) in near[elements.clone()].iter_mut().zip(counts).zip(&here[elements]) {
+                    *near = if *inside { 0 } else { *count };
+                    any |= *near;
+                }
+                rim[k] = any != 0;
+            },
+        );
     }
 }
 
@@ -57,14 +70,19 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
         let Extend { z, y, near, rim, absent, values } = self;
         let mx = values.len();
         values.copy_from_slice(&z[y * mx..][..mx]);
-        for (k, ((values, near), rim)) in values.chunks_mut(CHUNK).zip(near.chunks(CHUNK)).zip(rim).enumerate() {
-            if *rim {
-                let sums = box_sums(z, (y, mx), k * CHUNK, |z| z);
-                for ((value, near), sum) in values.iter_mut().zip(near).zip(&sums) {
+        box_sums(
+            (z, mx),
+            y,
+            |z| z,
+            #[inline(always)]
+            |k| rim[k],
+            #[inline(always)]
+            |_, elements, sums| {
+                for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
                     *value += share(*near, absent) * *sum;
                 }
-            }
-        }
+            },
+        );
     }
 }
 
@@ -113,13 +131,18 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
         let mx = values.len();
         let chunks = mx.div_ceil(CHUNK);
         let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + REACH + 1) * chunks);
-        for (k, values) in values.chunks_mut(CHUNK).enumerate() {
-            let near = k.saturating_sub(1)..chunks.min(k + 2);
-            if rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true)) {
-                let sums = box_sums(shares, (y, mx), k * CHUNK, |share| share);
-                values.iter_mut().zip(&sums).for_each(|(value, sum)| *value += *sum);
-            }
-        }
+        box_sums(
+            (shares, mx),
+            y,
+            |share| share,
+            #[inline(always)]
+            |k| {
+                let near = k.saturating_sub(1)..chunks.min(k + 2);
+                rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true))
+            },
+            #[inline(always)]
+            |_, elements, sums| values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum),
+        );
     }
 }
 
@@ -134,17 +157,42 @@ fn share<T: Real>(near: u8, absent: T) -> T {
     }
 }
 
-/// Sums over the boxes around the elements of row y, `mx` of them in a row, from column `start` on; `value` makes them of what the grid
-/// holds. They are right as far as the row goes.
+/// Sums over the boxes around the elements of row y of a grid, `mx` of them in a row, for those chunks that are `wanted`; `value` makes them
+/// of what the grid holds. Calls `take(chunk, its elements in the row, sums)`; sums beyond the elements have no meaning.
 #[inline(always)]
 fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
-    from: &[A],
-    (y, mx): (usize, usize),
+    (from, mx): (&[A], usize),
+    y: usize,
+    value: impl Fn(A) -> B,
+    wanted: impl Fn(usize) -> bool,
+    mut take: impl FnMut(usize, Range<usize>, &[B; CHUNK]),
+) {
+    let rows = &from[y.saturating_sub(REACH) * mx..from.len().min((y + REACH + 1) * mx)];
+    let (chunks, mut columns, mut which) = (mx.div_ceil(CHUNK), [[B::default(); LENGTH]; TOGETHER], [0; TOGETHER]);
+    for first in (0..chunks).step_by(TOGETHER) {
+        let mut count = 0;
+        for k in first..chunks.min(first + TOGETHER) {
+            if wanted(k) {
+                columns[count] = column_sums(rows, mx, k * CHUNK, &value);
+                which[count] = k;
+                count += 1;
+            }
+        }
+        for (&k, columns) in which[..count].iter().zip(&columns) {
+            take(k, k * CHUNK..mx.min((k + 1) * CHUNK), &sums_across(columns));
+        }
+    }
+}
+
+/// Sums over the columns of boxes, from [`REACH`] before column `start` on; those beyond the row are zero.
+#[inline(always)]
+fn column_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
+    rows: &[A],
+    mx: usize,
     start: usize,
     value: impl Fn(A) -> B,
-) -> [B; CHUNK] {
-    const LENGTH: usize = CHUNK + BOX - 1;
-    let rows = from[y.saturating_sub(REACH) * mx..from.len().min((y + REACH + 1) * mx)].chunks_exact(mx);
+) -> [B; LENGTH] {
+    let rows = rows.chunks_exact(mx);
     let mut columns = [B::default(); LENGTH];
     let first = start.saturating_sub(REACH).min(mx.saturating_sub(LENGTH));
     if mx >= LENGTH {
@@ -158,13 +206,19 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
             columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
         }
     }
-    // Columns move to their place in the box; those beyond the row are zero.
+    // Columns move to their place in the box.
     let (up, down) = ((first + REACH).saturating_sub(start), start.saturating_sub(first + REACH));
     if up + down > 0 {
         let summed = columns;
         columns = [B::default(); LENGTH];
         columns[up..LENGTH - down].copy_from_slice(&summed[down..LENGTH - up]);
     }
+    columns
+}
+
+/// Sums of [`BOX`] neighbouring columns.
+#[inline(always)]
+fn sums_across<B: Copy + Default + std::ops::Add<Output = B>>(columns: &[B; LENGTH]) -> [B; CHUNK] {
     let mut sums = [B::default(); CHUNK];
     for (k, sum) in sums.iter_mut().enumerate() {
         let of = |i: usize| columns[k + i];
