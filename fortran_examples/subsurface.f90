@@ -48,6 +48,7 @@ program subsurface
   print '(a)', "Sliding in x with friction .25:"
   print '(a, f7.4, a, f5.2, a, f5.2, a)', "largest von Mises stress", largest%value, " p0 at x =", largest%x - 0.5_c_double*M*D, &
     " a, z =", largest%z, " a"
+  deallocate(stress, shear)
 
 contains
 

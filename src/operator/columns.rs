@@ -24,7 +24,7 @@ pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// One block of columns of a row-major matrix: no two of them overlap, but for a [`tail`](Block::tail) and the block that it borrows.
+/// One block of columns of a row-major matrix: no two of them overlap.
 pub struct Block<'a, T> {
     data: *mut Complex<T>,
     rows: usize,
@@ -170,13 +170,6 @@ impl<T: Real> Block<'_, T> {
         self.rows
     }
 
-    /// The block's columns from the k-th on: a part of it, by which it is borrowed.
-    pub fn tail(&mut self, k: usize) -> Block<'_, T> {
-        assert!(k <= self.columns);
-        let Block { data, rows, width, .. } = *self;
-        Block { data, rows, width, first: self.first + k, columns: self.columns - k, owner: PhantomData }
-    }
-
     /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
     pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>]) {
         let columns = self.columns();
@@ -233,7 +226,7 @@ impl<T: Real> Block<'_, T> {
     pub fn row(&self, row: usize) -> &[Complex<T>] {
         assert!(row < self.rows);
         // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which those who make
-        // blocks borrow exclusively, and no other block that is in use overlaps this one: a tail borrows its block.
+        // blocks borrow exclusively, and no other block overlaps this one.
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 

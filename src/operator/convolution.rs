@@ -4,14 +4,15 @@
 //! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
 //! ```
 //!
-//! Per block of columns: groups of columns by even coefficients as [`EvenColumns`] have them; the others are gathered, transformed, multiplied,
-//! transformed back and scattered.
+//! Per block of columns: by even coefficients as [`EvenColumns`] have them, where the machine has vectors; by others, they are gathered,
+//! transformed, multiplied, transformed back and scattered.
 
 use std::ops::Range;
 
-use super::columns::for_each_block;
-use super::even_columns::{EvenColumns, GROUP};
+use super::columns::{for_each_block, BLOCK};
+use super::even_columns::EvenColumns;
 use super::fft::{ColumnTransform, Real};
+use super::lane_rows::LaneRows;
 use super::rows::{Product, Rows};
 use super::set_up::{Even, SetUp, Transforms};
 use super::spectrum::{is_coarse, EvenOrder, Spectrum, SPECTRUM};
@@ -37,30 +38,40 @@ pub(super) fn room_of_column(length: usize) -> usize {
 /// Transforms in y, and the spectrum.
 pub(super) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
-    /// Of groups of columns, by an even spectrum.
-    even: Option<EvenColumns<T>>,
+    /// By an even spectrum, of rows and columns in the places of vectors.
+    by_lanes: Option<(LaneRows<T>, EvenColumns<T>)>,
     spectrum: Spectrum<T>,
 }
 
 impl<T: Real> Convolution<T> {
-    /// Transforms of period py; the spectrum is still to be computed.
-    pub fn new(py: usize) -> Convolution<T> {
+    /// Transforms of a period; the spectrum is still to be computed.
+    pub fn new((px, py): (usize, usize)) -> Convolution<T> {
         Convolution {
             columns: ColumnTransform::new(py),
-            even: EvenColumns::new(py),
+            by_lanes: LaneRows::new(px).zip(EvenColumns::new(py)),
             spectrum: Spectrum::Even(Vec::new()),
         }
     }
 
     /// How an even spectrum of so many columns is kept.
     fn order(&self, columns: usize) -> EvenOrder<'_, T> {
-        EvenOrder { groups: self.even.as_ref(), columns, py: self.columns.length() }
+        EvenOrder { by_lanes: self.by_lanes.as_ref().map(|(_, columns)| columns), columns, py: self.columns.length() }
     }
 
-    /// The same in another precision, times a factor, of `nb` columns.
-    pub fn in_precision<S: Real>(&self, nb: usize, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
-        let mut other = Convolution::new(self.columns.length());
-        other.spectrum = self.spectrum.in_precision((self.order(nb), other.order(nb)), factor, threads)?;
+    /// The transforms of rows that fit the columns, if these are in the places of vectors.
+    pub fn lanes(&self) -> Option<&LaneRows<T>> {
+        self.lanes_if_even().filter(|_| matches!(self.spectrum, Spectrum::Even(_)))
+    }
+
+    /// The same whatever the coefficients are now.
+    pub fn lanes_if_even(&self) -> Option<&LaneRows<T>> {
+        self.by_lanes.as_ref().map(|(rows, _)| rows)
+    }
+
+    /// The same in another precision, times a factor; `px` is the period in x.
+    pub fn in_precision<S: Real>(&self, px: usize, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
+        let mut other = Convolution::new((px, self.columns.length()));
+        other.spectrum = self.spectrum.in_precision(factor, threads)?;
         Ok(other)
     }
 
@@ -70,20 +81,22 @@ impl<T: Real> Convolution<T> {
 
     /// Transforms in y, multiplies by the spectrum and transforms back; rows `loaded` hold pressures.
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
+        if let (Some((in_x, even)), Spectrum::Even(spectrum)) = (&self.by_lanes, &self.spectrum) {
+            let (bins, pieces) = product.at_a_line();
+            let nb = in_x.room();
+            return for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
+                #[cfg(feature = "test-panics")]
+                crate::panics::at_a_block();
+                let columns = in_x.bins() - block.first();
+                even.multiply((block, columns), loaded.clone(), spectrum, &mut piece.columns);
+            });
+        }
         let Product { bins, pieces } = product;
         let (nb, length) = (rows.transform.bins(), self.columns.length());
         let (room, order) = (room_of_column(length), self.order(nb));
         for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
             #[cfg(feature = "test-panics")]
             crate::panics::at_a_block();
-            let mut together = 0;
-            if let (Some(even), Spectrum::Even(values)) = (&self.even, &self.spectrum) {
-                together = even.multiply(block, loaded.clone(), values, &mut piece.columns);
-            }
-            let mut block = block.tail(together);
-            if block.columns() == 0 {
-                return;
-            }
             let columns = &mut piece.columns[..block.columns() * room];
             block.gather(loaded.clone(), room, columns);
             // Long columns one by one, in the nearest cache.
@@ -106,7 +119,8 @@ impl<T: Real> Convolution<T> {
     {
         let mut values = self.spectrum.take_real();
         let transforms = Transforms::new((px, self.columns.length()), threads);
-        transforms.of_even(even, set_up, self.even.as_ref(), &mut values)?;
+        let order = self.order(px / 2 + 1);
+        transforms.of_even(even, set_up, order, &mut values)?;
         self.spectrum = Spectrum::Even(values);
         Ok(())
     }
@@ -118,14 +132,14 @@ impl<T: Real> Convolution<T> {
         let value = |x: usize, y: usize| T::of(scale * value(x, y));
         let mut spectrum = Vec::new();
         unwritten(&mut spectrum, order.len(), T::nan(), SPECTRUM, &Threads::One)?;
-        let (grouped, half) = (order.of_column(order.grouped()), order.half());
-        if let Some(groups) = order.groups {
-            for (k, group) in spectrum[..grouped].chunks_exact_mut(order.group()).enumerate() {
-                groups.write(group, |column, bin| value(k * GROUP + column, bin));
+        if let Some(even) = order.by_lanes {
+            for (first, block) in (0..nb).step_by(BLOCK).zip(spectrum.chunks_exact_mut(order.block())) {
+                even.write(block, nb - first, |column, bin| value(first + column, bin));
             }
-        }
-        for (x, column) in (order.grouped()..nb).zip(spectrum[grouped..].chunks_exact_mut(half)) {
-            column.iter_mut().enumerate().for_each(|(y, out)| *out = value(x, y));
+        } else {
+            for (x, column) in spectrum.chunks_exact_mut(order.half()).enumerate() {
+                column.iter_mut().enumerate().for_each(|(y, out)| *out = value(x.min(nb - 1), y));
+            }
         }
         self.spectrum = Spectrum::Even(spectrum);
         Ok(())

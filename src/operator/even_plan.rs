@@ -1,26 +1,14 @@
-//! The stages of transforms of even columns, and the order in which they leave bins.
+//! Where the spectrum of even columns is kept.
 //!
-//! Bins stay in the order in which the stages leave them ([`even_stages`](super::even_stages)): of each block of bins that comes out of the
+//! Bins stay in the order in which the stages leave them ([`stages`](super::stages)): of each block of bins that comes out of the
 //! last stage the mirror image, the bins py - k, is a block too, from behind. So one of the two is kept of S.
 
-use std::f64::consts::PI;
+use super::fft::Real;
+use super::stage_plan::Stages;
 
-use super::even_stages::Stage;
-use super::fft::{Complex, Real};
-
-/// Rows of a vector, 64 bytes each with AVX2, that the nearest cache holds beside what else is read.
-const NEAR: usize = 256;
-
-/// The stages of one length.
+/// The stages of one length, and the order of S.
 pub struct EvenPlan<T: Real> {
-    /// The first, and those in the middle.
-    pub(super) first: Stage<T>,
-    pub(super) middle: Vec<Stage<T>>,
-    /// Of those in the middle, how many go over all rows; the others go over parts of so many rows.
-    pub(super) wide: usize,
-    pub(super) part: usize,
-    /// The radix of the last.
-    pub(super) last: usize,
+    pub(super) stages: Stages<T>,
     /// Where S is kept, for each block of the last stage.
     pub(super) kept: Vec<Kept>,
     /// The bin of each kept row, at most py/2.
@@ -35,72 +23,17 @@ pub(super) struct Kept {
 }
 
 impl<T: Real> EvenPlan<T> {
-    /// None for lengths of other factors than 2, 3 and 5, or of one stage.
+    /// None for lengths that have no stages.
     pub fn new(length: usize) -> Option<EvenPlan<T>> {
-        let radices = radices(length)?;
-        let (&last, rest) = radices.split_last()?;
-        let mut n = length;
-        let mut stage = |&radix: &usize| {
-            let m = n / radix;
-            let angle = |j: usize, q: usize| -2.0 * PI * (j * q) as f64 / n as f64;
-            let of_row = |j: usize| (1..radix).map(move |q| angle(j, q));
-            let twiddles = (0..m).flat_map(of_row).map(|angle| Complex::new(T::of(angle.cos()), T::of(angle.sin())));
-            let stage = Stage { radix, twiddles: twiddles.collect() };
-            n = m;
-            stage
-        };
-        let (first, middle) = rest.split_first()?;
-        let (first, middle): (_, Vec<_>) = (stage(first), middle.iter().map(&mut stage).collect());
-        let (wide, part) = near_parts(&middle, length, first.stride());
-        let (kept, bins) = kept_rows(length, rest, last);
-        Some(EvenPlan { first, middle, wide, part, last, kept, bins })
+        let stages = Stages::new(length)?;
+        let (kept, bins) = kept_rows(length, &stages.lowest_bins(), stages.last);
+        Some(EvenPlan { stages, kept, bins })
     }
 }
 
-/// Factors of a length: a four first, the other fours last, what else there is between them.
-fn radices(length: usize) -> Option<Vec<usize>> {
-    let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
-    while rest % 4 == 0 {
-        (rest, fours) = (rest / 4, fours + 1);
-    }
-    for radix in [5, 3, 2] {
-        while rest % radix == 0 {
-            rest /= radix;
-            others.push(radix);
-        }
-    }
-    let first = fours.min(1);
-    let radices = [vec![4; first], others, vec![4; fours - first]].concat();
-    (rest == 1 && radices.len() > 1).then_some(radices)
-}
-
-/// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
-/// Twice as many rows still fit by themselves, so such lengths are one part.
-fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
-    if length <= 2 * NEAR {
-        return (0, length);
-    }
-    let after = |stages: usize| middle[..stages].last().map_or(after_first, Stage::stride);
-    let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR).unwrap_or(middle.len());
-    (wide, after(wide))
-}
-
-/// Where S is kept of each block of the last stage, and the bin of each kept row. Block b holds bins `lowest(b) + q length/last`.
-fn kept_rows(length: usize, before: &[usize], last: usize) -> (Vec<Kept>, Vec<usize>) {
-    let blocks = length / last;
-    // Row b of the stages before the last holds bin lowest(b) of a transform of their length: digits from behind.
-    let lowest = |b: usize| {
-        let (mut rest, mut below, mut bin) = (b, blocks, 0);
-        let mut weight = 1;
-        for radix in before {
-            below /= radix;
-            bin += weight * (rest / below);
-            rest %= below;
-            weight *= radix;
-        }
-        bin
-    };
-    let lowest: Vec<usize> = (0..blocks).map(lowest).collect();
+/// Where S is kept of each block of the last stage, of which the lowest bin is given, and the bin of each kept row.
+fn kept_rows(length: usize, lowest: &[usize], last: usize) -> (Vec<Kept>, Vec<usize>) {
+    let blocks = lowest.len();
     let (mut block_of, mut bins) = (vec![0; blocks], Vec::new());
     let is_kept = |bin: usize| 2 * bin <= blocks;
     for &bin in lowest.iter().filter(|&&bin| is_kept(bin)) {

@@ -4,6 +4,7 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub use rustfft::num_complex::Complex;
@@ -12,6 +13,7 @@ use rustfft::num_traits::{Float, FromPrimitive};
 use rustfft::{Fft, FftNum, FftPlanner};
 
 use super::even_plan::EvenPlan;
+use super::lane_rows::RowPlan;
 use super::lanes::Lanes;
 use crate::sums::Value;
 
@@ -37,13 +39,20 @@ pub struct Plans<T: Real> {
     twiddles: HashMap<usize, Arc<[Complex<T>]>>,
     /// Of columns of even coefficients, by theirs.
     even: HashMap<usize, Option<Arc<EvenPlan<T>>>>,
+    /// Of rows in the places of vectors, by theirs.
+    rows: HashMap<usize, Option<Arc<RowPlan<T>>>>,
 }
 
 macro_rules! real {
     ($t:ty, $plans:ident) => {
         thread_local! {
             static $plans: RefCell<Plans<$t>> =
-                RefCell::new(Plans { planner: FftPlanner::new(), twiddles: HashMap::new(), even: HashMap::new() });
+                RefCell::new(Plans {
+                    planner: FftPlanner::new(),
+                    twiddles: HashMap::new(),
+                    even: HashMap::new(),
+                    rows: HashMap::new(),
+                });
         }
         impl Real for $t {
             fn with_plans<R>(use_it: impl FnOnce(&mut Plans<$t>) -> R) -> R {
@@ -63,6 +72,17 @@ pub(super) fn twiddles<T: Real>(n: usize, compute: impl FnOnce() -> Vec<Complex<
 /// The stages of columns of even coefficients, computed once.
 pub(super) fn even_plan<T: Real>(length: usize) -> Option<Arc<EvenPlan<T>>> {
     T::with_plans(|plans| plans.even.entry(length).or_insert_with(|| EvenPlan::new(length).map(Arc::new)).clone())
+}
+
+/// The stages of rows in the places of vectors, computed once.
+pub(super) fn row_plan<T: Real>(length: usize) -> Option<Arc<RowPlan<T>>> {
+    T::with_plans(|plans| plans.rows.entry(length).or_insert_with(|| RowPlan::new(length).map(Arc::new)).clone())
+}
+
+/// `exp(-2 pi i k/n)`.
+pub(super) fn twiddle<T: Real>(k: usize, n: usize) -> Complex<T> {
+    let angle = -2.0 * PI * k as f64 / n as f64;
+    Complex::new(T::of(angle.cos()), T::of(angle.sin()))
 }
 
 /// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured, in single precision, where it

@@ -1,4 +1,4 @@
-//! Values of several columns side by side in vectors of the machine, and complex numbers of them.
+//! Values of several columns, or rows, side by side in vectors of the machine, and complex numbers of them.
 //!
 //! Nothing is contracted: a vector has the bits that its values have one by one.
 
@@ -25,14 +25,15 @@ pub trait Lanes: Copy {
     fn sub<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
     /// a b, place by place.
     fn mul<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// Complex numbers to their real and imaginary parts, in an order of places that suits the machine.
-    fn part<S: Simd>(simd: S, complex: [Self::Vector<S>; 2]) -> [Self::Vector<S>; 2];
+    /// Four values of each of some rows, which stand one after the other, to four vectors of one value of each row, in an order of places that
+    /// suits the machine.
+    fn from_rows<S: Simd>(simd: S, rows: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
     /// Back again.
-    fn join<S: Simd>(simd: S, parts: [Self::Vector<S>; 2]) -> [Self::Vector<S>; 2];
+    fn to_rows<S: Simd>(simd: S, vectors: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
 }
 
 macro_rules! lanes {
-    ($t:ident, $v:ident, $as:ident, $as_mut:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $part:ident, $join:ident) => {
+    ($t:ident, $v:ident, $as:ident, $as_mut:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $from_rows:ident, $to_rows:ident) => {
         impl Lanes for $t {
             type Vector<S: Simd> = S::$v;
 
@@ -61,12 +62,12 @@ macro_rules! lanes {
                 simd.$mul(a, b)
             }
             #[inline(always)]
-            fn part<S: Simd>(simd: S, complex: [S::$v; 2]) -> [S::$v; 2] {
-                simd.$part(complex)
+            fn from_rows<S: Simd>(simd: S, rows: [S::$v; 4]) -> [S::$v; 4] {
+                simd.$from_rows(rows)
             }
             #[inline(always)]
-            fn join<S: Simd>(simd: S, parts: [S::$v; 2]) -> [S::$v; 2] {
-                simd.$join(parts)
+            fn to_rows<S: Simd>(simd: S, vectors: [S::$v; 4]) -> [S::$v; 4] {
+                simd.$to_rows(vectors)
             }
         }
     };
@@ -160,6 +161,18 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
             re: T::sub(self.simd, product(a.re, re), product(a.im, im)),
             im: T::add(self.simd, product(a.re, im), product(a.im, re)),
         }
+    }
+
+    /// a + b of real numbers.
+    #[inline(always)]
+    pub fn add_real(self, a: T::Vector<S>, b: T::Vector<S>) -> T::Vector<S> {
+        T::add(self.simd, a, b)
+    }
+
+    /// a - b of real numbers.
+    #[inline(always)]
+    pub fn sub_real(self, a: T::Vector<S>, b: T::Vector<S>) -> T::Vector<S> {
+        T::sub(self.simd, a, b)
     }
 
     /// One real number in all places.

@@ -8,8 +8,10 @@ mod convolution;
 pub mod dense;
 mod even_columns;
 mod even_plan;
-mod even_stages;
 pub mod fft;
+mod half_stages;
+mod lane_passes;
+mod lane_rows;
 mod lanes;
 #[allow(clippy::module_inception)]
 mod operator;
@@ -20,6 +22,8 @@ mod rows;
 mod set_up;
 mod set_up_columns;
 mod spectrum;
+mod stage_plan;
+mod stages;
 mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use super::convolution::Convolution;
 use super::fft::{Complex, Real};
+use super::lane_rows::LaneRows;
 use super::periods::{full_reach, periods, Reach};
 use super::row_tables::PerRow;
 use super::row_transform::RowTransform;
@@ -73,7 +74,7 @@ impl<T: Real> Operator<T> {
     pub(super) fn of_period(grid: &Grid, (px, py): (usize, usize), threads: &Threads) -> Operator<T> {
         Operator {
             rows: Rows::new(grid.mx, grid.my, px, threads),
-            columns: Columns::Convolution(Convolution::new(py)),
+            columns: Columns::Convolution(Convolution::new((px, py))),
             reach: full_reach(grid),
             diagonal: Vec::new(),
             coupling: None,
@@ -99,7 +100,8 @@ impl<T: Real> Operator<T> {
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (px, py) = periods(coefficients, grid, self.reach);
         let threads = self.rows.threads.clone();
-        if px != self.rows.transform.length() {
+        let is_new = px != self.rows.transform.length();
+        if is_new {
             self.rows = Rows::new(grid.mx, grid.my, px, &threads);
         }
         if let Some((tables, least)) = coefficients.row_tables() {
@@ -107,8 +109,8 @@ impl<T: Real> Operator<T> {
             self.columns = Columns::PerRow(per_row);
         } else {
             match &self.columns {
-                Columns::Convolution(convolution) if convolution.columns.length() == py => {}
-                _ => self.columns = Columns::Convolution(Convolution::new(py)),
+                Columns::Convolution(convolution) if !is_new && convolution.columns.length() == py => {}
+                _ => self.columns = Columns::Convolution(Convolution::new((px, py))),
             }
             self.set_spectrum(coefficients, factor, grid, set_up)?;
         }
@@ -164,8 +166,8 @@ impl<T: Real> Operator<T> {
             rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
             columns: match &self.columns {
                 Columns::Convolution(convolution) => {
-                    let nb = self.rows.transform.bins();
-                    Columns::Convolution(convolution.in_precision(nb, factor, &self.rows.threads)?)
+                    let px = self.rows.transform.length();
+                    Columns::Convolution(convolution.in_precision(px, factor, &self.rows.threads)?)
                 }
                 Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
             },
@@ -216,9 +218,9 @@ impl<T: Real> Operator<T> {
         let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
-            return self.rows.back(p, product);
+            return self.rows.back(p, product, self.lanes());
         }
-        self.rows.back_with(p, product, |first, p, values| {
+        self.rows.back_with(p, product, self.lanes(), |first, p, values| {
             for ((p, value), d) in p.iter_mut().zip(values).zip(&self.diagonal[first..]) {
                 *p = *value + *d * *p;
             }
@@ -229,9 +231,9 @@ impl<T: Real> Operator<T> {
         let loaded = self.forward(p, product);
         self.convolve(loaded, product);
         if self.diagonal.is_empty() {
-            return self.rows.back(u, product);
+            return self.rows.back(u, product, self.lanes());
         }
-        self.rows.back_with(u, product, |first, u, values| {
+        self.rows.back_with(u, product, self.lanes(), |first, u, values| {
             for (((u, value), d), p) in u.iter_mut().zip(values).zip(&self.diagonal[first..]).zip(&p[first..]) {
                 *u = *value + *d * *p;
             }
@@ -242,7 +244,15 @@ impl<T: Real> Operator<T> {
     fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
         let n = product.bins.len().max(self.bins());
         wake(&mut product.bins, n, Complex::new(T::nan(), T::nan()), self.threads());
-        self.rows.forward(p, product)
+        self.rows.forward(p, product, self.lanes())
+    }
+
+    /// The transforms of rows in the places of vectors; None: rows go by themselves.
+    pub(super) fn lanes(&self) -> Option<&LaneRows<T>> {
+        match &self.columns {
+            Columns::Convolution(convolution) => convolution.lanes(),
+            Columns::PerRow(_) => None,
+        }
     }
 
     fn convolve(&self, loaded: Range<usize>, product: &mut Product<T>) {

@@ -71,10 +71,14 @@ impl<T: Real> RowTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
+        scratch.resize(scratch.len().max(self.scratch_length()), Complex::default());
+    }
+
+    /// Its length.
+    pub fn scratch_length(&self) -> usize {
         let to_another_place = self.n % 2 == 0 && self.at_a_time() == 1;
         let of_complex = if to_another_place { self.complex.scratch_to() } else { self.complex.scratch_length() };
-        let length = self.at_a_time() * self.complex.length() + of_complex;
-        scratch.resize(scratch.len().max(length), Complex::default());
+        self.at_a_time() * self.complex.length() + of_complex
     }
 
     /// Real row to bins; what the row lacks of its length is zero.

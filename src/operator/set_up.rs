@@ -2,7 +2,6 @@
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
 
 use super::columns::parts;
-use super::even_columns::EvenColumns;
 use super::fft::{ColumnTransform, Complex, Real};
 use super::row_transform::RowTransform;
 use super::set_up_columns::{fill_pairs, gather, Parts, Scaled, PAIRS};
@@ -97,7 +96,7 @@ impl<'a> Transforms<'a> {
         &self,
         even: &Even<F, G>,
         SetUp { real: in_x, pieces, .. }: &mut SetUp,
-        groups: Option<&EvenColumns<T>>,
+        order: EvenOrder<'_, T>,
         spectrum: &mut Vec<T>,
     ) -> Result<()>
     where
@@ -117,19 +116,19 @@ impl<'a> Transforms<'a> {
             self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
-        let (order, scale) = (EvenOrder { groups, columns: nb, py }, self.scale());
+        let scale = self.scale();
         let (half, value) = (order.half(), |value: f64| T::of(scale * (even.finish)(value)));
         unwritten(spectrum, order.len(), T::nan(), SPECTRUM, self.threads)?;
-        self.threads.for_each_row(spectrum, order.group(), pieces, |k, out, piece| {
+        self.threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
             let first = 2 * PAIRS * k;
-            let group = groups.filter(|_| first < order.grouped());
-            let pairs = if group.is_some() { PAIRS } else { out.len() / (2 * half) };
-            let block = &mut piece.column[..pairs * py];
+            let columns = (nb - first).min(2 * PAIRS);
+            let block = &mut piece.column[..columns.div_ceil(2) * py];
             fill_pairs((in_x, nb), rows_given, first, (block, py), |re, im| [Complex::new(re, im); 2]);
             self.columns.forward(block, &mut piece.columns);
-            if let Some(group) = group {
+            if let Some(even_columns) = order.by_lanes {
                 // Columns 2 k and 2 k + 1 are the real and the imaginary parts of pair k.
-                return group.write(out, |column, bin| value(parts(block)[2 * (column / 2 * py + bin) + column % 2]));
+                let of_pair = |column, bin| value(parts(block)[2 * (column / 2 * py + bin) + column % 2]);
+                return even_columns.write(out, columns, of_pair);
             }
             for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
                 let (re, im) = out.split_at_mut(half);

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use super::columns::BLOCK;
 use super::fft::{Complex, Real};
 
-/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: a cache line.
-pub(super) const PAIRS: usize = 4;
+/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: the pairs of a block, whole cache lines.
+pub(super) const PAIRS: usize = BLOCK / 2;
 
 /// A column times a factor, in another precision. Compiled for the vectors of this machine, as the next.
 pub(super) struct Scaled<'a, T> {

@@ -3,7 +3,7 @@
 //! ```text
 //! S = F c / (px py),   one column of it per x bin,    k an offset (kx, ky)
 //!
-//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: a half of each column is kept, of groups of columns in another order
+//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: a half of each column is kept, of columns in vectors in another order
 //! c(k) = c(-k)                           S real
 //! any other c                            S complex
 //! ```
@@ -13,7 +13,8 @@
 
 use std::mem::take;
 
-use super::even_columns::{EvenColumns, GROUP};
+use super::columns::BLOCK;
+use super::even_columns::EvenColumns;
 use super::fft::{Complex, Real};
 use crate::error::Result;
 use crate::influence::SYMMETRY;
@@ -28,7 +29,7 @@ const PIECE: usize = 1 << 12;
 
 /// The spectrum, the normalisation folded in. Real ones have an even number of columns: the last may be there twice.
 pub(super) enum Spectrum<T: Real> {
-    /// Groups of columns as [`EvenColumns`] have them, then `py/2 + 1` values a column.
+    /// Blocks of columns as [`EvenColumns`] have them; without, `py/2 + 1` values a column.
     Even(Vec<T>),
     /// `py` values a column.
     Symmetric(Vec<T>),
@@ -53,63 +54,38 @@ pub(super) fn is_coarse<T: Real>() -> bool {
 /// How the columns of an even spectrum are kept: `columns` in all, of period py.
 #[derive(Clone, Copy)]
 pub(super) struct EvenOrder<'a, T: Real> {
-    pub groups: Option<&'a EvenColumns<T>>,
+    pub by_lanes: Option<&'a EvenColumns<T>>,
     pub columns: usize,
     pub py: usize,
 }
 
 impl<T: Real> EvenOrder<'_, T> {
-    /// Values of a column that is in no group.
+    /// Values of a column, where columns are not in vectors.
     pub fn half(&self) -> usize {
         self.py / 2 + 1
     }
 
-    /// Values of a group, or of as many columns where there are none.
-    pub fn group(&self) -> usize {
-        GROUP * self.groups.map_or(self.half(), EvenColumns::kept_rows)
+    /// Values of a block of columns.
+    pub fn block(&self) -> usize {
+        BLOCK * self.by_lanes.map_or(self.half(), EvenColumns::kept_rows)
     }
 
-    /// Columns in groups.
-    pub fn grouped(&self) -> usize {
-        self.groups.map_or(0, |_| EvenColumns::<T>::grouped(self.columns))
-    }
-
-    /// Where the values of a column begin that is in no group.
-    pub fn of_column(&self, column: usize) -> usize {
-        self.grouped() / GROUP * self.group() + (column - self.grouped()) * self.half()
-    }
-
-    /// Values in all. The columns in no group are an even number: the last may be there twice.
+    /// Values in all: of whole blocks, or of an even number of columns, the last of which may be there twice.
     pub fn len(&self) -> usize {
-        self.of_column(self.columns + self.columns % 2)
+        match self.by_lanes {
+            Some(_) => self.columns.div_ceil(BLOCK) * self.block(),
+            None => (self.columns + self.columns % 2) * self.half(),
+        }
     }
 }
 
 impl<T: Real> Spectrum<T> {
-    /// The same in another precision, in its `order`, times a factor.
-    pub fn in_precision<S: Real>(
-        &self,
-        (here, there): (EvenOrder<'_, T>, EvenOrder<'_, S>),
-        factor: f64,
-        threads: &Threads,
-    ) -> Result<Spectrum<S>> {
+    /// The same in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Spectrum<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let real = |from: &[T]| converted(from, |from| convert(*from), S::nan(), threads);
         Ok(match self {
-            Spectrum::Even(from) => {
-                let mut values = real(from)?;
-                if let (Some(here), Some(there), grouped) = (here.groups, there.groups, here.of_column(here.grouped()))
-                {
-                    let places = here.places_in(there);
-                    threads.for_a_pass(grouped).for_each_plain_row(&mut values[..grouped], PIECE, |_, values| {
-                        for row in values.chunks_exact_mut(GROUP) {
-                            let given: [S; GROUP] = std::array::from_fn(|place| row[places[place]]);
-                            row.copy_from_slice(&given);
-                        }
-                    });
-                }
-                Spectrum::Even(values)
-            }
+            Spectrum::Even(from) => Spectrum::Even(real(from)?),
             Spectrum::Symmetric(from) => Spectrum::Symmetric(real(from)?),
             Spectrum::General(from, true) if is_coarse::<S>() => {
                 Spectrum::Symmetric(converted(from, |from| convert(from.re), S::nan(), threads)?)
@@ -145,13 +121,13 @@ impl<T: Real> Spectrum<T> {
         }
     }
 
-    /// Multiplies transformed columns in no group, of length py, the first of which has x bin `first`.
+    /// Multiplies transformed columns, which are not in vectors, of length py, the first of which has x bin `first`.
     pub fn multiply(&self, first: usize, order: EvenOrder<'_, T>, columns: &mut [Complex<T>]) {
         let py = order.py;
         for (column, bin) in columns.chunks_exact_mut(py).zip(first..) {
             match self {
                 Spectrum::Even(s) => {
-                    let s = &s[order.of_column(bin)..][..order.half()];
+                    let s = &s[bin * order.half()..][..order.half()];
                     let (lower, upper) = column.split_at_mut(order.half());
                     pulp::Arch::new().dispatch(Multiply { lower, upper, s });
                 }

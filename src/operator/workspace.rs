@@ -3,8 +3,10 @@
 use super::columns::BLOCK;
 use super::convolution::room_of_column;
 use super::fft::{Complex, Real};
+use super::lane_rows::LaneRows;
 use super::operator::{Columns, Operator};
 use super::rows::{Piece, Product};
+use super::stages::before_a_line;
 use crate::error::Result;
 use crate::memory::{asleep, blank, keep, rest, zeros};
 use crate::threads::Threads;
@@ -32,10 +34,10 @@ impl<T: Real> Workspace<T> {
         let nan = Complex::new(T::nan(), T::nan());
         let most = |room: fn(&Operator<T>) -> usize| operators.clone().map(room).max().unwrap_or(0);
         let (row, columns, masked) = (most(Operator::row_room), most(Operator::column_room), most(Operator::masked));
+        let scratch = most(Operator::scratch_room);
         let piece = |_| {
-            let mut scratch = Vec::new();
-            operators.clone().for_each(|operator| operator.fit_scratch(&mut scratch));
-            Ok(Piece { row: zeros(row, WORKSPACE)?, columns: blank(columns, nan, WORKSPACE)?, scratch })
+            let (columns, scratch) = (blank(columns, nan, WORKSPACE)?, blank(scratch, nan, WORKSPACE)?);
+            Ok(Piece { row: zeros(row, WORKSPACE)?, columns, scratch })
         };
         let memory = |n| zeros(n, WORKSPACE);
         let (bins, mut product_bins) = (most(Operator::bins), Vec::new());
@@ -66,7 +68,7 @@ impl<T: Real> Workspace<T> {
 impl<T: Real> Drop for Workspace<T> {
     fn drop(&mut self) {
         keep([&mut self.product.bins]);
-        self.product.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns]));
+        self.product.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns, &mut piece.scratch]));
         let [scaled, product] = &mut self.masked;
         keep([scaled, product, &mut self.given]);
     }
@@ -74,9 +76,17 @@ impl<T: Real> Drop for Workspace<T> {
 
 /// What a product needs.
 impl<T: Real> Operator<T> {
+    /// Transforms of rows by which products go if the coefficients are even, which may change.
+    fn lanes_if_even(&self) -> Option<&LaneRows<T>> {
+        match &self.columns {
+            Columns::Convolution(convolution) => convolution.lanes_if_even(),
+            Columns::PerRow(_) => None,
+        }
+    }
+
     /// Bins of all rows.
     pub(super) fn bins(&self) -> usize {
-        self.rows.my * self.rows.transform.bins()
+        self.rows.room(self.lanes_if_even())
     }
 
     /// Values of rows, or sums of a column.
@@ -85,12 +95,13 @@ impl<T: Real> Operator<T> {
             Columns::Convolution(_) => 0,
             Columns::PerRow(_) => 2 * self.rows.my,
         };
-        (self.rows.transform.at_a_time() * self.rows.mx).max(sums)
+        let together = self.rows.at_a_time(self.lanes_if_even()).max(self.rows.transform.at_a_time());
+        (together * self.rows.mx).max(sums)
     }
 
     /// Values of a block of columns.
     fn column_room(&self) -> usize {
-        BLOCK * room_of_column(self.periods().1)
+        BLOCK * room_of_column(self.periods().1) + before_a_line::<T>()
     }
 
     /// Elements of a grid with patches.
@@ -103,10 +114,12 @@ impl<T: Real> Operator<T> {
         self.rows.threads.count()
     }
 
-    fn fit_scratch(&self, scratch: &mut Vec<Complex<T>>) {
-        self.rows.transform.fit(scratch);
-        if let Columns::Convolution(convolution) = &self.columns {
-            convolution.columns.fit(scratch);
-        }
+    /// Values of scratch.
+    fn scratch_room(&self) -> usize {
+        let of_columns = match &self.columns {
+            Columns::Convolution(convolution) => convolution.columns.scratch_length(),
+            Columns::PerRow(_) => 0,
+        };
+        self.rows.scratch_length(self.lanes_if_even()).max(of_columns)
     }
 }

@@ -46,8 +46,9 @@ mod promises {
         let shaped = [super::super::surfaces::cases(), super::super::coefficients::cases()].concat();
         let shaped =
             shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
-        let mut stagnated = 0;
+        let (mut stagnated, mut total) = (0, 0);
         for case in shaped.chain(cases()) {
+            total += 1;
             let options = Options { method: Method::Norm, tolerance: 1e-30, max_cycles: 20_000, ..Options::default() };
             let found = run_with(&case, &options).expect("a solve");
             let measures = assert_sound(&case, "NORM below round-off", &found);
@@ -61,7 +62,8 @@ mod promises {
             stagnated += usize::from(found.stop == Outcome::Stagnated);
             assert!(measures.residual <= 1e-12 && measures.violation <= 1e-12, "{}: {measures:?}", case.name);
         }
-        assert!(stagnated > 40, "{stagnated} stagnated");
+        // Most of them meet round-off, so that this is what is tested; which of the others do depends on how sums round.
+        assert!(4 * stagnated > 3 * total, "{stagnated} of {total} stagnated");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The stages of transforms of many columns at a time (Cooley and Tukey 1965).
+//! The stages of transforms of many columns, or rows, at a time (Cooley and Tukey 1965).
 //!
 //! A stage of radix R cuts a transform of `n = R m` rows in R of m rows, with `w = exp(-2 pi i/n)`:
 //!
@@ -13,7 +13,9 @@
 //! Loops run over indices of slices of one length: with iterators they take 3 to 7 % longer.
 #![allow(clippy::needless_range_loop)]
 
-use pulp::Simd;
+use std::marker::PhantomData;
+
+use pulp::{Simd, WithSimd};
 
 use super::butterflies::{butterfly, LONGEST};
 use super::columns::parts_mut;
@@ -37,10 +39,25 @@ impl<T: Real> Stage<T> {
     }
 }
 
-/// Rows of vectors.
+/// Bytes of a line of the cache, as long as the longest vector.
+const LINE: usize = 64;
+
+/// Complex numbers that may stand before the first line.
+pub(super) const fn before_a_line<T>() -> usize {
+    LINE / size_of::<Complex<T>>() - 1
+}
+
+/// Memory from a line of the cache on: vectors of 64 bytes that lie across two take twice as long.
+#[inline(always)]
+pub(super) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
+    let before = memory.as_ptr().align_offset(LINE).min(before_a_line::<T>());
+    &mut memory[before..]
+}
+
+/// Rows of vectors, from a line of the cache on.
 #[inline(always)]
 pub(super) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
-    let values = parts_mut(memory);
+    let values = parts_mut(from_a_line(memory));
     let whole = values.len() - values.len() % places::<T, S>();
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
@@ -49,6 +66,22 @@ pub(super) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<
 #[inline(always)]
 pub(super) fn inlined<F>(closure: F) -> F {
     closure
+}
+
+/// Bytes of a row on this machine.
+pub(super) fn bytes_of_a_row<T: Real>() -> usize {
+    pulp::Arch::new().dispatch(BytesOfARow::<T>(PhantomData))
+}
+
+struct BytesOfARow<T>(PhantomData<T>);
+
+impl<T: Real> WithSimd for BytesOfARow<T> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        size_of::<Row<T, S>>()
+    }
 }
 
 /// Calls a stage of the radix that there is.
@@ -65,18 +98,18 @@ macro_rules! of_radix {
 pub(super) use of_radix;
 
 #[inline(always)]
-fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {
+pub(super) fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {
     Parts { re: row[0], im: row[1] }
 }
 
 #[inline(always)]
-fn put<T: Real, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
+pub(super) fn put<T: Real, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
     (row[0], row[1]) = (value.re, value.im);
 }
 
 /// Rows 0 .. m, m .. 2 m, .., R times.
 #[inline(always)]
-fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
+pub(super) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
     let mut cut: [&mut [A]; LONGEST] = [&mut [], &mut [], &mut [], &mut [], &mut []];
     let mut rest = &mut rows[..R * m];
     for k in 0..R {
@@ -147,6 +180,21 @@ pub(super) fn multiply<T: Real, S: Simd, const R: usize>(
         for q in 0..R {
             let Parts { re, im } = a.scale(x[q], factor(b, q));
             x[q] = Parts { re: im, im: re };
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            put::<T, S>(&mut rows[k], x[k]);
+        }
+    }
+}
+
+/// The last stage forward.
+#[inline(always)]
+pub(super) fn end<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
+    for rows in rows.chunks_exact_mut(R) {
+        let mut x = [get::<T, S>(&rows[0]); LONGEST];
+        for k in 1..R {
+            x[k] = get::<T, S>(&rows[k]);
         }
         butterfly::<T, S, R>(a, &mut x);
         for k in 0..R {

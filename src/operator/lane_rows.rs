@@ -1,0 +1,188 @@
+//! Transforms of real rows, one row in each place of the machine's vectors: an even length n by a complex transform of h = n/2 values.
+//!
+//! ```text
+//! z_j = x_2j + i x_(2j+1),   Z = F z,   w_k = exp(-2 pi i k/n)        (Cooley, Lewis and Welch 1970)
+//! X_k = (Z_k + Z*_(h-k))/2 - i w_k (Z_k - Z*_(h-k))/2                  k = 0 .. h, Z_h = Z_0
+//! Z_k = X_k + X*_(h-k) + i w*_k (X_k - X*_(h-k))                       backwards, unnormalised: 2 h times z
+//! ```
+//!
+//! The bins of a row stand in blocks of [`BLOCK`], first all real, then all imaginary parts, as the columns are loaded afterwards. Values of
+//! rows become vectors four columns at a time, and back.
+
+use std::sync::Arc;
+
+use pulp::{Simd, WithSimd};
+
+use super::columns::BLOCK;
+use super::fft::{row_plan, twiddle, Complex, Real};
+use super::half_stages::{backwards_to_half, forward_of_half};
+use super::lane_passes::{load, load_bins, store, store_bins};
+use super::lanes::{places, Arithmetic};
+use super::stage_plan::Stages;
+use super::stages::{backwards, before_a_line, end, forward, of_radix, rows_of};
+
+/// The stages of one length, and where they leave bins.
+pub struct RowPlan<T: Real> {
+    stages: Stages<T>,
+    /// The row in which the stages leave each bin 0 .. h (Z_h = Z_0).
+    pub(super) row_of: Vec<usize>,
+    /// `w_k/2`, k = 0 .. h.
+    pub(super) twiddles: Vec<Complex<T>>,
+}
+
+impl<T: Real> RowPlan<T> {
+    /// None where n is odd, or h has no stages.
+    pub fn new(n: usize) -> Option<RowPlan<T>> {
+        let h = n / 2;
+        let stages = (n % 2 == 0).then(|| Stages::new(h))??;
+        let mut row_of = vec![0; h + 1];
+        stages.bins().into_iter().enumerate().for_each(|(row, bin)| row_of[bin] = row);
+        row_of[h] = row_of[0];
+        let half = T::of(0.5);
+        let mut twiddles: Vec<_> = (0..=h).map(|k| twiddle::<T>(k, n) * half).collect();
+        twiddles[h] = Complex::new(-half, T::zero());
+        Some(RowPlan { stages, row_of, twiddles })
+    }
+
+    /// h.
+    pub(super) fn length(&self) -> usize {
+        self.row_of.len() - 1
+    }
+}
+
+/// Transforms of rows of one length.
+pub(super) struct LaneRows<T: Real> {
+    plan: Arc<RowPlan<T>>,
+    places: usize,
+}
+
+impl<T: Real> LaneRows<T> {
+    /// None where the length has no plan, or the machine no vectors.
+    pub fn new(n: usize) -> Option<LaneRows<T>> {
+        let places = pulp::Arch::new().dispatch(Places::<T>(std::marker::PhantomData))?;
+        Some(LaneRows { plan: row_plan(n)?, places })
+    }
+
+    /// Number of complex bins.
+    pub fn bins(&self) -> usize {
+        self.plan.length() + 1
+    }
+
+    /// Bins of a row in memory: whole blocks, those beyond n/2 without meaning.
+    pub fn room(&self) -> usize {
+        self.bins().next_multiple_of(BLOCK)
+    }
+
+    /// Rows that are transformed together.
+    pub fn at_a_time(&self) -> usize {
+        self.places
+    }
+
+    /// Complex numbers that both directions need.
+    pub fn scratch_length(&self) -> usize {
+        self.plan.length() * self.places + before_a_line::<T>()
+    }
+
+    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins of as many rows: there are always all of these. What rows lack
+    /// of their length is zero.
+    pub fn forward(&self, rows: &[T], width: usize, bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && rows.len() >= width);
+        pulp::Arch::new().dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
+    }
+
+    /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
+    pub fn inverse(&self, bins: &[Complex<T>], rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
+        assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && width > 0);
+        pulp::Arch::new().dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
+    }
+}
+
+/// Places of this machine's vectors; the same answer for no vectors in either precision.
+pub(super) struct Places<T>(pub std::marker::PhantomData<T>);
+
+impl<T: Real> WithSimd for Places<T> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        (S::F64_LANES > 1 && S::F32_LANES <= BLOCK).then(places::<T, S>)
+    }
+}
+
+struct Forward<'a, T: Real> {
+    plan: &'a RowPlan<T>,
+    rows: &'a [T],
+    width: usize,
+    bins: &'a mut [Complex<T>],
+    scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Real> WithSimd for Forward<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Forward { plan, rows, width, bins, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load::<T, S>(a, rows, width, z);
+        let Stages { middle, wide, part, last, first } = &plan.stages;
+        if first.is_of_half(width.div_ceil(2)) {
+            forward_of_half(a, first, z);
+        } else {
+            of_radix!(first.radix, forward, a, first, z);
+        }
+        let (wide, near) = middle.split_at(*wide);
+        for stage in wide {
+            of_radix!(stage.radix, forward, a, stage, z);
+        }
+        for z in z.chunks_exact_mut(*part) {
+            for stage in near {
+                of_radix!(stage.radix, forward, a, stage, z);
+            }
+            of_radix!(*last, end, a, z);
+        }
+        store_bins::<T, S>(a, plan, z, bins);
+    }
+}
+
+struct Inverse<'a, T: Real> {
+    plan: &'a RowPlan<T>,
+    bins: &'a [Complex<T>],
+    rows: &'a mut [T],
+    width: usize,
+    scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Real> WithSimd for Inverse<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Inverse { plan, bins, rows, width, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load_bins::<T, S>(a, plan, bins, z);
+        let Stages { middle, wide, part, last, first } = &plan.stages;
+        let (wide, near) = middle.split_at(*wide);
+        for z in z.chunks_exact_mut(*part) {
+            of_radix!(*last, end, a, z);
+            for stage in near.iter().rev() {
+                of_radix!(stage.radix, backwards, a, stage, z);
+            }
+        }
+        for stage in wide.iter().rev() {
+            of_radix!(stage.radix, backwards, a, stage, z);
+        }
+        if first.is_of_half(width.div_ceil(2)) {
+            backwards_to_half(a, first, z);
+        } else {
+            of_radix!(first.radix, backwards, a, first, z);
+        }
+        store::<T, S>(a, z, rows, width);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/lane_rows.rs"]
+mod tests;

@@ -1,0 +1,68 @@
+//! Rows in the places of vectors, by another implementation's transforms, realfft's.
+
+use super::super::columns::parts;
+use super::*;
+use realfft::RealFftPlanner;
+
+/// The largest error of all bins of some rows, and of the rows that come back, relative to the largest value.
+fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
+    let lanes = LaneRows::<T>::new(n).expect("a plan");
+    let (together, nb) = (lanes.at_a_time(), lanes.room());
+    let count = together - missing.min(together - 1);
+    let rows: Vec<T> = (0..count * width).map(|i| T::of(((i * 7919 + n) % 1013) as f64 / 7.0 - 60.0)).collect();
+    let mut bins = vec![Complex::new(T::nan(), T::nan()); together * nb];
+    let mut scratch = vec![Complex::new(T::nan(), T::nan()); lanes.scratch_length()];
+    lanes.forward(&rows, width, &mut bins, &mut scratch);
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (mut difference, mut largest) = (0.0, 0.0);
+    for (row, bins) in rows.chunks_exact(width).zip(bins.chunks_exact(nb)) {
+        let mut padded: Vec<f64> = row.iter().map(|x| x.to_double()).collect();
+        padded.resize(n, 0.0);
+        let mut expected = vec![Complex::default(); n / 2 + 1];
+        planner.plan_fft_forward(n).process(&mut padded, &mut expected).unwrap();
+        for (k, expected) in expected.iter().enumerate() {
+            let block = &parts(bins)[k / BLOCK * 2 * BLOCK..][..2 * BLOCK];
+            let (re, im) = (block[k % BLOCK].to_double(), block[BLOCK + k % BLOCK].to_double());
+            difference = f64::max(difference, (re - expected.re).hypot(im - expected.im));
+            largest = f64::max(largest, expected.norm());
+            assert!(!difference.is_nan());
+        }
+    }
+    let mut back = vec![T::nan(); count * width];
+    lanes.inverse(&bins, &mut back, width, &mut scratch);
+    let of_row = |(x, back): (&T, &T)| (back.to_double() / n as f64 - x.to_double()).abs();
+    let back = rows.iter().zip(&back).map(of_row).fold(0.0, |a: f64, b| if b <= a { a } else { b });
+    [difference / largest, back / 85.0]
+}
+
+#[test]
+fn rows_in_the_places_of_vectors_have_the_bins_of_each() {
+    if LaneRows::<f64>::new(32).is_none() {
+        // Without vectors rows go by themselves, as tests/unit/row_transform.rs checks.
+        return assert!(LaneRows::<f32>::new(32).is_none());
+    }
+    for n in [12usize, 16, 18, 20, 30, 32, 50, 54, 64, 100, 240, 432, 864, 900, 1024, 2160, 4096] {
+        for width in [n, n - 1, n / 2, n / 2 + 1, n / 3, 5, 1] {
+            for missing in [0, 1, 100] {
+                // Each of log2(n) steps rounds once or twice.
+                let allowed = 2.0 * (n as f64).log2();
+                for error in errors::<f64>(n, width, missing) {
+                    assert!(error <= allowed * f64::EPSILON, "{n}, {width} values, {missing} rows missing: {error}");
+                }
+                for error in errors::<f32>(n, width, missing) {
+                    assert!(
+                        error <= allowed * f64::from(f32::EPSILON),
+                        "{n}, {width} values, {missing} rows missing: {error}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn some_lengths_have_no_plan() {
+    for n in [1, 2, 4, 6, 7, 8, 10, 15, 28, 44] {
+        assert!(RowPlan::<f64>::new(n).is_none(), "{n}");
+    }
+}
