@@ -23,12 +23,18 @@ use super::stages::{backwards, first, forward, inlined, last, multiply, of_radix
 /// Products of columns of one length.
 pub(super) struct EvenColumns<T: Real> {
     plan: Arc<EvenPlan<T>>,
+    arch: pulp::Arch,
 }
 
 impl<T: Real> EvenColumns<T> {
     /// None where the length has no plan.
     pub fn new(length: usize) -> Option<EvenColumns<T>> {
-        Some(EvenColumns { plan: even_plan(length)? })
+        EvenColumns::on(pulp::Arch::new(), length)
+    }
+
+    /// With the vectors of these instructions; no bit depends on them.
+    fn on(arch: pulp::Arch, length: usize) -> Option<EvenColumns<T>> {
+        Some(EvenColumns { plan: even_plan(length)?, arch })
     }
 
     /// Kept rows of the spectrum of a block.
@@ -56,7 +62,7 @@ impl<T: Real> EvenColumns<T> {
         let (length, kept) = (self.plan.stages.length(), BLOCK * self.kept_rows());
         assert!(block.rows() <= length && loaded.end <= block.rows() && block.columns() == BLOCK);
         let spectrum = &spectrum[block.first() / BLOCK * kept..][..kept];
-        pulp::Arch::new().dispatch(Multiply { plan: &self.plan, columns, block, loaded, spectrum, memory });
+        self.arch.dispatch(Multiply { plan: &self.plan, columns, block, loaded, spectrum, memory });
     }
 }
 

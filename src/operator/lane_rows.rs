@@ -53,14 +53,20 @@ impl<T: Real> RowPlan<T> {
 /// Transforms of rows of one length.
 pub(super) struct LaneRows<T: Real> {
     plan: Arc<RowPlan<T>>,
+    arch: pulp::Arch,
     places: usize,
 }
 
 impl<T: Real> LaneRows<T> {
     /// None where the length has no plan, or the machine no vectors.
     pub fn new(n: usize) -> Option<LaneRows<T>> {
-        let places = pulp::Arch::new().dispatch(Places::<T>(std::marker::PhantomData))?;
-        Some(LaneRows { plan: row_plan(n)?, places })
+        LaneRows::on(pulp::Arch::new(), n)
+    }
+
+    /// With the vectors of these instructions; no bit depends on them.
+    fn on(arch: pulp::Arch, n: usize) -> Option<LaneRows<T>> {
+        let places = arch.dispatch(Places::<T>(std::marker::PhantomData))?;
+        Some(LaneRows { plan: row_plan(n)?, arch, places })
     }
 
     /// Number of complex bins.
@@ -87,18 +93,18 @@ impl<T: Real> LaneRows<T> {
     /// of their length is zero.
     pub fn forward(&self, rows: &[T], width: usize, bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && rows.len() >= width);
-        pulp::Arch::new().dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
+        self.arch.dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
     }
 
     /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
     pub fn inverse(&self, bins: &[Complex<T>], rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
         assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && width > 0);
-        pulp::Arch::new().dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
+        self.arch.dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
     }
 }
 
 /// Places of this machine's vectors; the same answer for no vectors in either precision.
-pub(super) struct Places<T>(pub std::marker::PhantomData<T>);
+struct Places<T>(std::marker::PhantomData<T>);
 
 impl<T: Real> WithSimd for Places<T> {
     type Output = Option<usize>;

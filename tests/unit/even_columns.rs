@@ -84,3 +84,29 @@ fn some_lengths_have_no_plan() {
         assert!(EvenPlan::<f64>::new(length).is_none(), "{length}");
     }
 }
+
+/// A block of columns, multiplied.
+#[cfg(target_arch = "x86_64")]
+fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
+    let even = EvenColumns::<T>::on(arch, length).expect("a plan");
+    let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
+    let (mut spectrum, my) = (vec![T::nan(); BLOCK * even.kept_rows()], length / 2);
+    even.write(&mut spectrum, BLOCK, |column, bin| value(column * 31 + bin * 17));
+    let mut block: Vec<_> = (0..my * BLOCK).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
+    let memory = vec![Complex::default(); BLOCK * length + before_a_line::<T>()];
+    for_each_block(&mut block, BLOCK, &Threads::One, &mut [()], |block, ()| {
+        even.multiply((block, BLOCK), 0..my, &spectrum, &mut memory.clone());
+    });
+    block
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn no_bit_depends_on_the_length_of_vectors() {
+    // A machine without AVX-512 has nothing to compare; valgrind's tests of examples are one without on each machine.
+    let Some(avx2) = pulp::x86::V3::try_new() else { return };
+    for length in LENGTHS {
+        assert!(by::<f64>(pulp::Arch::V3(avx2), length) == by(pulp::Arch::new(), length), "{length}");
+        assert!(by::<f32>(pulp::Arch::V3(avx2), length) == by(pulp::Arch::new(), length), "{length}");
+    }
+}

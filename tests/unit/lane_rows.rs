@@ -60,6 +60,36 @@ fn rows_in_the_places_of_vectors_have_the_bins_of_each() {
     }
 }
 
+/// Bins of 16 rows, and the rows that come back.
+#[cfg(target_arch = "x86_64")]
+fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Vec<T>) {
+    let lanes = LaneRows::<T>::on(arch, n).expect("a plan");
+    let rows: Vec<T> = (0..16 * width).map(|i| T::of(((i * 7919 + n) % 1013) as f64 / 7.0 - 60.0)).collect();
+    let (mut bins, mut back) = (vec![Complex::default(); 16 * lanes.room()], vec![T::nan(); 16 * width]);
+    let mut scratch = vec![Complex::default(); lanes.scratch_length()];
+    let (together, room) = (lanes.at_a_time(), lanes.room());
+    for (rows, bins) in rows.chunks_exact(together * width).zip(bins.chunks_exact_mut(together * room)) {
+        lanes.forward(rows, width, bins, &mut scratch);
+    }
+    for (rows, bins) in back.chunks_exact_mut(together * width).zip(bins.chunks_exact(together * room)) {
+        lanes.inverse(bins, rows, width, &mut scratch);
+    }
+    (bins, back)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn no_bit_depends_on_the_length_of_vectors() {
+    // A machine without AVX-512 has nothing to compare; valgrind's tests of examples are one without on each machine.
+    let Some(avx2) = pulp::x86::V3::try_new() else { return };
+    for (n, width) in [(12, 7), (54, 54), (432, 216), (1024, 512), (2160, 1000)] {
+        let here = by::<f64>(pulp::Arch::new(), n, width);
+        assert!(by::<f64>(pulp::Arch::V3(avx2), n, width) == here, "{n}, {width} values");
+        let here = by::<f32>(pulp::Arch::new(), n, width);
+        assert!(by::<f32>(pulp::Arch::V3(avx2), n, width) == here, "{n}, {width} values");
+    }
+}
+
 #[test]
 fn some_lengths_have_no_plan() {
     for n in [1, 2, 4, 6, 7, 8, 10, 15, 28, 44] {
