@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::fft::good_length;
-use crate::operator::{Operator, Reach, SetUp, Workspace};
+use crate::operator::{Needs, Operator, Reach, SetUp, Workspace};
 use crate::threads::Threads;
 
 /// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
@@ -40,8 +40,8 @@ pub(super) struct Operators {
     whole: Option<Arc<Operator<f64>>>,
     /// The last one for p on a part of the grid, and whether its coefficients are those of now.
     part: Option<(Operator<f64>, bool)>,
-    /// Of the last product, with the periods that it is for.
-    workspace: Option<((usize, usize), Workspace<f64>)>,
+    /// Of the last product, with the needs that it is for.
+    workspace: Option<(Needs, Workspace<f64>)>,
     /// Memory for other coefficients.
     set_up: SetUp,
 }
@@ -156,13 +156,13 @@ impl MadeOf<'_> {
 
 /// The workspace of an operator: the one that there is, if it serves.
 fn fit<'a>(
-    workspace: &'a mut Option<((usize, usize), Workspace<f64>)>,
+    workspace: &'a mut Option<(Needs, Workspace<f64>)>,
     operator: &Operator<f64>,
 ) -> Result<&'a mut Workspace<f64>> {
-    let periods = operator.periods();
-    let fitting = match workspace.take().filter(|(of, _)| *of == periods) {
+    let needs = operator.needs();
+    let fitting = match workspace.take().filter(|(of, _)| *of == needs) {
         Some(fitting) => fitting,
-        None => (periods, operator.workspace()?),
+        None => (needs, operator.workspace()?),
     };
     Ok(&mut workspace.insert(fitting).1)
 }

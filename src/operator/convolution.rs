@@ -16,6 +16,7 @@ use super::lane_rows::LaneRows;
 use super::rows::{Product, Rows};
 use super::set_up::{Even, SetUp, Transforms};
 use super::spectrum::{is_coarse, EvenOrder, Spectrum, SPECTRUM};
+use super::stage_plan::has_stages;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -48,7 +49,12 @@ impl<T: Real> Convolution<T> {
     pub fn new((px, py): (usize, usize)) -> Convolution<T> {
         Convolution {
             columns: ColumnTransform::new(py),
-            by_lanes: LaneRows::new(px).zip(EvenColumns::new(py)),
+            // No plan is made in vain: one of a grid of one row is as large as the grid.
+            by_lanes: if has_stages(px / 2) && has_stages(py) {
+                LaneRows::new(px).zip(EvenColumns::new(py))
+            } else {
+                None
+            },
             spectrum: Spectrum::Even(Vec::new()),
         }
     }

@@ -87,7 +87,7 @@ pub(super) fn store_bins<T: Real, S: Simd>(
     bins: &mut [Complex<T>],
 ) {
     let (h, half, zero) = (plan.length(), a.splat(T::of(0.5)), a.splat(T::zero()));
-    let per_row = 2 * (h + 1).next_multiple_of(BLOCK) / FOUR;
+    let per_row = 2 * plan.room() / FOUR;
     let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
     let fours = pulp::as_arrays_mut::<FOUR, _>(parts_mut(bins)).0;
     let value = inlined(
@@ -142,7 +142,7 @@ pub(super) fn load_bins<T: Real, S: Simd>(
     z: &mut [Row<T, S>],
 ) {
     let h = plan.length();
-    let per_row = 2 * (h + 1).next_multiple_of(BLOCK) / FOUR;
+    let per_row = 2 * plan.room() / FOUR;
     let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
     let fours = pulp::as_arrays::<FOUR, _>(parts(bins)).0;
     let four = inlined(

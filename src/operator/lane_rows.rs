@@ -48,6 +48,11 @@ impl<T: Real> RowPlan<T> {
     pub(super) fn length(&self) -> usize {
         self.row_of.len() - 1
     }
+
+    /// Bins of a row in memory: whole blocks, those beyond h without meaning.
+    pub(super) fn room(&self) -> usize {
+        (self.length() + 1).next_multiple_of(BLOCK)
+    }
 }
 
 /// Transforms of rows of one length.
@@ -76,7 +81,7 @@ impl<T: Real> LaneRows<T> {
 
     /// Bins of a row in memory: whole blocks, those beyond n/2 without meaning.
     pub fn room(&self) -> usize {
-        self.bins().next_multiple_of(BLOCK)
+        self.plan.room()
     }
 
     /// Rows that are transformed together.

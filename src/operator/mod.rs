@@ -21,6 +21,7 @@ pub mod row_transform;
 mod rows;
 mod set_up;
 mod set_up_columns;
+mod set_up_lanes;
 mod spectrum;
 mod stage_plan;
 mod stages;
@@ -30,7 +31,7 @@ pub(crate) use crate::memory::{reserve, zeros};
 pub use operator::Operator;
 pub use periods::Reach;
 pub use set_up::SetUp;
-pub use workspace::Workspace;
+pub use workspace::{Needs, Workspace};
 
 /// Arithmetic of the inner work; results are always computed in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -86,8 +86,8 @@ impl<T: Real> Operator<T> {
         &self.rows.threads
     }
 
-    /// The periods: another operator of the same grid and periods needs the same workspace.
-    pub fn periods(&self) -> (usize, usize) {
+    /// The periods.
+    pub(super) fn periods(&self) -> (usize, usize) {
         let in_y = match &self.columns {
             Columns::Convolution(convolution) => convolution.columns.length(),
             Columns::PerRow(_) => self.rows.my,

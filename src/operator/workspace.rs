@@ -74,8 +74,16 @@ impl<T: Real> Drop for Workspace<T> {
     }
 }
 
-/// What a product needs.
+/// Numbers of values that the products of an operator need.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Needs([usize; 5]);
+
 impl<T: Real> Operator<T> {
+    /// What its products need: the workspace of one operator serves another of the same needs.
+    pub fn needs(&self) -> Needs {
+        Needs([self.bins(), self.row_room(), self.column_room(), self.scratch_room(), self.masked()])
+    }
+
     /// Transforms of rows by which products go if the coefficients are even, which may change.
     fn lanes_if_even(&self) -> Option<&LaneRows<T>> {
         match &self.columns {

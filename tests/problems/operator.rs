@@ -34,6 +34,7 @@ fn product(influence: &Coefficients, grid: &Grid, p: &[f64], threads: &Threads) 
     let operator = Operator::new(influence, grid, threads).unwrap();
     let mut u = vec![f64::NAN; grid.len()];
     operator.apply(p, &mut u, &mut operator.workspace().unwrap());
+    assert!(u.iter().all(|u| u.is_finite()), "{grid:?}");
     u
 }
 
@@ -81,7 +82,7 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
     }
 }
 
-/// Columns are transformed eight at a time and the rest one by one, and lengths are of many kinds: all numbers of columns and many
+/// Rows and columns are transformed in the places of vectors or one by one, and lengths are of many kinds: all numbers of columns and many
 /// lengths, in both precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
 #[test]
 fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
@@ -99,6 +100,7 @@ fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
             let single: Vec<f32> = p.iter().map(|&value| value as f32).collect();
             let mut u = vec![f32::NAN; grid.len()];
             operator.apply(&single, &mut u, &mut operator.workspace().unwrap());
+            assert!(u.iter().all(|u| u.is_finite()), "{grid:?}");
             let difference = u.iter().zip(&exact).fold(0.0, |m: f64, (a, b)| m.max((f64::from(*a) - b).abs()));
             assert!(difference <= 1e-6 * largest(&exact), "{grid:?}: {difference} of {}", largest(&exact));
         }
@@ -183,6 +185,7 @@ fn in_single_precision_a_table_symmetric_to_round_off_has_a_real_spectrum() {
             for operator in [own, double.in_precision(1.0).unwrap()] {
                 let mut u = vec![f32::NAN; grid.len()];
                 operator.apply(&single, &mut u, &mut operator.workspace().unwrap());
+                assert!(u.iter().all(|u| u.is_finite()), "{grid:?} {skew}");
                 let difference = u.iter().zip(&exact).fold(0.0, |m: f64, (a, b)| m.max((f64::from(*a) - b).abs()));
                 // 16 rounding errors of 6e-8 along the transforms.
                 assert!(difference <= 1e-6 * largest(&exact), "{grid:?} {skew}: {difference} of {}", largest(&exact));

@@ -13,7 +13,7 @@ use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::{asleep, keep, rest, wake};
 use crate::operator::fft::Real;
-use crate::operator::{reserve, Operator, SetUp, Workspace};
+use crate::operator::{reserve, Needs, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
@@ -148,7 +148,7 @@ impl<T: Real> Iteration<T> {
         grid: &Grid,
         whole: Option<&Operator<f64>>,
     ) -> Result<()> {
-        let before = self.periods();
+        let before = self.needs();
         match whole {
             Some(whole) => self.operator = whole.in_precision(factor)?,
             None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
@@ -156,16 +156,16 @@ impl<T: Real> Iteration<T> {
         // What the one before held serves the next.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
-        if self.periods() != before {
+        if self.needs() != before {
             self.workspace = workspace(&self.operator, &self.preconditioner)?;
         }
         Ok(())
     }
 
     /// Of the operator, and of the preconditioner if there is one.
-    fn periods(&self) -> [Option<(usize, usize)>; 2] {
-        let inverse = self.preconditioner.as_ref().map(|m| m.inverse().periods());
-        [Some(self.operator.periods()), inverse]
+    fn needs(&self) -> [Option<Needs>; 2] {
+        let inverse = self.preconditioner.as_ref().map(|m| m.inverse().needs());
+        [Some(self.operator.needs()), inverse]
     }
 
     /// It is not needed for a while.
