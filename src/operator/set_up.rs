@@ -58,7 +58,8 @@ struct Piece {
 
 impl Drop for Piece {
     fn drop(&mut self) {
-        keep([&mut self.column]);
+        keep([&mut self.row]);
+        keep([&mut self.column, &mut self.rows]);
     }
 }
 
@@ -93,13 +94,14 @@ impl<'a> Transforms<'a> {
         pieces.resize_with(self.threads.count(), Piece::default);
         for piece in pieces {
             let (mut together, mut length) = (self.rows.at_a_time(), self.rows.bins().max(PAIRS * py));
-            self.rows.fit(&mut piece.rows);
+            let mut scratch = self.rows.scratch_length();
             if let Some((rows, _)) = &self.lanes {
                 together = together.max(rows.at_a_time());
                 length = length.max(rows.at_a_time() * rows.room()).max(BLOCK / 2 * py + before_a_line::<f64>());
-                piece.rows.resize(piece.rows.len().max(rows.scratch_length()), Complex::default());
+                scratch = scratch.max(rows.scratch_length());
             }
-            piece.row.resize(together * px, 0.0);
+            unwritten(&mut piece.row, together * px, f64::NAN, COEFFICIENTS, &Threads::One)?;
+            unwritten(&mut piece.rows, scratch, Complex::default(), COEFFICIENTS, &Threads::One)?;
             unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS, &Threads::One)?;
             self.columns.fit(&mut piece.columns);
         }
