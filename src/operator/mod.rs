@@ -21,7 +21,6 @@ pub mod row_transform;
 mod rows;
 mod set_up;
 mod set_up_columns;
-mod set_up_lanes;
 mod spectrum;
 mod stage_plan;
 mod stages;
