@@ -1,5 +1,6 @@
 //! Which stages a transform of one length has, and the order in which they leave bins.
 
+use super::butterflies::LONGEST;
 use super::fft::{twiddle, Real};
 use super::stages::{bytes_of_a_row, Stage};
 
@@ -20,9 +21,9 @@ pub(super) struct Stages<T: Real> {
     pub last: usize,
 }
 
-/// Whether there are stages for a length.
+/// Whether there are stages for a length: none up to the longest radix, which are one stage.
 pub(super) fn has_stages(length: usize) -> bool {
-    radices(length).is_some()
+    length > LONGEST && radices(length).is_some()
 }
 
 impl<T: Real> Stages<T> {
