@@ -7,8 +7,9 @@
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::fft::{good_length, Real};
+use super::fft::Real;
 use super::operator::Operator;
+use super::periods::even_periods;
 use super::set_up::{Even, SetUp};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -18,9 +19,8 @@ use crate::threads::Threads;
 impl<T: Real> Operator<T> {
     /// The period of a preconditioner's circulant.
     pub fn circulant_period(coefficients: &Coefficients, grid: &Grid) -> (usize, usize) {
-        let repeats = coefficients.repeats(grid);
-        let period = |m: usize, repeats: bool| if repeats || m == 1 { m } else { good_length(m + 1) };
-        (period(grid.mx, repeats.0), period(grid.my, repeats.1))
+        let (px, py) = even_periods(coefficients, grid, (grid.mx + 1, grid.my + 1));
+        (if grid.mx == 1 { 1 } else { px }, if grid.my == 1 { 1 } else { py })
     }
 
     /// The inverse of a circulant near A: period `px * py >= mx * my`, coefficients at offsets up to half of it, even in both

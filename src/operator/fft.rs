@@ -87,9 +87,9 @@ pub(super) fn twiddle<T: Real>(k: usize, n: usize) -> Complex<T> {
 
 /// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
 /// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives, unless one stands beside many twos alone.
-fn relative_work(twos: u32, has_threes: bool, fives: u32) -> f64 {
+fn relative_work(twos: u32, threes: u32, fives: u32) -> f64 {
     let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);
-    let of_fives = match (has_threes, fives) {
+    let of_fives = match (threes > 0, fives) {
         (_, 0) => 1.0,
         (false, 1) if twos >= 5 => 1.0,
         (_, 1) => 1.12,
@@ -99,20 +99,25 @@ fn relative_work(twos: u32, has_threes: bool, fives: u32) -> f64 {
     of_twos * of_fives
 }
 
-/// The even `2^a 3^b 5^c >= n` the transform of which is fastest: lengths with a large prime factor cost six times as much.
+/// The even `2^a 3^b 5^c >= n` the transform of which by rustfft is fastest: lengths with a large prime factor cost six times as much.
 pub fn good_length(n: usize) -> usize {
+    length_of_least_work(n, relative_work)
+}
+
+/// The even `2^a 3^b 5^c >= n` of which `length * relative_work(a, b, c)` is least.
+pub(super) fn length_of_least_work(n: usize, relative_work: impl Fn(u32, u32, u32) -> f64) -> usize {
     let longest = n.max(2).next_power_of_two();
-    let (mut best, mut least) = (longest, longest as f64);
+    let (mut best, mut least) = (longest, f64::INFINITY);
     let (mut fives, mut power_of_five) = (0, 1);
     while power_of_five < longest {
-        let mut odd = power_of_five;
+        let (mut threes, mut odd) = (0, power_of_five);
         while odd < longest {
             let even = n.div_ceil(odd).max(2).next_power_of_two();
-            let work = (odd * even) as f64 * relative_work(even.trailing_zeros(), odd > power_of_five, fives);
+            let work = (odd * even) as f64 * relative_work(even.trailing_zeros(), threes, fives);
             if work < least {
                 (best, least) = (odd * even, work);
             }
-            odd *= 3;
+            (threes, odd) = (threes + 1, 3 * odd);
         }
         (fives, power_of_five) = (fives + 1, 5 * power_of_five);
     }

@@ -21,6 +21,7 @@ pub mod row_transform;
 mod rows;
 mod set_up;
 mod set_up_columns;
+mod set_up_lanes;
 mod spectrum;
 mod stage_plan;
 mod stages;
@@ -30,6 +31,7 @@ pub(crate) use crate::memory::{reserve, zeros};
 pub use operator::Operator;
 pub use periods::Reach;
 pub use set_up::SetUp;
+pub use stage_plan::even_length;
 pub use workspace::{Needs, Workspace};
 
 /// Arithmetic of the inner work; results are always computed in double precision.

@@ -8,6 +8,7 @@
 //! ```
 
 use super::fft::good_length;
+use super::stage_plan::{even_length, has_stages};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 
@@ -21,16 +22,30 @@ pub(super) fn full_reach(grid: &Grid) -> Reach {
 
 /// The periods of a product.
 pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) -> (usize, usize) {
-    let (even, repeats) = (coefficients.is_even(grid), coefficients.repeats(grid));
-    let period = |m: usize, reach: usize, repeats: bool| match (repeats, even) {
-        (true, _) => m,
-        (_, true) => good_length(2 * reach),
-        (_, false) => good_length(2 * m - 1),
-    };
     match coefficients.row_tables() {
         // Columns are not transformed.
         Some((tables, _)) if tables.is_even_in_x() => (good_length(2 * grid.mx - 2), grid.my),
         Some(_) => (good_length(2 * grid.mx - 1), grid.my),
-        None => (period(grid.mx, reach.0, repeats.0), period(grid.my, reach.1, repeats.1)),
+        None if coefficients.is_even(grid) => even_periods(coefficients, grid, (2 * reach.0, 2 * reach.1)),
+        None => {
+            let repeats = coefficients.repeats(grid);
+            let period = |m: usize, repeats: bool| if repeats { m } else { good_length(2 * m - 1) };
+            (period(grid.mx, repeats.0), period(grid.my, repeats.1))
+        }
+    }
+}
+
+/// Periods of at least `least` for products by even coefficients, where these do not repeat themselves.
+pub(super) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
+    let repeats = coefficients.repeats(grid);
+    let periods = |length: fn(usize) -> usize| {
+        let period = |m: usize, least: usize, repeats: bool| if repeats { m } else { length(least) };
+        (period(grid.mx, least.0, repeats.0), period(grid.my, least.1, repeats.1))
+    };
+    let (px, py) = periods(even_length);
+    if has_stages(px / 2) && has_stages(py) {
+        (px, py)
+    } else {
+        periods(good_length)
     }
 }

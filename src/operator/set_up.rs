@@ -1,11 +1,18 @@
 //! How a spectrum is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
 
-use super::columns::parts;
-use super::fft::{ColumnTransform, Complex, Real};
+use std::sync::Arc;
+
+use super::columns::{parts, BLOCK};
+use super::even_plan::EvenPlan;
+use super::fft::{even_plan, ColumnTransform, Complex, Real};
+use super::lane_rows::LaneRows;
 use super::row_transform::RowTransform;
 use super::set_up_columns::{fill_pairs, gather, Parts, Scaled, PAIRS};
+use super::set_up_lanes::SpectrumOfBlock;
 use super::spectrum::{EvenOrder, SPECTRUM};
+use super::stage_plan::has_stages;
+use super::stages::before_a_line;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -51,7 +58,8 @@ struct Piece {
 
 impl Drop for Piece {
     fn drop(&mut self) {
-        keep([&mut self.column]);
+        keep([&mut self.row]);
+        keep([&mut self.column, &mut self.rows]);
     }
 }
 
@@ -59,13 +67,16 @@ impl Drop for Piece {
 pub(super) struct Transforms<'a> {
     rows: RowTransform<f64>,
     columns: ColumnTransform<f64>,
+    /// Both, of even coefficients in the places of vectors.
+    lanes: Option<(LaneRows<f64>, Arc<EvenPlan<f64>>)>,
     threads: &'a Threads,
 }
 
 impl<'a> Transforms<'a> {
     /// Of a period.
     pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Transforms<'a> {
-        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), threads }
+        let lanes = if has_stages(px / 2) && has_stages(py) { LaneRows::new(px).zip(even_plan(py)) } else { None };
+        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), lanes, threads }
     }
 
     fn period(&self) -> (usize, usize) {
@@ -82,10 +93,16 @@ impl<'a> Transforms<'a> {
         let (px, py) = self.period();
         pieces.resize_with(self.threads.count(), Piece::default);
         for piece in pieces {
-            piece.row.resize(self.rows.at_a_time() * px, 0.0);
-            let length = self.rows.bins().max(PAIRS * py);
+            let (mut together, mut length) = (self.rows.at_a_time(), self.rows.bins().max(PAIRS * py));
+            let mut scratch = self.rows.scratch_length();
+            if let Some((rows, _)) = &self.lanes {
+                together = together.max(rows.at_a_time());
+                length = length.max(rows.at_a_time() * rows.room()).max(BLOCK / 2 * py + before_a_line::<f64>());
+                scratch = scratch.max(rows.scratch_length());
+            }
+            unwritten(&mut piece.row, together * px, f64::NAN, COEFFICIENTS, &Threads::One)?;
+            unwritten(&mut piece.rows, scratch, Complex::default(), COEFFICIENTS, &Threads::One)?;
             unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS, &Threads::One)?;
-            self.rows.fit(&mut piece.rows);
             self.columns.fit(&mut piece.columns);
         }
         Ok(())
@@ -103,16 +120,15 @@ impl<'a> Transforms<'a> {
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
+        if let (Some(lanes), Some(_)) = (&self.lanes, order.by_lanes) {
+            return self.of_even_by_lanes(even, lanes, (in_x, pieces), order, spectrum);
+        }
         let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
         unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
         self.suit(pieces)?;
         self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row[..px];
-            row.fill(0.0);
-            (even.fill)(ky as i64, &mut row[..row_given]);
-            for kx in 1..row_given {
-                row[px - kx] = row[kx];
-            }
+            fill_even(ky as i64, row_given, row, &even.fill);
             self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
@@ -125,17 +141,61 @@ impl<'a> Transforms<'a> {
             let block = &mut piece.column[..columns.div_ceil(2) * py];
             fill_pairs((in_x, nb), rows_given, first, (block, py), |re, im| [Complex::new(re, im); 2]);
             self.columns.forward(block, &mut piece.columns);
-            if let Some(even_columns) = order.by_lanes {
-                // Columns 2 k and 2 k + 1 are the real and the imaginary parts of pair k.
-                let of_pair = |column, bin| value(parts(block)[2 * (column / 2 * py + bin) + column % 2]);
-                return even_columns.write(out, columns, of_pair);
-            }
             for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
                 let (re, im) = out.split_at_mut(half);
                 for ((bin, re), im) in column.iter().zip(re).zip(im) {
                     (*re, *im) = (value(bin.re), value(bin.im));
                 }
             }
+        });
+        Ok(())
+    }
+
+    /// The same, of rows and columns in the places of vectors.
+    fn of_even_by_lanes<T: Real, F, G>(
+        &self,
+        even: &Even<F, G>,
+        (rows, plan): &(LaneRows<f64>, Arc<EvenPlan<f64>>),
+        (in_x, pieces): (&mut Vec<f64>, &mut Vec<Piece>),
+        order: EvenOrder<'_, T>,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let (px, (row_given, rows_given)) = (self.rows.length(), even.given);
+        let (nb, together) = (rows.room(), rows.at_a_time());
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
+        self.suit(pieces)?;
+        self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
+            let count = out.len() / nb;
+            for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {
+                fill_even((k * together + i) as i64, row_given, row, &even.fill);
+            }
+            let bins = &mut piece.column[..together * nb];
+            rows.forward(&piece.row[..count * px], px, bins, &mut piece.rows);
+            // The real parts of blocks.
+            for (out, bins) in out.chunks_exact_mut(BLOCK).zip(parts(bins).chunks_exact(2 * BLOCK)) {
+                out.copy_from_slice(&bins[..BLOCK]);
+            }
+        });
+        let scale = self.scale();
+        unwritten(spectrum, order.len(), T::nan(), SPECTRUM, self.threads)?;
+        self.threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
+            let (in_x, memory) = (&in_x[k * BLOCK..], &mut piece.column[..]);
+            let value = |value: f64| scale * (even.finish)(value);
+            let columns = rows.bins() - k * BLOCK;
+            pulp::Arch::new().dispatch(SpectrumOfBlock {
+                plan,
+                in_x,
+                rows: rows_given,
+                width: nb,
+                columns,
+                value,
+                out,
+                memory,
+            });
         });
         Ok(())
     }
@@ -225,3 +285,17 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 }
+
+/// A period of even coefficients in row ky, of which `fill` gives those at offsets 0 .. `given`.
+fn fill_even(ky: i64, given: usize, row: &mut [f64], fill: impl Fn(i64, &mut [f64])) {
+    let px = row.len();
+    row.fill(0.0);
+    fill(ky, &mut row[..given]);
+    for kx in 1..given {
+        row[px - kx] = row[kx];
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/set_up.rs"]
+mod tests;

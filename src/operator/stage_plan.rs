@@ -1,7 +1,7 @@
 //! Which stages a transform of one length has, and the order in which they leave bins.
 
 use super::butterflies::LONGEST;
-use super::fft::{twiddle, Real};
+use super::fft::{length_of_least_work, twiddle, Real};
 use super::stages::{bytes_of_a_row, Stage};
 
 /// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that the nearest cache holds beside what else is read.
@@ -19,6 +19,12 @@ pub(super) struct Stages<T: Real> {
     pub part: usize,
     /// The radix of the last.
     pub last: usize,
+}
+
+/// The even length `2^a 3^b 5^c >= n` of which products go through their stages fastest. Measured: a stage of 3 takes as long as two of 2, one of
+/// 5 as three of 2, and what goes between memory and vectors as ten.
+pub fn even_length(n: usize) -> usize {
+    length_of_least_work(n, |twos, threes, fives| f64::from(10 + twos + 2 * threes + 3 * fives))
 }
 
 /// Whether there are stages for a length: none up to the longest radix, which are one stage.
@@ -101,3 +107,7 @@ fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -
     let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR).unwrap_or(middle.len());
     (wide, after(wide))
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/stage_plan.rs"]
+mod tests;

@@ -9,6 +9,7 @@ use std::ops::Range;
 use crate::bounding_box::{bounding_box, joined};
 use crate::contact::State;
 use crate::grid::Grid;
+use crate::operator::even_length;
 use crate::operator::fft::good_length;
 use crate::threads::Threads;
 
@@ -59,8 +60,8 @@ impl Window {
             let margin = MARGIN + range.len() / PART;
             let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
             // An even kernel of k elements has the period 2k - 2, another one 2k - 1: fill it.
-            let less = if even { 2 } else { 1 };
-            let length = ((good_length(2 * (end - start) - less) + less) / 2).min(m);
+            let (less, length): (_, fn(usize) -> usize) = if even { (2, even_length) } else { (1, good_length) };
+            let length = ((length(2 * (end - start) - less) + less) / 2).min(m);
             let start = start.saturating_sub((length - (end - start)) / 2).min(m - length);
             start..start + length
         };

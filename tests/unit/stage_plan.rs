@@ -1,0 +1,37 @@
+//! Lengths of transforms.
+
+use super::super::fft::good_length;
+use super::*;
+
+/// The exponents of 2, 3 and 5, if there are no other factors.
+fn factors(mut n: usize) -> Option<[u32; 3]> {
+    let exponents = [2, 3, 5].map(|prime| {
+        let mut exponent = 0;
+        while n % prime == 0 {
+            (n, exponent) = (n / prime, exponent + 1);
+        }
+        exponent
+    });
+    (n == 1).then_some(exponents)
+}
+
+#[test]
+fn an_even_length_has_the_least_work_of_all() {
+    let work = |length: usize| factors(length).map(|[a, b, c]| length as f64 * f64::from(10 + a + 2 * b + 3 * c));
+    for n in 1..1500usize {
+        let longer = (n.max(2)..=n.max(2).next_power_of_two()).filter(|length| length % 2 == 0);
+        let least = longer.filter_map(work).fold(f64::INFINITY, f64::min);
+        let length = even_length(n);
+        assert!(length >= n && length % 2 == 0 && work(length) == Some(least), "{n}: {length}");
+        let length = good_length(n);
+        assert!(length >= n && length % 2 == 0 && factors(length).is_some(), "{n}: {length}");
+    }
+}
+
+#[test]
+fn what_is_said_to_have_stages_has_some() {
+    for length in 1..1500 {
+        assert_eq!(has_stages(length), length > 5 && Stages::<f64>::new(length).is_some(), "{length}");
+        assert!(!has_stages(length) || factors(length).is_some(), "{length}");
+    }
+}
