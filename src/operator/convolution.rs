@@ -16,7 +16,7 @@ use super::lane_rows::LaneRows;
 use super::rows::{Product, Rows};
 use super::set_up::{Even, SetUp, Transforms};
 use super::spectrum::{is_coarse, EvenOrder, Spectrum, SPECTRUM};
-use super::stage_plan::has_stages;
+use super::stage_plan::have_stages;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -50,7 +50,7 @@ impl<T: Real> Convolution<T> {
         Convolution {
             columns: ColumnTransform::new(py),
             // No plan is made in vain: one of a grid of one row is as large as the grid.
-            by_lanes: if has_stages(px / 2) && has_stages(py) {
+            by_lanes: if have_stages((px, py)) {
                 LaneRows::new(px).zip(EvenColumns::new(py))
             } else {
                 None

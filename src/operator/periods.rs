@@ -8,7 +8,7 @@
 //! ```
 
 use super::fft::good_length;
-use super::stage_plan::{even_length, has_stages};
+use super::stage_plan::{even_length, have_stages};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 
@@ -42,9 +42,9 @@ pub(super) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usi
         let period = |m: usize, least: usize, repeats: bool| if repeats { m } else { length(least) };
         (period(grid.mx, least.0, repeats.0), period(grid.my, least.1, repeats.1))
     };
-    let (px, py) = periods(even_length);
-    if has_stages(px / 2) && has_stages(py) {
-        (px, py)
+    let by_stages = periods(even_length);
+    if have_stages(by_stages) {
+        by_stages
     } else {
         periods(good_length)
     }

@@ -11,7 +11,7 @@ use super::row_transform::RowTransform;
 use super::set_up_columns::{fill_pairs, gather, Parts, Scaled, PAIRS};
 use super::set_up_lanes::SpectrumOfBlock;
 use super::spectrum::{EvenOrder, SPECTRUM};
-use super::stage_plan::has_stages;
+use super::stage_plan::have_stages;
 use super::stages::before_a_line;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -75,7 +75,7 @@ pub(super) struct Transforms<'a> {
 impl<'a> Transforms<'a> {
     /// Of a period.
     pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Transforms<'a> {
-        let lanes = if has_stages(px / 2) && has_stages(py) { LaneRows::new(px).zip(even_plan(py)) } else { None };
+        let lanes = if have_stages((px, py)) { LaneRows::new(px).zip(even_plan(py)) } else { None };
         Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), lanes, threads }
     }
 

@@ -27,8 +27,13 @@ pub fn even_length(n: usize) -> usize {
     length_of_least_work(n, |twos, threes, fives| f64::from(10 + twos + 2 * threes + 3 * fives))
 }
 
+/// Whether products of these periods go through stages of our own, in both directions.
+pub(super) fn have_stages((px, py): (usize, usize)) -> bool {
+    has_stages(px / 2) && has_stages(py)
+}
+
 /// Whether there are stages for a length: none up to the longest radix, which are one stage.
-pub(super) fn has_stages(length: usize) -> bool {
+fn has_stages(length: usize) -> bool {
     length > LONGEST && radices(length).is_some()
 }
 

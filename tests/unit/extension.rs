@@ -29,10 +29,23 @@ fn differences(z: &[f64]) -> Vec<f64> {
 
 #[test]
 fn it_is_what_the_definition_says() {
-    // Rows without contact near them, pieces at the edges; grids narrower than a box, and several chunks wide, more than are summed together.
-    for (mx, my) in
-        [(23, 31), (5, 40), (1, 30), (30, 1), (64, 3), (70, 9), (76, 5), (130, 9), (200, 7), (600, 2), (513, 1)]
-    {
+    // Rows without contact near them, pieces at the edges; grids narrower than a box, and several chunks wide, more than are summed together;
+    // rows that are worked on together, and those left at the end.
+    let sizes = [
+        (23, 31),
+        (5, 40),
+        (1, 30),
+        (30, 1),
+        (64, 3),
+        (70, 9),
+        (76, 29),
+        (130, 18),
+        (200, 12),
+        (200, 7),
+        (600, 2),
+        (513, 1),
+    ];
+    for (mx, my) in sizes {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         for threads in [Threads::One, Threads::new(2).unwrap()] {
             let mut contact: Vec<bool> = (0..mx * my).map(|i| i / mx < my.div_ceil(3) && (7 * i) % 11 < 3).collect();

@@ -1,4 +1,4 @@
-//! The passes of the extension over a row of the grid, with sums over boxes of elements.
+//! The passes of the extension over some rows of the grid, with sums over boxes of elements.
 //!
 //! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
 //! C.
@@ -12,14 +12,17 @@ pub(super) const BOX: usize = 2 * REACH + 1;
 pub(super) const REACH: usize = 4;
 /// Elements of a row that are worked on together, or not at all where they are far from the rim of C.
 pub(super) const CHUNK: usize = 64;
+/// Rows that are worked on together: they share much of their boxes.
+pub(super) const ROWS: usize = 4;
 /// Chunks whose columns are summed before the first of them is summed across: what was just written in one vector cannot be read in another.
-const TOGETHER: usize = 8;
+const TOGETHER: usize = 2;
 /// Columns of a chunk's boxes.
 const LENGTH: usize = CHUNK + BOX - 1;
 
-/// The counts of row y.
+/// The counts of rows from y on.
 pub(super) struct Count<'a> {
     pub(super) contact: &'a [bool],
+    pub(super) mx: usize,
     pub(super) y: usize,
     pub(super) near: &'a mut [u8],
     pub(super) rim: &'a mut [bool],
@@ -30,31 +33,32 @@ impl pulp::NullaryFnOnce for Count<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Count { contact, y, near, rim } = self;
-        let mx = near.len();
-        let here = &contact[y * mx..][..mx];
+        let Count { contact, mx, y, near, rim } = self;
+        let (rows, chunks, here) = (near.len() / mx, mx.div_ceil(CHUNK), &contact[y * mx..]);
         box_sums(
             (contact, mx),
-            y,
+            y..y + rows,
             u8::from,
             #[inline(always)]
-            |_| true,
+            |_, _| true,
             #[inline(always)]
-            |k, elements, counts| {
+            |row, k, elements, counts| {
+                let elements = row * mx + elements.start..row * mx + elements.end;
                 let mut any = 0;
                 for ((near, count), inside) in near[elements.clone()].iter_mut().zip(counts).zip(&here[elements]) {
                     *near = if *inside { 0 } else { *count };
                     any |= *near;
                 }
-                rim[k] = any != 0;
+                rim[row * chunks + k] = any != 0;
             },
         );
     }
 }
 
-/// Row y of E z.
+/// Rows of E z from y on.
 pub(super) struct Extend<'a, T> {
     pub(super) z: &'a [T],
+    pub(super) mx: usize,
     pub(super) y: usize,
     pub(super) near: &'a [u8],
     pub(super) rim: &'a [bool],
@@ -67,17 +71,18 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
 
     #[inline(always)]
     fn call(self) {
-        let Extend { z, y, near, rim, absent, values } = self;
-        let mx = values.len();
-        values.copy_from_slice(&z[y * mx..][..mx]);
+        let Extend { z, mx, y, near, rim, absent, values } = self;
+        let (rows, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
+        values.copy_from_slice(&z[y * mx..][..rows * mx]);
         box_sums(
             (z, mx),
-            y,
+            y..y + rows,
             |z| z,
             #[inline(always)]
-            |k| rim[k],
+            |row, k| rim[row * chunks + k],
             #[inline(always)]
-            |_, elements, sums| {
+            |row, _, elements, sums| {
+                let elements = row * mx + elements.start..row * mx + elements.end;
                 for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
                     *value += share(*near, absent) * *sum;
                 }
@@ -114,9 +119,10 @@ impl<T: Real> pulp::NullaryFnOnce for Share<'_, T> {
     }
 }
 
-/// What elements of C in row y get.
+/// What elements of C in rows from y on get.
 pub(super) struct Collect<'a, T> {
     pub(super) shares: &'a [T],
+    pub(super) mx: usize,
     pub(super) y: usize,
     pub(super) rim: &'a [bool],
     pub(super) values: &'a mut [T],
@@ -127,21 +133,24 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
 
     #[inline(always)]
     fn call(self) {
-        let Collect { shares, y, rim, values } = self;
-        let mx = values.len();
-        let chunks = mx.div_ceil(CHUNK);
-        let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + REACH + 1) * chunks);
+        let Collect { shares, mx, y, rim, values } = self;
+        let (count, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
+        // Of all rows together: nothing is collected from chunks that have nothing to give.
+        let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + count + REACH) * chunks);
         box_sums(
             (shares, mx),
-            y,
+            y..y + count,
             |share| share,
             #[inline(always)]
-            |k| {
+            |_, k| {
                 let near = k.saturating_sub(1)..chunks.min(k + 2);
                 rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true))
             },
             #[inline(always)]
-            |_, elements, sums| values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum),
+            |row, _, elements, sums| {
+                let values = &mut values[row * mx..][elements];
+                values.iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum);
+            },
         );
     }
 }
@@ -157,72 +166,109 @@ fn share<T: Real>(near: u8, absent: T) -> T {
     }
 }
 
-/// Sums over the boxes around the elements of row y of a grid, `mx` of them in a row, for those chunks that are `wanted`; `value` makes them
-/// of what the grid holds. Calls `take(chunk, its elements in the row, sums)`; sums beyond the elements have no meaning.
+/// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
+/// `wanted(row, chunk)`; `value` makes them of what the grid holds. Calls `take(row, chunk, its elements in the row, sums)`, rows counted from
+/// the first; sums beyond the elements have no meaning.
 #[inline(always)]
 fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
     (from, mx): (&[A], usize),
-    y: usize,
+    rows: Range<usize>,
     value: impl Fn(A) -> B,
-    wanted: impl Fn(usize) -> bool,
-    mut take: impl FnMut(usize, Range<usize>, &[B; CHUNK]),
+    wanted: impl Fn(usize, usize) -> bool,
+    mut take: impl FnMut(usize, usize, Range<usize>, &[B; CHUNK]),
 ) {
-    let rows = &from[y.saturating_sub(REACH) * mx..from.len().min((y + REACH + 1) * mx)];
-    let (chunks, mut columns, mut which) = (mx.div_ceil(CHUNK), [[B::default(); LENGTH]; TOGETHER], [0; TOGETHER]);
+    let (chunks, count) = (mx.div_ceil(CHUNK), rows.len());
+    let nothing = [[[B::default(); LENGTH]; ROWS]; TOGETHER];
+    let (mut columns, mut threes, mut which) = (nothing, nothing, [0; TOGETHER]);
     for first in (0..chunks).step_by(TOGETHER) {
-        let mut count = 0;
+        let mut some = 0;
         for k in first..chunks.min(first + TOGETHER) {
-            if wanted(k) {
-                columns[count] = column_sums(rows, mx, k * CHUNK, &value);
-                which[count] = k;
-                count += 1;
+            if (0..count).any(|row| wanted(row, k)) {
+                columns[some] = column_sums((from, mx), rows.clone(), k * CHUNK, &value);
+                which[some] = k;
+                some += 1;
             }
         }
-        for (&k, columns) in which[..count].iter().zip(&columns) {
-            take(k, k * CHUNK..mx.min((k + 1) * CHUNK), &sums_across(columns));
+        for (columns, threes) in columns[..some].iter().zip(&mut threes) {
+            columns[..count].iter().zip(threes).for_each(|(columns, threes)| *threes = sums_of_three(columns));
+        }
+        for (&k, threes) in which[..some].iter().zip(&threes) {
+            for row in (0..count).filter(|row| wanted(*row, k)) {
+                take(row, k, k * CHUNK..mx.min((k + 1) * CHUNK), &sums_across(&threes[row]));
+            }
         }
     }
 }
 
-/// Sums over the columns of boxes, from [`REACH`] before column `start` on; those beyond the row are zero.
+/// Sums over the columns of boxes, from [`REACH`] before column `start` on, for each of some rows; those beyond the row are zero.
 #[inline(always)]
 fn column_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
-    rows: &[A],
-    mx: usize,
+    (from, mx): (&[A], usize),
+    rows: Range<usize>,
     start: usize,
     value: impl Fn(A) -> B,
-) -> [B; LENGTH] {
-    let rows = rows.chunks_exact(mx);
-    let mut columns = [B::default(); LENGTH];
+) -> [[B; LENGTH]; ROWS] {
+    let my = from.len() / mx;
+    let mut columns = [[B::default(); LENGTH]; ROWS];
     let first = start.saturating_sub(REACH).min(mx.saturating_sub(LENGTH));
-    if mx >= LENGTH {
-        // A loop of known length.
-        for row in rows {
-            let row: &[A] = &row[first..][..LENGTH];
-            columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
-        }
+    if mx >= LENGTH && rows.len() == ROWS && rows.start >= REACH && rows.end + REACH <= my {
+        let row = |k: usize| &from[(rows.start - REACH + k) * mx + first..][..LENGTH];
+        columns = sums_of_four(std::array::from_fn(row), value);
     } else {
-        for row in rows {
-            columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
+        for (y, columns) in rows.zip(&mut columns) {
+            let rows = &from[y.saturating_sub(REACH) * mx..my.min(y + REACH + 1) * mx];
+            for row in rows.chunks_exact(mx) {
+                columns.iter_mut().zip(&row[first..]).for_each(|(sum, from)| *sum = *sum + value(*from));
+            }
         }
     }
     // Columns move to their place in the box.
     let (up, down) = ((first + REACH).saturating_sub(start), start.saturating_sub(first + REACH));
     if up + down > 0 {
-        let summed = columns;
-        columns = [B::default(); LENGTH];
-        columns[up..LENGTH - down].copy_from_slice(&summed[down..LENGTH - up]);
+        for columns in &mut columns {
+            let summed = *columns;
+            *columns = [B::default(); LENGTH];
+            columns[up..LENGTH - down].copy_from_slice(&summed[down..LENGTH - up]);
+        }
     }
     columns
 }
 
-/// Sums of [`BOX`] neighbouring columns.
+/// Sums of nine rows each, from the first of these, the second, .. on: what all four have is summed once.
 #[inline(always)]
-fn sums_across<B: Copy + Default + std::ops::Add<Output = B>>(columns: &[B; LENGTH]) -> [B; CHUNK] {
+fn sums_of_four<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
+    rows: [&[A]; ROWS - 1 + BOX],
+    value: impl Fn(A) -> B,
+) -> [[B; LENGTH]; ROWS] {
+    let (rows, mut sums) = (rows.map(|row| &row[..LENGTH]), [[B::default(); LENGTH]; ROWS]);
+    for i in 0..LENGTH {
+        let of = |k: usize| value(rows[k][i]);
+        let all = ((of(3) + of(4)) + (of(5) + of(6))) + (of(7) + of(8));
+        let (before, behind) = (of(1) + of(2), of(9) + of(10));
+        sums[0][i] = all + (of(0) + before);
+        sums[1][i] = all + (before + of(9));
+        sums[2][i] = all + (of(2) + behind);
+        sums[3][i] = all + (behind + of(11));
+    }
+    sums
+}
+
+/// Sums of three neighbouring columns; the last two have no meaning.
+#[inline(always)]
+fn sums_of_three<B: Copy + Default + std::ops::Add<Output = B>>(columns: &[B; LENGTH]) -> [B; LENGTH] {
+    let mut sums = *columns;
+    for (k, sum) in sums[..LENGTH - 2].iter_mut().enumerate() {
+        *sum = (columns[k] + columns[k + 1]) + columns[k + 2];
+    }
+    sums
+}
+
+/// Sums of [`BOX`] neighbouring columns, of those of three.
+#[inline(always)]
+fn sums_across<B: Copy + Default + std::ops::Add<Output = B>>(threes: &[B; LENGTH]) -> [B; CHUNK] {
     let mut sums = [B::default(); CHUNK];
     for (k, sum) in sums.iter_mut().enumerate() {
-        let of = |i: usize| columns[k + i];
-        *sum = (((of(0) + of(1)) + (of(2) + of(3))) + ((of(4) + of(5)) + (of(6) + of(7)))) + of(8);
+        *sum = (threes[k] + threes[k + 3]) + threes[k + 6];
     }
     sums
 }

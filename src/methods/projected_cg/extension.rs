@@ -18,7 +18,7 @@
 //! element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero
 //! outside and now): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
 
-use super::boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH};
+use super::boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
 use super::segments::Segments;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -99,10 +99,12 @@ impl<T: Real> Extension<T> {
             return;
         }
         let (mx, my) = (self.mx, self.near.len() / self.mx);
-        self.threads.for_each_row_pair((&mut self.near, mx), (&mut self.rim, mx.div_ceil(CHUNK)), |y, near, rim| {
-            let rows = y.saturating_sub(REACH) * mx..my.min(y + REACH + 1) * mx;
+        let (near, rim) = ((&mut self.near[..], ROWS * mx), (&mut self.rim[..], ROWS * mx.div_ceil(CHUNK)));
+        self.threads.for_each_row_pair(near, rim, |k, near, rim| {
+            let y = ROWS * k;
+            let rows = y.saturating_sub(REACH) * mx..my.min(y + ROWS + REACH) * mx;
             if before.is_none_or(|before| segments.changed_since(before, rows)) {
-                pulp::Arch::new().dispatch(Count { contact, y, near, rim });
+                pulp::Arch::new().dispatch(Count { contact, mx, y, near, rim });
             }
         });
     }
@@ -111,9 +113,10 @@ impl<T: Real> Extension<T> {
     fn extend(&mut self, z: &[T], absent: T) {
         let Extension { mx, values, near, rim, threads, .. } = self;
         let (mx, chunks) = (*mx, mx.div_ceil(CHUNK));
-        threads.for_each_plain_row(values, mx, |y, values| {
-            let (near, rim) = (&near[y * mx..][..mx], &rim[y * chunks..][..chunks]);
-            pulp::Arch::new().dispatch(Extend { z, y, near, rim, absent, values });
+        threads.for_each_plain_row(values, ROWS * mx, |k, values| {
+            let y = ROWS * k;
+            let (near, rim) = (&near[y * mx..], &rim[y * chunks..]);
+            pulp::Arch::new().dispatch(Extend { z, mx, y, near, rim, absent, values });
         });
     }
 
@@ -125,8 +128,8 @@ impl<T: Real> Extension<T> {
             let (near, rim) = (&near[y * mx..][..mx], &rim[y * chunks..][..chunks]);
             pulp::Arch::new().dispatch(Share { values: &values[y * mx..], near, rim, absent, shares });
         });
-        threads.for_each_plain_row(values, mx, |y, values| {
-            pulp::Arch::new().dispatch(Collect { shares: z, y, rim, values });
+        threads.for_each_plain_row(values, ROWS * mx, |k, values| {
+            pulp::Arch::new().dispatch(Collect { shares: z, mx, y: ROWS * k, rim, values });
         });
     }
 
