@@ -50,11 +50,7 @@ impl<T: Real> Convolution<T> {
         Convolution {
             columns: ColumnTransform::new(py),
             // No plan is made in vain: one of a grid of one row is as large as the grid.
-            by_lanes: if have_stages((px, py)) {
-                LaneRows::new(px).zip(EvenColumns::new(py))
-            } else {
-                None
-            },
+            by_lanes: if have_stages((px, py)) { LaneRows::new(px).zip(EvenColumns::new(py)) } else { None },
             spectrum: Spectrum::Even(Vec::new()),
         }
     }
