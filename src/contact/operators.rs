@@ -16,7 +16,7 @@ use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::{even_length, Needs, Operator, Reach, SetUp, Workspace};
+use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
 use crate::threads::Threads;
 
 /// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
@@ -142,14 +142,11 @@ impl MadeOf<'_> {
         let Grid { mx, my, .. } = *self.grid;
         let (x, y) = loaded(p, self.grid, self.threads)?;
         // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
-        let period = |loaded: Range<usize>, m: usize| {
-            let farthest = loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
-            even_length(2 * farthest)
-        };
-        let (px, py) = (period(x, mx), period(y, my));
-        let full = even_length(2 * mx - 2) * even_length(2 * my - 2);
+        let farthest = |loaded: Range<usize>, m: usize| loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
+        let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
+        let ((px, py), (full_x, full_y)) = (periods(farthest(x, mx), farthest(y, my)), periods(mx - 1, my - 1));
         let reach = ((px / 2).min(mx - 1), (py / 2).min(my - 1));
-        ((px * py) as f64 <= WORTHWHILE * full as f64).then_some(reach)
+        ((px * py) as f64 <= WORTHWHILE * (full_x * full_y) as f64).then_some(reach)
     }
 }
 

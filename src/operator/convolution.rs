@@ -15,6 +15,7 @@ use super::fft::{ColumnTransform, Real};
 use super::lane_rows::LaneRows;
 use super::rows::{Product, Rows};
 use super::set_up::{Even, SetUp, Transforms};
+use super::set_up_lanes::LaneTransforms;
 use super::spectrum::{is_coarse, EvenOrder, Spectrum, SPECTRUM};
 use super::stage_plan::have_stages;
 use crate::error::Result;
@@ -120,9 +121,13 @@ impl<T: Real> Convolution<T> {
         G: Fn(f64) -> f64 + Sync + Send,
     {
         let mut values = self.spectrum.take_real();
-        let transforms = Transforms::new((px, self.columns.length()), threads);
-        let order = self.order(px / 2 + 1);
-        transforms.of_even(even, set_up, order, &mut values)?;
+        let (period, order) = ((px, self.columns.length()), self.order(px / 2 + 1));
+        let lanes = order.by_lanes.and_then(|_| LaneTransforms::new(period, threads));
+        assert_eq!(lanes.is_some(), order.by_lanes.is_some(), "an order of columns without their transforms");
+        match lanes {
+            Some(lanes) => lanes.of_even(even, set_up, order, &mut values)?,
+            None => Transforms::new(period, threads).of_even(even, set_up, &mut values)?,
+        }
         self.spectrum = Spectrum::Even(values);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The y direction of products by even coefficients, a vector of columns at a time, one column in each place.
 //!
 //! ```text
-//! columns <- F^-1 (S . F columns)          S real, S_k = S_(py-k), one for each column
+//! columns <- F^-1 (S . F columns)          S real, S_k = S_(py-k) to within rounding, one for each column
 //! ```
 //!
 //! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and

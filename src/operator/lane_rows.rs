@@ -69,7 +69,7 @@ impl<T: Real> LaneRows<T> {
     }
 
     /// With the vectors of these instructions; no bit depends on them.
-    fn on(arch: pulp::Arch, n: usize) -> Option<LaneRows<T>> {
+    pub(super) fn on(arch: pulp::Arch, n: usize) -> Option<LaneRows<T>> {
         let places = arch.dispatch(Places::<T>(std::marker::PhantomData))?;
         Some(LaneRows { plan: row_plan(n)?, arch, places })
     }

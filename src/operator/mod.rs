@@ -29,9 +29,10 @@ mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};
 pub use operator::Operator;
+pub(crate) use periods::even_periods;
 pub use periods::Reach;
 pub use set_up::SetUp;
-pub use stage_plan::even_length;
+pub use stage_plan::length_for_stages;
 pub use workspace::{Needs, Workspace};
 
 /// Arithmetic of the inner work; results are always computed in double precision.

@@ -8,7 +8,7 @@
 //! ```
 
 use super::fft::good_length;
-use super::stage_plan::{even_length, have_stages};
+use super::stage_plan::{have_stages, length_for_stages};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 
@@ -35,14 +35,15 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients, where these do not repeat themselves.
-pub(super) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
+/// Periods of at least `least` for products by even coefficients, where these do not repeat themselves. Rows and columns go through stages of our
+/// own together or not at all; the periods are the same on a machine without vectors, where they do not.
+pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);
     let periods = |length: fn(usize) -> usize| {
         let period = |m: usize, least: usize, repeats: bool| if repeats { m } else { length(least) };
         (period(grid.mx, least.0, repeats.0), period(grid.my, least.1, repeats.1))
     };
-    let by_stages = periods(even_length);
+    let by_stages = periods(length_for_stages);
     if have_stages(by_stages) {
         by_stages
     } else {

@@ -1,18 +1,11 @@
 //! How a spectrum is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
+//! Here rows and columns are transformed by themselves; [`set_up_lanes`](super::set_up_lanes) has even coefficients in the places of vectors.
 
-use std::sync::Arc;
-
-use super::columns::{parts, BLOCK};
-use super::even_plan::EvenPlan;
-use super::fft::{even_plan, ColumnTransform, Complex, Real};
-use super::lane_rows::LaneRows;
+use super::fft::{ColumnTransform, Complex, Real};
 use super::row_transform::RowTransform;
-use super::set_up_columns::{fill_pairs, gather, Parts, Scaled, PAIRS};
-use super::set_up_lanes::SpectrumOfBlock;
-use super::spectrum::{EvenOrder, SPECTRUM};
-use super::stage_plan::have_stages;
-use super::stages::before_a_line;
+use super::set_up_columns::{fill_even, fill_pairs, gather, Parts, Scaled, PAIRS};
+use super::spectrum::SPECTRUM;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -20,7 +13,7 @@ use crate::memory::{keep, unwritten};
 use crate::threads::Threads;
 
 /// What memory is for.
-const COEFFICIENTS: &str = "the influence coefficients";
+pub(super) const COEFFICIENTS: &str = "the influence coefficients";
 
 /// Even coefficients of both directions.
 pub(super) struct Even<F, G> {
@@ -35,9 +28,9 @@ pub(super) struct Even<F, G> {
 /// Memory that a spectrum is computed in. An operator whose coefficients change often keeps it.
 #[derive(Default)]
 pub struct SetUp {
-    real: Vec<f64>,
+    pub(super) real: Vec<f64>,
     complex: Vec<Complex<f64>>,
-    pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Piece>,
 }
 
 impl Drop for SetUp {
@@ -49,11 +42,20 @@ impl Drop for SetUp {
 
 /// That of one piece of the work.
 #[derive(Default)]
-struct Piece {
-    row: Vec<f64>,
-    column: Vec<Complex<f64>>,
-    rows: Vec<Complex<f64>>,
+pub(super) struct Piece {
+    pub(super) row: Vec<f64>,
+    pub(super) column: Vec<Complex<f64>>,
+    pub(super) rows: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
+}
+
+impl Piece {
+    /// Memory for so many values of rows, of a column or the bins of rows, and of scratch for rows.
+    pub(super) fn fit(&mut self, (row, column, rows): (usize, usize, usize)) -> Result<()> {
+        unwritten(&mut self.row, row, f64::NAN, COEFFICIENTS, &Threads::One)?;
+        unwritten(&mut self.column, column, Complex::default(), COEFFICIENTS, &Threads::One)?;
+        unwritten(&mut self.rows, rows, Complex::default(), COEFFICIENTS, &Threads::One)
+    }
 }
 
 impl Drop for Piece {
@@ -67,16 +69,13 @@ impl Drop for Piece {
 pub(super) struct Transforms<'a> {
     rows: RowTransform<f64>,
     columns: ColumnTransform<f64>,
-    /// Both, of even coefficients in the places of vectors.
-    lanes: Option<(LaneRows<f64>, Arc<EvenPlan<f64>>)>,
     threads: &'a Threads,
 }
 
 impl<'a> Transforms<'a> {
     /// Of a period.
     pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Transforms<'a> {
-        let lanes = if have_stages((px, py)) { LaneRows::new(px).zip(even_plan(py)) } else { None };
-        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), lanes, threads }
+        Transforms { rows: RowTransform::new(px), columns: ColumnTransform::new(py), threads }
     }
 
     fn period(&self) -> (usize, usize) {
@@ -93,36 +92,25 @@ impl<'a> Transforms<'a> {
         let (px, py) = self.period();
         pieces.resize_with(self.threads.count(), Piece::default);
         for piece in pieces {
-            let (mut together, mut length) = (self.rows.at_a_time(), self.rows.bins().max(PAIRS * py));
-            let mut scratch = self.rows.scratch_length();
-            if let Some((rows, _)) = &self.lanes {
-                together = together.max(rows.at_a_time());
-                length = length.max(rows.at_a_time() * rows.room()).max(BLOCK / 2 * py + before_a_line::<f64>());
-                scratch = scratch.max(rows.scratch_length());
-            }
-            unwritten(&mut piece.row, together * px, f64::NAN, COEFFICIENTS, &Threads::One)?;
-            unwritten(&mut piece.rows, scratch, Complex::default(), COEFFICIENTS, &Threads::One)?;
-            unwritten(&mut piece.column, length, Complex::default(), COEFFICIENTS, &Threads::One)?;
+            let length = self.rows.bins().max(PAIRS * py);
+            piece.fit((self.rows.at_a_time() * px, length, self.rows.scratch_length()))?;
             self.columns.fit(&mut piece.columns);
         }
         Ok(())
     }
 
-    /// The spectrum of even coefficients, of the period that there is.
+    /// The spectrum of even coefficients, of the period that there is: half of each column, and an even number of these, the last of which may be
+    /// there twice.
     pub fn of_even<T: Real, F, G>(
         &self,
         even: &Even<F, G>,
         SetUp { real: in_x, pieces, .. }: &mut SetUp,
-        order: EvenOrder<'_, T>,
         spectrum: &mut Vec<T>,
     ) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        if let (Some(lanes), Some(_)) = (&self.lanes, order.by_lanes) {
-            return self.of_even_by_lanes(even, lanes, (in_x, pieces), order, spectrum);
-        }
         let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
         unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
         self.suit(pieces)?;
@@ -133,9 +121,9 @@ impl<'a> Transforms<'a> {
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
         let scale = self.scale();
-        let (half, value) = (order.half(), |value: f64| T::of(scale * (even.finish)(value)));
-        unwritten(spectrum, order.len(), T::nan(), SPECTRUM, self.threads)?;
-        self.threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
+        let (half, value) = (py / 2 + 1, |value: f64| T::of(scale * (even.finish)(value)));
+        unwritten(spectrum, (nb + nb % 2) * half, T::nan(), SPECTRUM, self.threads)?;
+        self.threads.for_each_row(spectrum, 2 * PAIRS * half, pieces, |k, out, piece| {
             let first = 2 * PAIRS * k;
             let columns = (nb - first).min(2 * PAIRS);
             let block = &mut piece.column[..columns.div_ceil(2) * py];
@@ -147,55 +135,6 @@ impl<'a> Transforms<'a> {
                     (*re, *im) = (value(bin.re), value(bin.im));
                 }
             }
-        });
-        Ok(())
-    }
-
-    /// The same, of rows and columns in the places of vectors.
-    fn of_even_by_lanes<T: Real, F, G>(
-        &self,
-        even: &Even<F, G>,
-        (rows, plan): &(LaneRows<f64>, Arc<EvenPlan<f64>>),
-        (in_x, pieces): (&mut Vec<f64>, &mut Vec<Piece>),
-        order: EvenOrder<'_, T>,
-        spectrum: &mut Vec<T>,
-    ) -> Result<()>
-    where
-        F: Fn(i64, &mut [f64]) + Sync + Send,
-        G: Fn(f64) -> f64 + Sync + Send,
-    {
-        let (px, (row_given, rows_given)) = (self.rows.length(), even.given);
-        let (nb, together) = (rows.room(), rows.at_a_time());
-        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
-        self.suit(pieces)?;
-        self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
-            let count = out.len() / nb;
-            for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {
-                fill_even((k * together + i) as i64, row_given, row, &even.fill);
-            }
-            let bins = &mut piece.column[..together * nb];
-            rows.forward(&piece.row[..count * px], px, bins, &mut piece.rows);
-            // The real parts of blocks.
-            for (out, bins) in out.chunks_exact_mut(BLOCK).zip(parts(bins).chunks_exact(2 * BLOCK)) {
-                out.copy_from_slice(&bins[..BLOCK]);
-            }
-        });
-        let scale = self.scale();
-        unwritten(spectrum, order.len(), T::nan(), SPECTRUM, self.threads)?;
-        self.threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
-            let (in_x, memory) = (&in_x[k * BLOCK..], &mut piece.column[..]);
-            let value = |value: f64| scale * (even.finish)(value);
-            let columns = rows.bins() - k * BLOCK;
-            pulp::Arch::new().dispatch(SpectrumOfBlock {
-                plan,
-                in_x,
-                rows: rows_given,
-                width: nb,
-                columns,
-                value,
-                out,
-                memory,
-            });
         });
         Ok(())
     }
@@ -285,17 +224,3 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 }
-
-/// A period of even coefficients in row ky, of which `fill` gives those at offsets 0 .. `given`.
-fn fill_even(ky: i64, given: usize, row: &mut [f64], fill: impl Fn(i64, &mut [f64])) {
-    let px = row.len();
-    row.fill(0.0);
-    fill(ky, &mut row[..given]);
-    for kx in 1..given {
-        row[px - kx] = row[kx];
-    }
-}
-
-#[cfg(test)]
-#[path = "../../tests/unit/set_up.rs"]
-mod tests;

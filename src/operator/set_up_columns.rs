@@ -78,6 +78,16 @@ fn copy_columns<V: Copy>(
     }
 }
 
+/// A period of even coefficients in row ky, of which `fill` gives those at offsets 0 .. `given`.
+pub(super) fn fill_even(ky: i64, given: usize, row: &mut [f64], fill: impl Fn(i64, &mut [f64])) {
+    let px = row.len();
+    row.fill(0.0);
+    fill(ky, &mut row[..given]);
+    for kx in 1..given {
+        row[px - kx] = row[kx];
+    }
+}
+
 /// Fills columns of a block, each `py` long, with pairs of columns from `first` on of a matrix of rows ky >= 0, `nb` columns wide:
 /// `values(a, b)` of the pair's values in row ky are those at ky and -ky, zero beyond. The last column of an odd number is its own pair.
 pub(super) fn fill_pairs<V: Copy>(

@@ -1,53 +1,127 @@
-//! The y direction of a spectrum of even coefficients, as vectors of columns: two of them share a complex transform, one as its real
-//! and one as its imaginary part, and the stages leave bins in the order in which products want them.
+//! How the spectrum of even coefficients is computed where products go through stages of our own: rows and columns in the places of vectors.
+//! The stages leave bins in the order in which products want them.
+//!
+//! Columns c and c + 8 of a block share a complex transform, one as its real and one as its imaginary part: so no bit depends on the length of
+//! vectors.
+
+use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
-use super::columns::BLOCK;
+use super::columns::{parts, BLOCK};
 use super::even_plan::EvenPlan;
-use super::fft::{Complex, Real};
+use super::fft::{even_plan, Complex, Real};
+use super::lane_rows::LaneRows;
 use super::lanes::{places, Arithmetic, Lanes, Parts, C};
-use super::stages::{end, first, forward, inlined, of_radix, rows_of};
+use super::set_up::{Even, SetUp, COEFFICIENTS};
+use super::set_up_columns::fill_even;
+use super::spectrum::{EvenOrder, SPECTRUM};
+use super::stages::{before_a_line, end, first, forward, inlined, of_radix, rows_of};
+use crate::error::Result;
+use crate::memory::unwritten;
+use crate::threads::Threads;
 
-/// Of what is transformed.
-type T = f64;
+/// Columns that are the real parts of a block's transforms.
+const HALF: usize = BLOCK / 2;
 
-/// The spectrum of one block of columns, in double precision, kept in another.
-pub(super) struct SpectrumOfBlock<'a, O, G> {
-    pub(super) plan: &'a EvenPlan<f64>,
-    /// Coefficients transformed in x, of this block on: rows at offsets ky >= 0, and values from one row to the next.
-    pub(super) in_x: &'a [f64],
-    pub(super) rows: usize,
-    pub(super) width: usize,
-    /// Columns that mean something, and what is kept of each value of these; zero of others.
-    pub(super) columns: usize,
-    pub(super) value: G,
-    /// `[kept row][column]`.
-    pub(super) out: &'a mut [O],
-    pub(super) memory: &'a mut [Complex<f64>],
+/// The transforms of both directions, and who does them.
+pub(super) struct LaneTransforms<'a> {
+    rows: LaneRows<f64>,
+    plan: Arc<EvenPlan<f64>>,
+    px: usize,
+    arch: pulp::Arch,
+    threads: &'a Threads,
 }
 
-impl<O: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, O, G> {
+impl<'a> LaneTransforms<'a> {
+    /// Of a period; None where this has no plan, or the machine no vectors.
+    pub fn new(period: (usize, usize), threads: &'a Threads) -> Option<LaneTransforms<'a>> {
+        LaneTransforms::on(pulp::Arch::new(), period, threads)
+    }
+
+    /// With the vectors of these instructions; no bit depends on them.
+    fn on(arch: pulp::Arch, (px, py): (usize, usize), threads: &'a Threads) -> Option<LaneTransforms<'a>> {
+        let (rows, plan) = (LaneRows::on(arch, px)?, even_plan(py)?);
+        Some(LaneTransforms { rows, plan, px, arch, threads })
+    }
+
+    /// The spectrum of even coefficients.
+    pub fn of_even<T: Real, F, G>(
+        &self,
+        even: &Even<F, G>,
+        SetUp { real: in_x, pieces, .. }: &mut SetUp,
+        order: EvenOrder<'_, T>,
+        spectrum: &mut Vec<T>,
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let LaneTransforms { rows, plan, px, arch, threads } = self;
+        let (px, py, (row_given, rows_given)) = (*px, plan.stages.length(), even.given);
+        let (nb, together) = (rows.room(), rows.at_a_time());
+        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, threads)?;
+        pieces.resize_with(threads.count(), Default::default);
+        let column = (together * nb).max(HALF * py + before_a_line::<f64>());
+        pieces.iter_mut().try_for_each(|piece| piece.fit((together * px, column, rows.scratch_length())))?;
+        threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
+            let count = out.len() / nb;
+            for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {
+                fill_even((k * together + i) as i64, row_given, row, &even.fill);
+            }
+            let bins = &mut piece.column[..together * nb];
+            rows.forward(&piece.row[..count * px], px, bins, &mut piece.rows);
+            // The real parts of blocks.
+            for (out, bins) in out.chunks_exact_mut(BLOCK).zip(parts(bins).chunks_exact(2 * BLOCK)) {
+                out.copy_from_slice(&bins[..BLOCK]);
+            }
+        });
+        let scale = 1.0 / (px as f64 * py as f64);
+        unwritten(spectrum, order.len(), T::nan(), SPECTRUM, threads)?;
+        threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
+            let (in_x, memory) = ((&in_x[k * BLOCK..], rows_given, nb), &mut piece.column[..]);
+            let (columns, value) = (rows.bins() - k * BLOCK, |value: f64| scale * (even.finish)(value));
+            arch.dispatch(SpectrumOfBlock { plan, in_x, columns, value, out, memory });
+        });
+        Ok(())
+    }
+}
+
+/// The spectrum of one block of columns, in double precision, kept in another.
+struct SpectrumOfBlock<'a, T, G> {
+    plan: &'a EvenPlan<f64>,
+    /// Coefficients transformed in x, of this block on; how many rows, at offsets ky >= 0; and values from one row to the next.
+    in_x: (&'a [f64], usize, usize),
+    /// Columns that mean something.
+    columns: usize,
+    /// What is kept of each value of these.
+    value: G,
+    /// `[kept row][column]`; zero in columns that mean nothing.
+    out: &'a mut [T],
+    memory: &'a mut [Complex<f64>],
+}
+
+impl<T: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, T, G> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let SpectrumOfBlock { plan, in_x, rows: given, width, columns, value, out, memory } = self;
-        let (a, n, stages) = (Arithmetic::<T, S>::new(simd), places::<T, S>(), &plan.stages);
+        let SpectrumOfBlock { plan, in_x: (in_x, given, width), columns, value, out, memory } = self;
+        let (a, n, stages) = (Arithmetic::<f64, S>::new(simd), places::<f64, S>(), &plan.stages);
         let length = stages.length();
-        let rows = &mut rows_of::<T, S>(memory)[..length];
+        let rows = &mut rows_of::<f64, S>(memory)[..length];
         let zero = Parts { re: a.splat(0.0), im: a.splat(0.0) };
-        for column in (0..BLOCK).step_by(2 * n) {
+        for column in (0..HALF).step_by(n) {
             let load = inlined(
                 #[inline(always)]
-                |row: usize| -> C<T, S> {
+                |row: usize| -> C<f64, S> {
                     // Offset -ky stands at py - ky.
                     let ky = row.min(length - row);
                     if ky >= given {
                         return zero;
                     }
-                    let values = T::vectors::<S>(&in_x[ky * width + column..][..2 * n]);
-                    Parts { re: values[0], im: values[1] }
+                    let values = f64::vectors::<S>(&in_x[ky * width..][..BLOCK]);
+                    Parts { re: values[column / n], im: values[(column + HALF) / n] }
                 },
             );
             of_radix!(stages.first.radix, first, a, &stages.first, rows, load);
@@ -64,12 +138,18 @@ impl<O: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, O, G> {
             for (rows, kept) in rows.chunks_exact(stages.last).zip(&plan.kept).filter(|(_, kept)| kept.step > 0) {
                 for (q, row) in rows.iter().enumerate() {
                     let values: &[f64] = pulp::bytemuck::cast_slice(row);
-                    let out = &mut out[(kept.first + q) * BLOCK + column..][..2 * n];
-                    let (there, beyond) = out.split_at_mut(columns.saturating_sub(column).min(2 * n));
-                    there.iter_mut().zip(values).for_each(|(out, bin)| *out = O::of(value(*bin)));
-                    beyond.fill(O::zero());
+                    let out = &mut out[(kept.first + q) * BLOCK..][..BLOCK];
+                    for (values, first) in values.chunks_exact(n).zip([column, column + HALF]) {
+                        let (there, beyond) = out[first..][..n].split_at_mut(columns.saturating_sub(first).min(n));
+                        there.iter_mut().zip(values).for_each(|(out, bin)| *out = T::of(value(*bin)));
+                        beyond.fill(T::zero());
+                    }
                 }
             }
         }
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/set_up.rs"]
+mod tests;

@@ -21,15 +21,15 @@ pub(super) struct Stages<T: Real> {
     pub last: usize,
 }
 
-/// The even length `2^a 3^b 5^c >= n` of which products go through their stages fastest. Measured: a stage of 3 takes as long as two of 2, one of
+/// The length for stages of our own: the even `2^a 3^b 5^c >= n` of which products go through them fastest. Measured: a stage of 3 takes as long as two of 2, one of
 /// 5 as three of 2, and what goes between memory and vectors as ten.
-pub fn even_length(n: usize) -> usize {
+pub fn length_for_stages(n: usize) -> usize {
     length_of_least_work(n, |twos, threes, fives| f64::from(10 + twos + 2 * threes + 3 * fives))
 }
 
-/// Whether products of these periods go through stages of our own, in both directions.
+/// Whether products of these periods go through stages of our own, in both directions, on a machine that has vectors.
 pub(super) fn have_stages((px, py): (usize, usize)) -> bool {
-    has_stages(px / 2) && has_stages(py)
+    px % 2 == 0 && has_stages(px / 2) && has_stages(py)
 }
 
 /// Whether there are stages for a length: none up to the longest radix, which are one stage.

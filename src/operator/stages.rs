@@ -88,10 +88,10 @@ impl<T: Real> WithSimd for BytesOfARow<T> {
 macro_rules! of_radix {
     ($radix:expr, $stage:ident, $($argument:expr),*) => {
         match $radix {
-            2 => $stage::<T, S, 2>($($argument),*),
-            3 => $stage::<T, S, 3>($($argument),*),
-            4 => $stage::<T, S, 4>($($argument),*),
-            _ => $stage::<T, S, 5>($($argument),*),
+            2 => $stage::<_, S, 2>($($argument),*),
+            3 => $stage::<_, S, 3>($($argument),*),
+            4 => $stage::<_, S, 4>($($argument),*),
+            _ => $stage::<_, S, 5>($($argument),*),
         }
     };
 }

@@ -6,7 +6,7 @@ use super::call::initialised;
 use super::{alone, limited_memory, Handle};
 use contact_normal::ffi::*;
 
-/// Elements in each direction: an array of single precision is large then, and none of a row or a transform is.
+/// Elements in each direction: an array of single precision is large then, and none of a row is.
 const M: usize = 128;
 const N: usize = M * M;
 /// Of two patches.
@@ -146,7 +146,8 @@ fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
         let before = held(&handle);
         assert_eq!(before.is_some(), first.is_some());
         release();
-        // The arrays of the test itself are the first that are allowed. Windows are smaller than the grid: half of it counts.
+        // The arrays of the test itself are the first that are allowed. Windows are smaller than the grid, so arrays of half its elements count;
+        // with those of all, nothing of AUTO after NORM did.
         let (status, _) = limited_memory::with(2 * N, 1 + allowed, || ball.solve(&handle, method));
         if status == CONTACT_NORMAL_OK {
             break;

@@ -66,10 +66,11 @@ fn table_2_norm_needs_the_measured_iterations() {
     for (m, iterations, steps) in NORM {
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
         assert_eq!((stop, report.count.active_set_steps), (Outcome::Converged, steps));
-        // Without a preconditioner the rounding of A decides about some iterations: with another one of each coefficient, by half a unit in
-        // its last place, the second grid takes 129 to 134 (docs/notes, "Lengths of even products").
+        // Without a preconditioner the rounding of A decides about some iterations: with other roundings of the coefficients, by half a unit in
+        // their last place, the second grid takes 129 to 134, the third 196 to 198 (docs/notes, "Lengths of even products").
         let off = (report.count.cycles as f64 / iterations as f64 - 1.0).abs();
-        assert!(off <= 0.04, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);
+        let is_seen = m == 64 && (129..=134).contains(&report.count.cycles);
+        assert!(off <= 0.03 || is_seen, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);
     }
 }
 

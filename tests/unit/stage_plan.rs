@@ -16,12 +16,12 @@ fn factors(mut n: usize) -> Option<[u32; 3]> {
 }
 
 #[test]
-fn an_even_length_has_the_least_work_of_all() {
+fn a_length_for_stages_has_the_least_work_of_all() {
     let work = |length: usize| factors(length).map(|[a, b, c]| length as f64 * f64::from(10 + a + 2 * b + 3 * c));
     for n in 1..1500usize {
         let longer = (n.max(2)..=n.max(2).next_power_of_two()).filter(|length| length % 2 == 0);
         let least = longer.filter_map(work).fold(f64::INFINITY, f64::min);
-        let length = even_length(n);
+        let length = length_for_stages(n);
         assert!(length >= n && length % 2 == 0 && work(length) == Some(least), "{n}: {length}");
         let length = good_length(n);
         assert!(length >= n && length % 2 == 0 && factors(length).is_some(), "{n}: {length}");
@@ -29,9 +29,12 @@ fn an_even_length_has_the_least_work_of_all() {
 }
 
 #[test]
-fn what_is_said_to_have_stages_has_some() {
-    for length in 1..1500 {
-        assert_eq!(has_stages(length), length > 5 && Stages::<f64>::new(length).is_some(), "{length}");
-        assert!(!has_stages(length) || factors(length).is_some(), "{length}");
+fn what_is_said_to_have_stages_has_plans() {
+    use super::super::{even_plan::EvenPlan, lane_rows::RowPlan};
+    let has_plan = |length: usize| length > 5 && EvenPlan::<f64>::new(length).is_some();
+    for length in 1..1500usize {
+        let in_x = length > 11 && RowPlan::<f64>::new(length).is_some();
+        assert_eq!(have_stages((length, 32)), in_x, "{length} in x");
+        assert_eq!(have_stages((32, length)), has_plan(length), "{length} in y");
     }
 }

@@ -14,7 +14,8 @@ pub(super) const REACH: usize = 4;
 pub(super) const CHUNK: usize = 64;
 /// Rows that are worked on together: they share much of their boxes.
 pub(super) const ROWS: usize = 4;
-/// Chunks whose columns are summed before the first of them is summed across: what was just written in one vector cannot be read in another.
+/// Chunks whose columns are summed, then by threes, before the first of them is summed across: what was just written in one vector cannot be
+/// read in another.
 const TOGETHER: usize = 2;
 /// Columns of a chunk's boxes.
 const LENGTH: usize = CHUNK + BOX - 1;
@@ -218,7 +219,8 @@ fn column_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
         for (y, columns) in rows.zip(&mut columns) {
             let rows = &from[y.saturating_sub(REACH) * mx..my.min(y + REACH + 1) * mx];
             for row in rows.chunks_exact(mx) {
-                columns.iter_mut().zip(&row[first..]).for_each(|(sum, from)| *sum = *sum + value(*from));
+                let row = &row[first..mx.min(first + LENGTH)];
+                columns.iter_mut().zip(row).for_each(|(sum, from)| *sum = *sum + value(*from));
             }
         }
     }

@@ -9,8 +9,8 @@ use std::ops::Range;
 use crate::bounding_box::{bounding_box, joined};
 use crate::contact::State;
 use crate::grid::Grid;
-use crate::operator::even_length;
 use crate::operator::fft::good_length;
+use crate::operator::length_for_stages;
 use crate::threads::Threads;
 
 /// Elements around the contact area, at least, in a new window: one for what may enter, one for an area that still moves (with two of these cold
@@ -60,7 +60,7 @@ impl Window {
             let margin = MARGIN + range.len() / PART;
             let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
             // An even kernel of k elements has the period 2k - 2, another one 2k - 1: fill it.
-            let (less, length): (_, fn(usize) -> usize) = if even { (2, even_length) } else { (1, good_length) };
+            let (less, length): (_, fn(usize) -> usize) = if even { (2, length_for_stages) } else { (1, good_length) };
             let length = ((length(2 * (end - start) - less) + less) / 2).min(m);
             let start = start.saturating_sub((length - (end - start)) / 2).min(m - length);
             start..start + length
