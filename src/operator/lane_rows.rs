@@ -137,22 +137,13 @@ impl<T: Real> WithSimd for Forward<'_, T> {
         let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
         let z = &mut rows_of::<T, S>(scratch)[..h];
         load::<T, S>(a, rows, width, z);
-        let Stages { middle, wide, part, last, first } = &plan.stages;
+        let first = &plan.stages.first;
         if first.is_of_half(width.div_ceil(2)) {
             forward_of_half(a, first, z);
         } else {
             of_radix!(first.radix, forward, a, first, z);
         }
-        let (wide, near) = middle.split_at(*wide);
-        for stage in wide {
-            of_radix!(stage.radix, forward, a, stage, z);
-        }
-        for z in z.chunks_exact_mut(*part) {
-            for stage in near {
-                of_radix!(stage.radix, forward, a, stage, z);
-            }
-            of_radix!(*last, end, a, z);
-        }
+        plan.stages.forward_after_first(a, z);
         store_bins::<T, S>(a, plan, z, bins);
     }
 }

@@ -16,7 +16,7 @@ use super::lanes::{places, Arithmetic, Lanes, Parts, C};
 use super::set_up::{Even, SetUp, COEFFICIENTS};
 use super::set_up_columns::fill_even;
 use super::spectrum::{EvenOrder, SPECTRUM};
-use super::stages::{before_a_line, end, first, forward, inlined, of_radix, rows_of};
+use super::stages::{before_a_line, first, inlined, of_radix, rows_of};
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::threads::Threads;
@@ -125,16 +125,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, T, G> {
                 },
             );
             of_radix!(stages.first.radix, first, a, &stages.first, rows, load);
-            let (wide, near) = stages.middle.split_at(stages.wide);
-            for stage in wide {
-                of_radix!(stage.radix, forward, a, stage, rows);
-            }
-            for rows in rows.chunks_exact_mut(stages.part) {
-                for stage in near {
-                    of_radix!(stage.radix, forward, a, stage, rows);
-                }
-                of_radix!(stages.last, end, a, rows);
-            }
+            stages.forward_after_first(a, rows);
             for (rows, kept) in rows.chunks_exact(stages.last).zip(&plan.kept).filter(|(_, kept)| kept.step > 0) {
                 for (q, row) in rows.iter().enumerate() {
                     let values: &[f64] = pulp::bytemuck::cast_slice(row);

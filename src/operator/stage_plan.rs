@@ -1,8 +1,11 @@
 //! Which stages a transform of one length has, and the order in which they leave bins.
 
+use pulp::Simd;
+
 use super::butterflies::LONGEST;
 use super::fft::{length_of_least_work, twiddle, Real};
-use super::stages::{bytes_of_a_row, Stage};
+use super::lanes::Arithmetic;
+use super::stages::{bytes_of_a_row, end, forward, of_radix, Row, Stage};
 
 /// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that the nearest cache holds beside what else is read.
 const NEAR: usize = 256;
@@ -59,6 +62,22 @@ impl<T: Real> Stages<T> {
     /// The length.
     pub fn length(&self) -> usize {
         self.first.radix * self.first.stride()
+    }
+
+    /// All stages forward but the first.
+    #[inline(always)]
+    pub fn forward_after_first<S: Simd>(&self, a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
+        let (wide, near) = self.middle.split_at(self.wide);
+        for stage in wide {
+            of_radix!(stage.radix, forward, a, stage, rows);
+        }
+        // Then part by part, in the nearest cache.
+        for rows in rows.chunks_exact_mut(self.part) {
+            for stage in near {
+                of_radix!(stage.radix, forward, a, stage, rows);
+            }
+            of_radix!(self.last, end, a, rows);
+        }
     }
 
     /// The lowest bin of each block that the last stage leaves: block b holds bins `lowest(b) + q length/last`.

@@ -44,7 +44,6 @@ impl pulp::NullaryFnOnce for Count<'_> {
             |_, _| true,
             #[inline(always)]
             |row, k, elements, counts| {
-                let elements = row * mx + elements.start..row * mx + elements.end;
                 let mut any = 0;
                 for ((near, count), inside) in near[elements.clone()].iter_mut().zip(counts).zip(&here[elements]) {
                     *near = if *inside { 0 } else { *count };
@@ -82,8 +81,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
             #[inline(always)]
             |row, k| rim[row * chunks + k],
             #[inline(always)]
-            |row, _, elements, sums| {
-                let elements = row * mx + elements.start..row * mx + elements.end;
+            |_, _, elements, sums| {
                 for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
                     *value += share(*near, absent) * *sum;
                 }
@@ -148,10 +146,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
                 rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true))
             },
             #[inline(always)]
-            |row, _, elements, sums| {
-                let values = &mut values[row * mx..][elements];
-                values.iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum);
-            },
+            |_, _, elements, sums| values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum),
         );
     }
 }
@@ -168,8 +163,8 @@ fn share<T: Real>(near: u8, absent: T) -> T {
 }
 
 /// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
-/// `wanted(row, chunk)`; `value` makes them of what the grid holds. Calls `take(row, chunk, its elements in the row, sums)`, rows counted from
-/// the first; sums beyond the elements have no meaning.
+/// `wanted(row, chunk)`; `value` makes them of what the grid holds. Calls `take(row, chunk, its elements among those of the rows, sums)`, rows
+/// counted from the first; sums beyond the elements have no meaning.
 #[inline(always)]
 fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
     (from, mx): (&[A], usize),
@@ -195,7 +190,8 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
         }
         for (&k, threes) in which[..some].iter().zip(&threes) {
             for row in (0..count).filter(|row| wanted(*row, k)) {
-                take(row, k, k * CHUNK..mx.min((k + 1) * CHUNK), &sums_across(&threes[row]));
+                let elements = row * mx + k * CHUNK..row * mx + mx.min((k + 1) * CHUNK);
+                take(row, k, elements, &sums_across(&threes[row]));
             }
         }
     }
