@@ -46,29 +46,16 @@ impl<const K: usize> Sums<K> {
         b: [&[T]; B],
         terms: impl Fn([f64; A], [f64; B]) -> [f64; K],
     ) {
-        self.add_from(0, a, b, terms);
-    }
-
-    /// The same for M of the sums, from number `first` on, counted from 0. Seven sums of six slices, and nine of five, are vectorised in two calls, but not
-    /// in one (twice the time).
-    #[inline(always)]
-    pub fn add_from<T: Value, const A: usize, const B: usize, const M: usize>(
-        &mut self,
-        first: usize,
-        a: [&[f64]; A],
-        b: [&[T]; B],
-        terms: impl Fn([f64; A], [f64; B]) -> [f64; M],
-    ) {
         let n = a.first().map_or_else(|| b[0].len(), |a| a.len());
         let a = a.map(|a| pulp::as_arrays::<LANES, f64>(&a[..n]));
         let b = b.map(|b| pulp::as_arrays::<LANES, T>(&b[..n]));
-        let mut sums: [[f64; LANES]; M] = from_fn(|k| self.0[first + k]);
+        let mut sums = self.0;
         for i in 0..n / LANES {
             let x: [[f64; LANES]; A] = from_fn(|k| a[k].0[i]);
             let y: [[f64; LANES]; B] = from_fn(|k| b[k].0[i].map(Value::to_double));
             for lane in 0..LANES {
                 let terms = terms(from_fn(|k| x[k][lane]), from_fn(|k| y[k][lane]));
-                for k in 0..M {
+                for k in 0..K {
                     sums[k][lane] += terms[k];
                 }
             }
@@ -77,12 +64,7 @@ impl<const K: usize> Sums<K> {
             let terms = terms(from_fn(|k| a[k].1[lane]), from_fn(|k| b[k].1[lane].to_double()));
             sums.iter_mut().zip(terms).for_each(|(sum, term)| sum[lane] += term);
         }
-        self.0[first..first + M].copy_from_slice(&sums);
-    }
-
-    /// Adds terms that are not of elements.
-    pub fn add_one(&mut self, terms: [f64; K]) {
-        self.0.iter_mut().zip(terms).for_each(|(sum, term)| sum[0] += term);
+        self.0 = sums;
     }
 
     /// What they are.

@@ -67,7 +67,10 @@ fn it_is_what_the_definition_says() {
                 }
                 let last = mx * my - 1;
                 contact[last] = !contact[last];
-                segments.change(last);
+                segments.list_changing(&contact, &mut vec![0.0; mx * my], |block, _, listed| {
+                    listed.extend(block.elements().filter(|i| *i == last).map(|i| i as u32));
+                });
+                segments.change_listed();
             }
         }
     }

@@ -1,51 +1,131 @@
 use super::*;
+use crate::methods::projected_cg::segment_passes::{Change, Terms, Wanted};
+use crate::methods::projected_cg::vector::{Holds, Vector};
 
-/// Runs by the definition: element by element.
-fn by_definition(row: &[bool], start: u32) -> Vec<(u32, u32)> {
-    let mut runs: Vec<(u32, u32)> = Vec::new();
-    for (i, _) in row.iter().enumerate().filter(|(_, inside)| **inside) {
-        let i = start + i as u32;
-        match runs.last_mut().filter(|(_, end)| *end == i) {
-            Some((_, end)) => *end = i + 1,
-            None => runs.push((i, i + 1)),
-        }
-    }
-    runs
+const SIZES: [(usize, usize); 6] = [(130, 170), (1, 1), (3, 1), (7, 9), (33, 40), (8, 300)];
+
+/// Contact of single elements, of pieces, none and full.
+fn contact_areas(n: usize) -> Vec<Vec<bool>> {
+    let every = |k: usize| (0..n).map(|i| i % k == 0).collect();
+    let pieces = |k: usize| (0..n).map(|i| i / k % 3 == 1).collect();
+    vec![every(2), every(9), every(17), every(100), pieces(5), pieces(8), pieces(60), vec![false; n], vec![true; n]]
+}
+
+/// The segments found in a contact area, on one thread or several.
+fn segments(grid: &Grid, threads: usize, contact: &[bool]) -> Segments {
+    let mut segments = Segments::new(grid, &Threads::new(threads).expect("threads")).expect("memory");
+    segments.change_all();
+    segments.find(contact);
+    segments
 }
 
 #[test]
-fn runs_are_those_of_a_search_element_by_element() {
-    let every = |n: usize, k: usize| (0..n).map(|i| i % k == 0).collect::<Vec<bool>>();
-    let pieces = |n: usize, k: usize| (0..n).map(|i| i / k % 2 == 1).collect::<Vec<bool>>();
-    for n in 1..=40 {
-        let rows = [vec![true; n], vec![false; n], every(n, 2), every(n, 3), pieces(n, 5), pieces(n, 8), pieces(n, 9)];
-        for row in rows {
-            let mut runs = Vec::new();
-            find_in_row(&row, 100, &mut runs);
-            assert_eq!(runs, by_definition(&row, 100), "{row:?}");
+fn segments_are_the_vectors_with_an_element_in_contact() {
+    for n in 1..=70 {
+        for contact in contact_areas(n) {
+            let mut found = Vec::new();
+            let count = find_segments(&contact, &mut found);
+            let vectors = contact.chunks(EIGHT).enumerate().filter(|(_, vector)| vector.contains(&true));
+            assert_eq!(found, vectors.map(|(k, _)| k as u32).collect::<Vec<_>>(), "{contact:?}");
+            assert_eq!(count, contact.iter().filter(|inside| **inside).count(), "{contact:?}");
+        }
+    }
+}
+
+/// The number of elements, the sum of a, and of a b.
+struct Some;
+
+impl Terms<1, 1, 3> for Some {
+    fn of<S: pulp::Simd>(&self, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> [Vector<S>; 3] {
+        [a.all(1.0), a, a * b]
+    }
+}
+
+/// `value + a - 2 b`.
+impl Change<1, 1> for Some {
+    fn of<S: pulp::Simd>(&self, value: Vector<S>, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> Vector<S> {
+        value + (a - 2.0 * b)
+    }
+}
+
+/// The value is less than b, and the element no multiple of three.
+impl Wanted<1> for Some {
+    fn of<S: pulp::Simd>(&self, first: usize, value: Vector<S>, [b]: [Vector<S>; 1]) -> Holds<S> {
+        let divides = value.of_each(|lane| f64::from(u8::from((first + lane) % 3 == 0)));
+        value.is_below(b) & divides.is_below(value.all(0.5))
+    }
+}
+
+/// Whole numbers, which are added without rounding, in contact; no numbers outside.
+fn arrays(contact: &[bool]) -> (Vec<f64>, Vec<f32>) {
+    let value = |i: usize| if contact[i] { (i * i % 17) as f64 - 5.0 } else { f64::NAN };
+    (0..contact.len()).map(|i| (value(i), (i * 7 % 11) as f32 - 3.0)).unzip()
+}
+
+#[test]
+fn sums_are_those_of_the_elements_in_contact() {
+    for (mx, my) in SIZES {
+        let grid = Grid::new(mx, my, 1.0, 1.0).expect("a grid");
+        for contact in contact_areas(grid.len()) {
+            let (a, b) = arrays(&contact);
+            let those = || (0..grid.len()).filter(|i| contact[*i]);
+            let product = |i: usize| a[i] * f64::from(b[i]);
+            let expected = [those().count() as f64, those().map(|i| a[i]).sum(), those().map(product).sum()];
+            for threads in [1, 2] {
+                let mut segments = segments(&grid, threads, &contact);
+                assert_eq!(segments.count(), those().count());
+                assert_eq!(segments.sum(&contact, |block| block.sum([&a], [&b[..]], Some)), expected, "{mx} x {my}");
+            }
         }
     }
 }
 
 #[test]
-fn a_pass_changes_what_is_in_contact_and_lists_elements_in_order() {
-    let grid = Grid::new(130, 170, 1.0, 1.0).expect("a grid");
-    for count in [1, 2] {
-        let mut segments = Segments::new(&grid, &Threads::new(count).expect("threads")).expect("memory");
-        let contact: Vec<bool> = (0..grid.len()).map(|i| i % 7 < 4).collect();
-        segments.change_all();
+fn a_pass_changes_and_lists_what_is_in_contact() {
+    for (mx, my) in SIZES {
+        let grid = Grid::new(mx, my, 1.0, 1.0).expect("a grid");
+        for contact in contact_areas(grid.len()) {
+            let (a, b) = arrays(&contact);
+            let begin = |i: usize| i as f64 % 5.0 - 2.0;
+            let wanted = |i: &usize| contact[*i] && begin(*i) < f64::from(b[*i]) && i % 3 != 0;
+            let change = |i: usize| if contact[i] { a[i] - 2.0 * f64::from(b[i]) } else { 0.0 };
+            let expected: Vec<f64> = (0..grid.len()).map(|i| begin(i) + change(i)).collect();
+            for threads in [1, 2] {
+                let mut segments = segments(&grid, threads, &contact);
+                let mut values: Vec<f64> = (0..grid.len()).map(begin).collect();
+                let mut singles: Vec<f32> = values.iter().map(|value| *value as f32).collect();
+                segments.list_changing(&contact, &mut values, |block, values, listed| {
+                    block.list(listed, values, [&b[..]], Some);
+                    block.change(values, [&a], [&b[..]], Some);
+                });
+                let listed: Vec<usize> = segments.listed().collect();
+                assert_eq!(listed, (0..grid.len()).filter(wanted).collect::<Vec<_>>(), "{mx} x {my}");
+                assert_eq!(values, expected, "{mx} x {my}");
+                let [] = segments.sum_changing(&contact, &mut singles, |block, values| {
+                    block.change(values, [&a], [&b[..]], Some);
+                    []
+                });
+                assert!(singles.iter().zip(&expected).all(|(single, value)| f64::from(*single) == *value));
+            }
+        }
+    }
+}
+
+#[test]
+fn segments_are_found_again_where_the_contact_area_changes() {
+    let grid = Grid::new(37, 150, 1.0, 1.0).expect("a grid");
+    let mut contact: Vec<bool> = (0..grid.len()).map(|i| i % 23 < 4).collect();
+    let mut segments = segments(&grid, 1, &contact);
+    for row in [0, 60, 149] {
+        let elements = row * 37..(row + 1) * 37;
+        contact[elements.clone()].iter_mut().for_each(|inside| *inside = !*inside);
+        let version = segments.version();
+        segments.list_changing(&contact, &mut vec![0.0; grid.len()], |block, _, listed| {
+            listed.extend(block.elements().filter(|i| elements.contains(i)).map(|i| i as u32));
+        });
+        segments.change_listed();
         segments.find(&contact);
-        let mut values = vec![1.0; grid.len()];
-        for divisor in [5, 11] {
-            segments.list_changing(&mut values, |block, values, listed| {
-                for (run, local) in block.runs() {
-                    values[local].iter_mut().for_each(|value| *value += 1.0);
-                    listed.extend(run.filter(|i| i % divisor == 0).map(|i| i as u32));
-                }
-            });
-            let expected: Vec<usize> = (0..grid.len()).filter(|&i| contact[i] && i % divisor == 0).collect();
-            assert_eq!(segments.listed().collect::<Vec<_>>(), expected);
-        }
-        assert!(values.iter().zip(&contact).all(|(value, &inside)| *value == if inside { 3.0 } else { 1.0 }));
+        assert!(segments.changed_since(version, elements), "row {row}");
+        assert_eq!(segments.count(), contact.iter().filter(|inside| **inside).count(), "row {row}");
     }
 }

@@ -11,6 +11,7 @@
 //! (p + alpha t, u + alpha q)  = (p, u) + alpha ((p, q) + (t, u)) + alpha^2 (t, q)
 //! ```
 
+use super::formulas::WorkAndEnergy;
 use super::passes::Update;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
@@ -73,13 +74,13 @@ impl<T: Real> Iteration<T> {
         if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.settled) {
             return;
         }
-        self.runs.find(&state.contact);
+        self.segments.find(&state.contact);
         debug_assert!(sums.is_none_or(|sums| near(sums, self.work_and_energy(state, update))), "the sums after a step");
         let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
         let factor = work / energy;
         if factor.is_finite() && factor > 0.0 {
             // On one element that is the solution, and no direction is left.
-            self.is_scaled = scales && self.runs.count() > 1;
+            self.is_scaled = scales && self.segments.count() > 1;
             update.factor = factor;
             self.scale(state, factor);
         }
@@ -87,21 +88,13 @@ impl<T: Real> Iteration<T> {
 
     /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
-        let (q, z, Update { alpha, gamma, settled, .. }) = (&self.q, &self.z, *update);
-        let ((_, w), approach) = (self.known.beside(gamma, &self.t, q), state.approach);
-        let [work, energy] = self.runs.sum(
+        let (_, w) = self.known.beside(update.gamma, &self.t, &self.q);
+        let (State { h, u, p, .. }, products) = (state, [&self.q[..], &self.z, w]);
+        let formula = WorkAndEnergy { approach: state.approach, update };
+        let [work, energy] = self.segments.sum(
+            &state.contact,
             #[inline(always)]
-            |block, sums| {
-                for (run, _) in block.runs() {
-                    let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                    let (q, z, w) = (&q[run.clone()], &z[run.clone()], &w[run]);
-                    sums.add([h, u, p], [q, z, w], |[h, u, p], [q, z, w]| {
-                        let repair = if settled { z } else { 0.0 };
-                        let u = u + (alpha * q + gamma * w) + repair;
-                        [p * (approach - h), p * u]
-                    });
-                }
-            },
+            |block| block.sum([h, u, p], products, formula),
         );
         (work, energy)
     }

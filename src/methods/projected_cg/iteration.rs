@@ -96,8 +96,8 @@ impl<T: Real> Iteration<T> {
             } else {
                 self.fit_approach(state, &update);
             }
-            self.update_displacements(state, set, &update);
-            self.runs.find(&state.contact);
+            self.update_displacements::<S>(state, &update);
+            self.segments.find(&state.contact);
             self.residual(state);
             self.precondition(state);
             self.direct(state, 0.0, None);
@@ -171,8 +171,8 @@ impl<T: Real> Iteration<T> {
         }
         self.least_energy::<S>(state, &mut update, None);
         self.fit_approach(state, &update);
-        self.update_displacements(state, set, &update);
-        self.runs.find(&state.contact);
+        self.update_displacements::<S>(state, &update);
+        self.segments.find(&state.contact);
         let products = products + self.restrict_known(state);
         self.step_along_known(state);
         let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
@@ -192,7 +192,7 @@ impl<T: Real> Iteration<T> {
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-        let (mut step, count) = (self.step(state), self.runs.count() as f64);
+        let (mut step, count) = (self.step(state), self.segments.count() as f64);
         if !(step.tq > 0.0 && step.rt.is_finite()) {
             return None;
         }
@@ -229,8 +229,8 @@ impl<T: Real> Iteration<T> {
         }
         self.scale_to_load::<S>(state, &mut update, limited, sums);
         self.fit_approach(state, &update);
-        let entered = self.update_displacements(state, set, &update);
-        self.runs.find(&state.contact);
+        let entered = self.update_displacements::<S>(state, &update);
+        self.segments.find(&state.contact);
         Some(Cycle {
             changes: left + entered,
             update: step.change(alpha, gamma.abs() * self.known.norm(), update.factor) / count.sqrt(),

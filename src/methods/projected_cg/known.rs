@@ -12,6 +12,7 @@
 //! Elements that are not in C at the start are taken out of d, and by one product out of w. Those that leave later have no part of d any more, but
 //! of w and of (d, w): u is owed the difference.
 
+use super::formulas::{Moved, Residual, StepSums};
 use super::known_passes::{Change, Restrict, Subtract};
 use super::passes::Step;
 use super::scaling::Scaling;
@@ -146,20 +147,12 @@ impl<T: Real> Iteration<T> {
 
     /// The sums of a step, and those of gamma.
     pub(super) fn step_beside_change(&mut self, state: &State) -> Step {
-        let (t, q, d, approach) = (&self.t, &self.q, &self.known.d, state.approach);
-        let [tq, tt, t1, pp, rt, rd, qd] = self.runs.sum(
+        let (State { h, u, p, .. }, formula) = (state, StepSums { approach: state.approach });
+        let arrays = [&self.t[..], &self.q, &self.known.d];
+        let [rt, tq, tt, t1, pp, rd, qd] = self.segments.sum(
+            &state.contact,
             #[inline(always)]
-            |block, sums| {
-                for (run, _) in block.runs() {
-                    let (h, u, p) = (&state.h[run.clone()], &state.u[run.clone()], &state.p[run.clone()]);
-                    let (t, q, d) = (&t[run.clone()], &q[run.clone()], &d[run]);
-                    sums.add_from(0, [p], [t, q], |[p], [t, q]| [t * q, t * t, t.abs(), p * p]);
-                    sums.add_from(4, [h, u], [t, q, d], |[h, u], [t, q, d]| {
-                        let r = approach - h - u;
-                        [r * t, r * d, q * d]
-                    });
-                }
-            },
+            |block| block.sum([h, u, p], arrays, formula),
         );
         Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
@@ -198,30 +191,25 @@ impl<T: Real> Iteration<T> {
         if !self.known.is_there() {
             return;
         }
-        let (Known { d, w, energy, size, .. }, approach) = (&self.known, state.approach);
-        let [rd, rr] = self.runs.sum(
+        let Known { d, w, energy, size, .. } = &self.known;
+        let (State { h, u, .. }, formula) = (&*state, Residual { approach: state.approach });
+        let [rd, rr] = self.segments.sum(
+            &state.contact,
             #[inline(always)]
-            |block, sums| {
-                for (run, _) in block.runs() {
-                    let (h, u, d) = (&state.h[run.clone()], &state.u[run.clone()], &d[run]);
-                    sums.add([h, u], [d], |[h, u], [d]| {
-                        let e = h - approach + u;
-                        [-e * d, e * e]
-                    });
-                }
-            },
+            |block| block.sum([h, u], [&d[..]], formula),
         );
         let gamma = rd / energy;
         if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
             return;
         }
-        let [] = self.runs.sum_changing(
-            &mut state.p,
+        let State { p, contact, .. } = state;
+        let [] = self.segments.sum_changing(
+            contact,
+            p,
             #[inline(always)]
-            |block, p, _| {
-                for (run, local) in block.runs() {
-                    p[local].iter_mut().zip(&d[run]).for_each(|(p, d)| *p += gamma * d.to_double());
-                }
+            |block, p| {
+                block.change(p, [], [&d[..], d], Moved { alpha: gamma, gamma: 0.0 });
+                []
             },
         );
         let mx = state.grid.mx;

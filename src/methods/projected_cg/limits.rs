@@ -21,7 +21,8 @@
 //! forecast.
 
 use super::exchange::HELD_BACK;
-use super::passes::Update;
+use super::formulas::Carried;
+use super::passes::{none, Update};
 use super::vectors::{Beyond, Iteration};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
@@ -90,18 +91,18 @@ impl<T: Real> Iteration<T> {
     /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
-        self.runs.find(&state.contact);
+        self.segments.find(&state.contact);
         if S::LIMITED {
             if let Some(factor) = self.carry_beside_limits(state) {
                 return factor;
             }
         }
-        let p = &state.p;
-        let [carried] = self.runs.sum(|block, sums| {
-            for (run, _) in block.runs() {
-                sums.add::<T, 1, 0>([&p[run]], [], |p, []| p);
-            }
-        });
+        let State { p, contact, .. } = &*state;
+        let [carried] = self.segments.sum(
+            contact,
+            #[inline(always)]
+            |block| block.sum([p], none::<T>(), Carried),
+        );
         let factor = force / (carried * state.grid.element_area());
         if !(factor.is_finite() && factor > 0.0) {
             return 1.0;
@@ -112,11 +113,11 @@ impl<T: Real> Iteration<T> {
 
     /// Elements that the forecast step would take beyond their limit are held back at it.
     pub(super) fn hold_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
-        let [] = self.runs.sum_changing(&mut self.t, |block, t, _| {
-            for (run, local) in block.runs() {
-                let (p, t) = (&state.p[run.clone()], &mut t[local]);
-                if set.any_beyond(run.start, p.iter().zip(&*t).map(|(p, t)| p + forecast * t.to_double())) {
-                    for ((p, t), i) in p.iter().zip(t).zip(run) {
+        let [] = self.segments.sum_changing(&state.contact, &mut self.t, |block, t| {
+            for (elements, local) in block.segments() {
+                let (p, t) = (&state.p[elements.clone()], &mut t[local]);
+                if set.any_beyond(elements.start, p.iter().zip(&*t).map(|(p, t)| p + forecast * t.to_double())) {
+                    for ((p, t), i) in p.iter().zip(t).zip(elements) {
                         *t = if p + forecast * t.to_double() > set.limit(i) {
                             T::of((set.limit(i) - p) / forecast)
                         } else {
@@ -125,6 +126,7 @@ impl<T: Real> Iteration<T> {
                     }
                 }
             }
+            []
         });
     }
 
@@ -137,12 +139,12 @@ impl<T: Real> Iteration<T> {
         forecast: Option<f64>,
     ) -> bool {
         let (t, farthest) = (&self.t, forecast.map_or(alpha, |forecast| forecast.max(alpha)));
-        let [reached] = self.runs.sum(|block, sums| {
-            let beyond = block.runs().any(|(run, _)| {
-                let steps = state.p[run.clone()].iter().zip(&t[run.clone()]);
-                set.any_beyond(run.start, steps.map(|(p, t)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK)))
+        let [reached] = self.segments.sum(&state.contact, |block| {
+            let beyond = block.segments().any(|(elements, _)| {
+                let (first, steps) = (elements.start, state.p[elements.clone()].iter().zip(&t[elements]));
+                set.any_beyond(first, steps.map(|(p, t)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK)))
             });
-            sums.add_one([f64::from(u8::from(beyond))]);
+            [f64::from(u8::from(beyond))]
         });
         reached > 0.0
     }

@@ -7,6 +7,7 @@ mod debts;
 mod energy;
 mod exchange;
 mod extension;
+mod formulas;
 mod inner;
 mod iteration;
 mod known;
@@ -19,8 +20,10 @@ mod preconditioner;
 mod predictor;
 mod scaling;
 mod search;
+mod segment_passes;
 mod segments;
 mod step;
+mod vector;
 mod vectors;
 mod window;
 

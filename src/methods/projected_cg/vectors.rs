@@ -76,7 +76,7 @@ pub struct Iteration<T: Real> {
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
     pub(super) z: Vec<T>,
-    pub(super) runs: Segments,
+    pub(super) segments: Segments,
     /// Truncated elements and the pressures that u still lacks.
     pub(super) debts: Vec<(usize, f64)>,
     /// A direction that costs no product.
@@ -85,8 +85,6 @@ pub struct Iteration<T: Real> {
     pub(super) is_scaled: bool,
     /// With limits.
     pub(super) limits: Beyond,
-    /// Elements of each row that enter.
-    pub(super) entering: Vec<u32>,
     pub(super) threads: Threads,
 }
 
@@ -110,12 +108,11 @@ impl<T: Real> Iteration<T> {
             t: directions()?,
             q: directions()?,
             z: directions()?,
-            runs: Segments::new(grid, threads)?,
+            segments: Segments::new(grid, threads)?,
             debts,
             known: Known::default(),
             is_scaled: false,
             limits: Beyond::default(),
-            entering: vec![0; grid.my],
             threads: threads.clone(),
         })
     }
@@ -130,12 +127,11 @@ impl<T: Real> Iteration<T> {
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
-        self.runs = Segments::new(grid, &self.threads)?;
+        self.segments = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;
         }
         reserve(&mut self.debts, n, "truncated elements")?;
-        self.entering.resize(grid.my, 0);
         Ok(left)
     }
 

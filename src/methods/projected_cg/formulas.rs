@@ -1,0 +1,246 @@
+//! What the passes over the contact area compute, element by element.
+
+use pulp::Simd;
+
+use super::exchange::HELD_BACK;
+use super::passes::Update;
+use super::segment_passes::{Change, Terms, Wanted};
+use super::vector::{Holds, Vector};
+use crate::contact::AdmissibleSet;
+
+/// The sum of `h + u`, u as `update` will leave it but for w.
+#[derive(Clone, Copy)]
+pub(super) struct Distance<'a>(pub(super) &'a Update);
+
+impl Terms<2, 2, 1> for Distance<'_> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [q, z]: [Vector<S>; 2]) -> [Vector<S>; 1] {
+        let u = u + self.0.alpha * q;
+        [h + self.0.factor * if self.0.settled { u + z } else { u }]
+    }
+}
+
+/// r = -e; and the sums of e^2 and `(h - approach)^2`.
+#[derive(Clone, Copy)]
+pub(super) struct Residual {
+    pub(super) approach: f64,
+}
+
+impl Change<2, 0> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, _: Vector<S>, [h, u]: [Vector<S>; 2], []: [Vector<S>; 0]) -> Vector<S> {
+        -(h - self.approach + u)
+    }
+}
+
+impl Terms<2, 0, 2> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], []: [Vector<S>; 0]) -> [Vector<S>; 2] {
+        let distance = h - self.approach;
+        let e = distance + u;
+        [e * e, distance * distance]
+    }
+}
+
+/// The sums of t, z, q, and (z, q).
+#[derive(Clone, Copy)]
+pub(super) struct Conjugate;
+
+impl Terms<0, 3, 4> for Conjugate {
+    #[inline(always)]
+    fn of<S: Simd>(&self, []: [Vector<S>; 0], [t, z, q]: [Vector<S>; 3]) -> [Vector<S>; 4] {
+        [t, z, q, z * q]
+    }
+}
+
+/// `t = z - mean + beta t`, held back at p = 0 where the step of the forecast would take p below.
+#[derive(Clone, Copy)]
+pub(super) struct Direction {
+    pub(super) mean: f64,
+    pub(super) beta: f64,
+    pub(super) forecast: Option<f64>,
+}
+
+impl Change<1, 1> for Direction {
+    #[inline(always)]
+    fn of<S: Simd>(&self, t: Vector<S>, [p]: [Vector<S>; 1], [z]: [Vector<S>; 1]) -> Vector<S> {
+        let t = z - self.mean + self.beta * t;
+        match self.forecast {
+            Some(forecast) => (p + forecast * t).is_below(p.all(0.0)).choose(-p / forecast, t),
+            None => t,
+        }
+    }
+}
+
+/// (r, t), (t, q), (t, t), of |t|, (p, p).
+#[derive(Clone, Copy)]
+pub(super) struct StepSums {
+    pub(super) approach: f64,
+}
+
+impl Terms<3, 2, 5> for StepSums {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 5] {
+        let e = h - self.approach + u;
+        [-e * t, t * q, t * t, t.abs(), p * p]
+    }
+}
+
+/// The same, and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
+impl Terms<3, 2, 9> for StepSums {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 9] {
+        let depth = self.approach - h;
+        [(depth - u) * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u, p * q]
+    }
+}
+
+/// The same as the first, and beside a known change d (r, d), (q, d).
+impl Terms<3, 3, 7> for StepSums {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
+        let r = self.approach - h - u;
+        [r * t, t * q, t * t, t.abs(), p * p, r * d, q * d]
+    }
+}
+
+/// (r, d) of a known change d, and (r, r).
+impl Terms<2, 1, 2> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
+        let r = self.approach - h - u;
+        [r * d, r * r]
+    }
+}
+
+/// `(p, approach - h)` and (p, u), u as `update` will leave it before it is scaled.
+#[derive(Clone, Copy)]
+pub(super) struct WorkAndEnergy<'a> {
+    pub(super) approach: f64,
+    pub(super) update: &'a Update,
+}
+
+impl Terms<3, 3, 2> for WorkAndEnergy<'_> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [q, z, w]: [Vector<S>; 3]) -> [Vector<S>; 2] {
+        let u = u + (self.update.alpha * q + self.update.gamma * w);
+        let u = if self.update.settled { u + z } else { u };
+        [p * (self.approach - h), p * u]
+    }
+}
+
+/// The sum of p.
+#[derive(Clone, Copy)]
+pub(super) struct Carried;
+
+impl Terms<1, 0, 1> for Carried {
+    #[inline(always)]
+    fn of<S: Simd>(&self, p: [Vector<S>; 1], []: [Vector<S>; 0]) -> [Vector<S>; 1] {
+        p
+    }
+}
+
+/// `p = factor p`.
+#[derive(Clone, Copy)]
+pub(super) struct Scale {
+    pub(super) factor: f64,
+}
+
+impl Change<0, 0> for Scale {
+    #[inline(always)]
+    fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], []: [Vector<S>; 0]) -> Vector<S> {
+        self.factor * p
+    }
+}
+
+/// `p = p + alpha t + gamma d`.
+#[derive(Clone, Copy)]
+pub(super) struct Moved {
+    pub(super) alpha: f64,
+    pub(super) gamma: f64,
+}
+
+impl Change<0, 2> for Moved {
+    #[inline(always)]
+    fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], [t, d]: [Vector<S>; 2]) -> Vector<S> {
+        p + (self.alpha * t + self.gamma * d)
+    }
+}
+
+/// Step (4.1): elements that this move takes beyond a bound, and those that the forecast step leaves next to nothing of their pressure, or of what is
+/// left to their limit.
+#[derive(Clone, Copy)]
+pub(super) struct Leaving<A> {
+    pub(super) moved: Moved,
+    pub(super) forecast: Option<f64>,
+    pub(super) set: A,
+    /// Elements of the grid.
+    pub(super) elements: usize,
+}
+
+impl<A: AdmissibleSet> Wanted<2> for Leaving<A> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, first: usize, p: Vector<S>, [t, d]: [Vector<S>; 2]) -> Holds<S> {
+        let Leaving { moved, forecast, set, elements } = self;
+        let limits =
+            |p: Vector<S>| p.of_each(|lane| if first + lane < *elements { set.limit(first + lane) } else { 0.0 });
+        let to = moved.of(p, [], [t, d]);
+        let mut leaves = to.is_below(p.all(0.0));
+        if A::LIMITED {
+            leaves = leaves | limits(p).is_below(to);
+        }
+        if let Some(forecast) = *forecast {
+            let foreseen = p + forecast * t;
+            leaves = leaves | foreseen.is_at_most(HELD_BACK * p);
+            if A::LIMITED {
+                leaves = leaves | (limits(p) * (1.0 - HELD_BACK)).is_at_most(foreseen);
+            }
+        }
+        leaves
+    }
+}
+
+/// `u = factor (u + alpha q + gamma w + A d)`, of q, or of q, w and z, which holds A d where that is known.
+#[derive(Clone, Copy)]
+pub(super) struct MovedU<'a>(pub(super) &'a Update);
+
+impl Change<1, 1> for MovedU<'_> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q]: [Vector<S>; 1]) -> Vector<S> {
+        self.0.factor * (u + self.0.alpha * q)
+    }
+}
+
+impl Change<1, 3> for MovedU<'_> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q, w, z]: [Vector<S>; 3]) -> Vector<S> {
+        let u = u + (self.0.alpha * q + self.0.gamma * w);
+        self.0.factor * if self.0.settled { u + z } else { u }
+    }
+}
+
+/// Step (4.2): elements outside C that enter it.
+#[derive(Clone, Copy)]
+pub(super) struct Entering<'a> {
+    pub(super) approach: f64,
+    /// Whether the contact area is given.
+    pub(super) is_fixed: bool,
+    /// Which are at their limit; none: no element is.
+    pub(super) held: &'a [bool],
+}
+
+impl Wanted<1> for Entering<'_> {
+    #[inline(always)]
+    fn of<S: Simd>(&self, first: usize, u: Vector<S>, [h]: [Vector<S>; 1]) -> Holds<S> {
+        let (e, zero) = (h - self.approach + u, u.all(0.0));
+        if self.is_fixed {
+            return zero.is_below(zero);
+        }
+        if self.held.is_empty() {
+            return e.is_below(zero);
+        }
+        // 1 at the limit, -1 elsewhere.
+        let side = e.of_each(|lane| if self.held.get(first + lane) == Some(&true) { 1.0 } else { -1.0 });
+        zero.is_below(side * e)
+    }
+}

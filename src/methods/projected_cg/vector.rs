@@ -1,0 +1,152 @@
+//! Formulas in vectors of the machine: each value has the bits that it would have by itself, for nothing is contracted.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+
+use pulp::Simd;
+
+/// Some values side by side.
+#[derive(Clone, Copy)]
+pub struct Vector<S: Simd> {
+    simd: S,
+    values: S::f64s,
+}
+
+/// What holds for some values side by side.
+#[derive(Clone, Copy)]
+pub struct Holds<S: Simd> {
+    simd: S,
+    mask: S::m64s,
+}
+
+impl<S: Simd> Vector<S> {
+    #[inline(always)]
+    pub fn new(simd: S, values: S::f64s) -> Vector<S> {
+        Vector { simd, values }
+    }
+
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Vector<S> {
+        Vector { simd, values: simd.splat_f64s(value) }
+    }
+
+    /// One value in all places.
+    #[inline(always)]
+    pub fn all(self, value: f64) -> Vector<S> {
+        Vector::splat(self.simd, value)
+    }
+
+    /// `value(place)` in each place.
+    #[inline(always)]
+    pub fn of_each(self, value: impl Fn(usize) -> f64) -> Vector<S> {
+        let mut vector = self;
+        let values = pulp::bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut vector.values));
+        values.iter_mut().enumerate().for_each(|(place, to)| *to = value(place));
+        vector
+    }
+
+    /// The vector of the machine.
+    #[inline(always)]
+    pub fn values(self) -> S::f64s {
+        self.values
+    }
+
+    #[inline(always)]
+    pub fn abs(self) -> Vector<S> {
+        Vector { values: self.simd.abs_f64s(self.values), ..self }
+    }
+
+    #[inline(always)]
+    pub fn is_below(self, other: Vector<S>) -> Holds<S> {
+        Holds { simd: self.simd, mask: self.simd.less_than_f64s(self.values, other.values) }
+    }
+
+    #[inline(always)]
+    pub fn is_at_most(self, other: Vector<S>) -> Holds<S> {
+        Holds { simd: self.simd, mask: self.simd.less_than_or_equal_f64s(self.values, other.values) }
+    }
+}
+
+impl<S: Simd> Holds<S> {
+    /// In places of a 1, not in those of a 0.
+    #[inline(always)]
+    pub fn of_ones(simd: S, ones: S::u64s) -> Holds<S> {
+        Holds { simd, mask: simd.greater_than_u64s(ones, simd.splat_u64s(0)) }
+    }
+
+    /// In places of a 0, not in those of a 1.
+    #[inline(always)]
+    pub fn of_zeros(simd: S, ones: S::u64s) -> Holds<S> {
+        Holds { simd, mask: simd.greater_than_u64s(simd.splat_u64s(1), ones) }
+    }
+
+    /// One value where it holds, another where not.
+    #[inline(always)]
+    pub fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
+        Vector { values: self.simd.select_f64s(self.mask, yes.values, no.values), ..yes }
+    }
+
+    /// Whether it holds anywhere.
+    #[inline(always)]
+    pub fn anywhere(self) -> bool {
+        self.simd.first_true_m64s(self.mask) < size_of::<S::f64s>() / size_of::<f64>()
+    }
+}
+
+macro_rules! operation {
+    ($name:ident, $method:ident, $of_machine:ident) => {
+        impl<S: Simd> $name for Vector<S> {
+            type Output = Vector<S>;
+
+            #[inline(always)]
+            fn $method(self, other: Vector<S>) -> Vector<S> {
+                Vector { values: self.simd.$of_machine(self.values, other.values), ..self }
+            }
+        }
+
+        impl<S: Simd> $name<Vector<S>> for f64 {
+            type Output = Vector<S>;
+
+            #[inline(always)]
+            fn $method(self, other: Vector<S>) -> Vector<S> {
+                Vector::splat(other.simd, self).$method(other)
+            }
+        }
+
+        impl<S: Simd> $name<f64> for Vector<S> {
+            type Output = Vector<S>;
+
+            #[inline(always)]
+            fn $method(self, other: f64) -> Vector<S> {
+                self.$method(Vector::splat(self.simd, other))
+            }
+        }
+    };
+}
+operation!(Add, add, add_f64s);
+operation!(Sub, sub, sub_f64s);
+operation!(Mul, mul, mul_f64s);
+operation!(Div, div, div_f64s);
+
+impl<S: Simd> Neg for Vector<S> {
+    type Output = Vector<S>;
+
+    #[inline(always)]
+    fn neg(self) -> Vector<S> {
+        Vector { values: self.simd.neg_f64s(self.values), ..self }
+    }
+}
+
+macro_rules! logic {
+    ($name:ident, $method:ident, $of_machine:ident) => {
+        impl<S: Simd> $name for Holds<S> {
+            type Output = Holds<S>;
+
+            #[inline(always)]
+            fn $method(self, other: Holds<S>) -> Holds<S> {
+                Holds { mask: self.simd.$of_machine(self.mask, other.mask), ..self }
+            }
+        }
+    };
+}
+logic!(BitAnd, bitand, and_m64s);
+logic!(BitOr, bitor, or_m64s);
