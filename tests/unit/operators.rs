@@ -1,6 +1,6 @@
 //! Products by operators of a part of the grid, beside plain sums.
 
-use super::{loaded, MadeOf, Operators};
+use super::{loaded, MadeOf, Operator, Operators};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace, Layer, Table};
 use crate::threads::Threads;
@@ -106,6 +106,27 @@ fn on_one_row_a_part_is_a_part_of_the_row() {
         let (exact, own) = (sum(&coefficients, &grid, &p, i), 17.0 * coefficients.at(0, 0));
         // A sum of a thousand terms has some of its own.
         assert!((u[i] - exact).abs() <= 10.0 * ROUND_OFF * own, "{} for {exact} at {i}", u[i]);
+    }
+}
+
+#[test]
+fn products_on_few_elements_are_those_by_transforms() {
+    let threads = Threads::One;
+    for (mx, my) in [(1, 1), (2, 1), (1, 3), (2, 2), (3, 2)] {
+        let grid = Grid::new(mx, my, 0.7, 0.4).expect("a grid");
+        for (kind, coefficients) in &all_coefficients(&grid) {
+            let of = MadeOf { coefficients, grid: &grid, threads: &threads };
+            let p = pressures(&grid, 0..mx, 0..my);
+            let (mut u, mut by_transforms) = (vec![f64::NAN; grid.len()], vec![f64::NAN; grid.len()]);
+            Operators::default().displace(of, &p, &mut u).expect("a product");
+            let operator = Operator::<f64>::new(coefficients, &grid, &threads).expect("an operator");
+            operator.apply(&p, &mut by_transforms, &mut operator.workspace().expect("memory"));
+            for (i, (u, other)) in u.iter().zip(&by_transforms).enumerate() {
+                let largest = 17.0 * coefficients.entry(&grid, i, i);
+                assert!((u - other).abs() <= ROUND_OFF * largest, "{kind}, {mx} x {my}: {u} and {other} at {i}");
+                assert!((u - sum(coefficients, &grid, &p, i)).abs() <= ROUND_OFF * largest, "{kind}, {mx} x {my}");
+            }
+        }
     }
 }
 
