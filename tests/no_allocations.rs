@@ -89,9 +89,10 @@ fn third_pass(m: usize, shifts: &[f64], table: Option<&Table>, options: &Options
     let guess = (fixed || options.initial_guess == InitialGuess::Given).then_some(guess);
     let mut pass = || {
         for scene in &scenes {
-            let (stop, report) = solver.solve(scene, options, guess, None).expect("a solve");
+            let (stop, _) = solver.solve(scene, options, guess, None).expect("a solve");
             assert_eq!(stop, Outcome::Converged, "{options:?}");
-            assert!(report.count.cycles > 0 && !solver.ledger().is_empty(), "something was solved");
+            let some_pressure = solver.state().p.iter().any(|p| *p > 0.0);
+            assert!(some_pressure && !solver.ledger().is_empty(), "something was solved");
         }
     };
     assert!(allocations(&mut pass) > 0, "the first pass allocates, or nothing is counted");
@@ -112,6 +113,18 @@ fn every_method_and_start_solves_again_without_allocating() {
         }
         let options = Options { method, active_set: ActiveSet::Fixed, max_cycles: 5000, ..Options::default() };
         assert_eq!(third_pass(48, &[0.0, 3.0], None, &options), 0, "{options:?}");
+    }
+}
+
+#[test]
+fn few_elements_solve_again_without_allocating() {
+    for m in [1, 2] {
+        for method in [Method::Auto, Method::ProjectedCg, Method::Norm] {
+            for initial_guess in [InitialGuess::None, InitialGuess::Given, InitialGuess::Previous] {
+                let options = Options { method, initial_guess, max_cycles: 5000, ..Options::default() };
+                assert_eq!(third_pass(m, &[0.0, 0.2], None, &options), 0, "{m} x {m}, {options:?}");
+            }
+        }
     }
 }
 

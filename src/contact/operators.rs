@@ -8,6 +8,7 @@
 //! So with contact on 0.6 of each side of the grid, in its middle, a product takes three quarters of the time, and so does the set-up of its
 //! spectrum. Which operator makes a product depends on p alone: no bit depends on the products before.
 
+use std::array::from_fn;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -16,10 +17,10 @@ use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::operator::{dense, even_periods, Needs, Operator, Reach, SetUp, Workspace};
+use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
 use crate::threads::Threads;
 
-/// On grids of so many elements products are summed directly: nothing is set up for them. A cold call of one element with a table of its
+/// On grids of at most so many elements products are summed: nothing is set up for them. A cold call of one element with a table of its
 /// own takes .64 of the time with an operator, of 2 x 2 elements .68.
 const SUMMED: usize = 4;
 /// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
@@ -38,6 +39,8 @@ pub(super) struct MadeOf<'a> {
 /// Each is set up when it is first needed.
 #[derive(Default)]
 pub(super) struct Operators {
+    /// A itself where products are summed, row by row.
+    matrix: Option<[f64; SUMMED * SUMMED]>,
     /// For any p.
     whole: Option<Arc<Operator<f64>>>,
     /// The last one for p on a part of the grid, and whether its coefficients are those of now.
@@ -63,9 +66,16 @@ impl Operators {
         Ok(self.whole.insert(whole))
     }
 
+    /// A, where products are summed.
+    fn matrix(&mut self, MadeOf { coefficients, grid, .. }: MadeOf<'_>) -> Option<&[f64; SUMMED * SUMMED]> {
+        let n = grid.len();
+        let fill = || from_fn(|k| if k < n * n { coefficients.entry(grid, k / n, k % n) } else { 0.0 });
+        (n <= SUMMED).then(|| &*self.matrix.get_or_insert_with(fill))
+    }
+
     /// Sets up what a product may need, where that does not depend on p.
     pub fn prepare(&mut self, of: MadeOf<'_>) -> Result<()> {
-        if of.is_for_parts() || of.is_summed() {
+        if of.is_for_parts() || self.matrix(of).is_some() {
             return Ok(());
         }
         let whole = self.whole(of)?.clone();
@@ -76,6 +86,7 @@ impl Operators {
     /// others follow when they are needed. Not to be used after an error, before it is renewed again.
     pub fn renew(&mut self, of: MadeOf<'_>) -> Result<()> {
         let is_for_parts = of.is_for_parts();
+        self.matrix = None;
         self.part = self.part.take().filter(|_| is_for_parts).map(|(part, _)| (part, false));
         match self.whole.as_mut().and_then(Arc::get_mut) {
             Some(operator) if !is_for_parts => operator.renew(of.coefficients, 1.0, of.grid, &mut self.set_up)?,
@@ -86,7 +97,7 @@ impl Operators {
 
     /// Whether the product with p needs the operator for any p.
     pub fn needs_whole(of: MadeOf<'_>, p: &[f64]) -> bool {
-        !of.is_summed() && of.reach_of(p).is_none()
+        of.grid.len() > SUMMED && of.reach_of(p).is_none()
     }
 
     /// `u = A p`.
@@ -95,8 +106,9 @@ impl Operators {
             u.fill(0.0);
             return Ok(());
         }
-        if of.is_summed() {
-            dense::apply(of.coefficients, of.grid, p, u);
+        if let Some(matrix) = self.matrix(of) {
+            let dot = |row: &[f64]| row.iter().zip(p).map(|(a, p)| a * p).sum();
+            u.iter_mut().zip(matrix.chunks_exact(p.len())).for_each(|(u, row)| *u = dot(row));
             return Ok(());
         }
         // It is taken out for the time of the product.
@@ -134,11 +146,6 @@ impl Operators {
 }
 
 impl MadeOf<'_> {
-    /// Whether products are summed directly.
-    fn is_summed(&self) -> bool {
-        self.grid.len() <= SUMMED
-    }
-
     /// Whether some p may have operators of their own.
     fn is_for_parts(&self) -> bool {
         let MadeOf { coefficients, grid, .. } = self;

@@ -1,5 +1,5 @@
 //! `u = A p` by direct summation: the naive twin of [`Operator`](super::Operator), the oracle of its tests, right for every effect; and
-//! products on grids of few elements, and the matrix of the small systems that are factorised.
+//! the matrix of the small systems that are factorised.
 
 use crate::grid::Grid;
 use crate::influence::Coefficients;

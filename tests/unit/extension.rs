@@ -70,7 +70,7 @@ fn it_is_what_the_definition_says() {
                 segments.list_changing(&contact, &mut vec![0.0; mx * my], |block, _, listed| {
                     listed.extend(block.elements().filter(|i| *i == last).map(|i| i as u32));
                 });
-                segments.change_listed();
+                segments.change_listed(|_| true);
             }
         }
     }

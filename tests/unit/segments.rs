@@ -1,6 +1,4 @@
 use super::*;
-use crate::methods::projected_cg::segment_passes::{Change, Terms, Wanted};
-use crate::methods::projected_cg::vector::{Holds, Vector};
 
 const SIZES: [(usize, usize); 6] = [(130, 170), (1, 1), (3, 1), (7, 9), (33, 40), (8, 300)];
 
@@ -33,23 +31,23 @@ fn segments_are_the_vectors_with_an_element_in_contact() {
 }
 
 /// The number of elements, the sum of a, and of a b.
-struct Some;
+struct Formula;
 
-impl Terms<1, 1, 3> for Some {
+impl Terms<1, 1, 3> for Formula {
     fn of<S: pulp::Simd>(&self, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> [Vector<S>; 3] {
         [a.all(1.0), a, a * b]
     }
 }
 
 /// `value + a - 2 b`.
-impl Change<1, 1> for Some {
+impl Becomes<1, 1> for Formula {
     fn of<S: pulp::Simd>(&self, value: Vector<S>, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> Vector<S> {
         value + (a - 2.0 * b)
     }
 }
 
 /// The value is less than b, and the element no multiple of three.
-impl Wanted<1> for Some {
+impl Wanted<1> for Formula {
     fn of<S: pulp::Simd>(&self, first: usize, value: Vector<S>, [b]: [Vector<S>; 1]) -> Holds<S> {
         let divides = value.of_each(|lane| f64::from(u8::from((first + lane) % 3 == 0)));
         value.is_below(b) & divides.is_below(value.all(0.5))
@@ -74,7 +72,7 @@ fn sums_are_those_of_the_elements_in_contact() {
             for threads in [1, 2] {
                 let mut segments = segments(&grid, threads, &contact);
                 assert_eq!(segments.count(), those().count());
-                assert_eq!(segments.sum(&contact, |block| block.sum([&a], [&b[..]], Some)), expected, "{mx} x {my}");
+                assert_eq!(segments.sum(&contact, |block| block.sum([&a], [&b[..]], Formula)), expected, "{mx} x {my}");
             }
         }
     }
@@ -95,14 +93,14 @@ fn a_pass_changes_and_lists_what_is_in_contact() {
                 let mut values: Vec<f64> = (0..grid.len()).map(begin).collect();
                 let mut singles: Vec<f32> = values.iter().map(|value| *value as f32).collect();
                 segments.list_changing(&contact, &mut values, |block, values, listed| {
-                    block.list(listed, values, [&b[..]], Some);
-                    block.change(values, [&a], [&b[..]], Some);
+                    block.list(listed, values, [&b[..]], Formula);
+                    block.change(values, [&a], [&b[..]], Formula);
                 });
                 let listed: Vec<usize> = segments.listed().collect();
                 assert_eq!(listed, (0..grid.len()).filter(wanted).collect::<Vec<_>>(), "{mx} x {my}");
                 assert_eq!(values, expected, "{mx} x {my}");
                 let [] = segments.sum_changing(&contact, &mut singles, |block, values| {
-                    block.change(values, [&a], [&b[..]], Some);
+                    block.change(values, [&a], [&b[..]], Formula);
                     []
                 });
                 assert!(singles.iter().zip(&expected).all(|(single, value)| f64::from(*single) == *value));
@@ -112,20 +110,28 @@ fn a_pass_changes_and_lists_what_is_in_contact() {
 }
 
 #[test]
-fn segments_are_found_again_where_the_contact_area_changes() {
+fn segments_are_found_again_where_elements_change_sides() {
     let grid = Grid::new(37, 150, 1.0, 1.0).expect("a grid");
     let mut contact: Vec<bool> = (0..grid.len()).map(|i| i % 23 < 4).collect();
     let mut segments = segments(&grid, 1, &contact);
-    for row in [0, 60, 149] {
-        let elements = row * 37..(row + 1) * 37;
-        contact[elements.clone()].iter_mut().for_each(|inside| *inside = !*inside);
-        let version = segments.version();
-        segments.list_changing(&contact, &mut vec![0.0; grid.len()], |block, _, listed| {
+    let (mut values, row) = (vec![0.0; grid.len()], |y: usize| y * 37..(y + 1) * 37);
+    let mut list = |segments: &mut Segments, contact: &[bool], elements: &Range<usize>| {
+        segments.list_changing(contact, &mut values, |block, _, listed| {
             listed.extend(block.elements().filter(|i| elements.contains(i)).map(|i| i as u32));
         });
-        segments.change_listed();
+    };
+    for (y, far) in [(0, 75), (60, 120), (149, 75)] {
+        let version = segments.version();
+        list(&mut segments, &contact, &row(y));
+        segments.change_listed(|_| false);
         segments.find(&contact);
-        assert!(segments.changed_since(version, elements), "row {row}");
-        assert_eq!(segments.count(), contact.iter().filter(|inside| **inside).count(), "row {row}");
+        assert_eq!(segments.version(), version, "nothing changed");
+        contact[row(y)].iter_mut().for_each(|inside| *inside = !*inside);
+        segments.change_listed(|_| true);
+        segments.find(&contact);
+        assert!(segments.changed_since(version, row(y)) && !segments.changed_since(version, row(far)), "row {y}");
+        assert_eq!(segments.count(), contact.iter().filter(|inside| **inside).count(), "row {y}");
+        list(&mut segments, &contact, &(0..0));
+        assert_eq!(segments.listed().count(), 0, "what an earlier pass listed");
     }
 }

@@ -35,12 +35,13 @@ impl<T: Real> Iteration<T> {
             },
         );
         let before = self.debts.len();
-        for i in self.segments.listed() {
-            self.debts.push((i, leave(state, set, i, self.t[i] > T::zero())));
-        }
-        self.debts[before..].iter().for_each(|&(i, _)| self.t[i] = T::zero());
-        self.segments.change_listed();
-        (self.debts.len() - before) as u64
+        let (t, debts) = (&mut self.t, &mut self.debts);
+        self.segments.change_listed(|i| {
+            debts.push((i, leave(state, set, i, t[i] > T::zero())));
+            t[i] = T::zero();
+            true
+        });
+        (debts.len() - before) as u64
     }
 
     /// u = factor (u + alpha q + gamma w + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
@@ -60,18 +61,17 @@ impl<T: Real> Iteration<T> {
                 false => block.change_and_list_outside(u, list, [h], [q], moved, entering),
             },
         );
-        self.segments.change_listed();
-        let waits = !held.is_empty() && self.limits.waits(h, u, held, state.approach);
+        let some_may_wait = limited && self.segments.listed().any(|i| at_limit[i]);
+        let wait = some_may_wait && self.limits.waits(h, u, at_limit, state.approach);
         let mut entered = 0;
-        for i in self.segments.listed() {
-            let held = S::LIMITED && at_limit[i];
-            if !(held && waits) {
+        self.segments.change_listed(|i| {
+            let enters = !(wait && at_limit[i]);
+            if enters {
                 (contact[i], entered) = (true, entered + 1);
-                if held {
-                    at_limit[i] = false;
-                }
+                at_limit.get_mut(i).into_iter().for_each(|at_limit| *at_limit = false);
             }
-        }
+            enters
+        });
         entered
     }
 }

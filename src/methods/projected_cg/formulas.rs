@@ -4,8 +4,7 @@ use pulp::Simd;
 
 use super::exchange::HELD_BACK;
 use super::passes::Update;
-use super::segment_passes::{Change, Terms, Wanted};
-use super::vector::{Holds, Vector};
+use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
 use crate::contact::AdmissibleSet;
 
 /// The sum of `h + u`, u as `update` will leave it but for w.
@@ -26,7 +25,7 @@ pub(super) struct Residual {
     pub(super) approach: f64,
 }
 
-impl Change<2, 0> for Residual {
+impl Becomes<2, 0> for Residual {
     #[inline(always)]
     fn of<S: Simd>(&self, _: Vector<S>, [h, u]: [Vector<S>; 2], []: [Vector<S>; 0]) -> Vector<S> {
         -(h - self.approach + u)
@@ -39,6 +38,15 @@ impl Terms<2, 0, 2> for Residual {
         let distance = h - self.approach;
         let e = distance + u;
         [e * e, distance * distance]
+    }
+}
+
+/// (r, d) of a known change d, and (r, r).
+impl Terms<2, 1, 2> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
+        let r = self.approach - h - u;
+        [r * d, r * r]
     }
 }
 
@@ -61,7 +69,7 @@ pub(super) struct Direction {
     pub(super) forecast: Option<f64>,
 }
 
-impl Change<1, 1> for Direction {
+impl Becomes<1, 1> for Direction {
     #[inline(always)]
     fn of<S: Simd>(&self, t: Vector<S>, [p]: [Vector<S>; 1], [z]: [Vector<S>; 1]) -> Vector<S> {
         let t = z - self.mean + self.beta * t;
@@ -86,7 +94,7 @@ impl Terms<3, 2, 5> for StepSums {
     }
 }
 
-/// The same, and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
+/// (r, t), (t, q), (t, t), of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
 impl Terms<3, 2, 9> for StepSums {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 9] {
@@ -95,21 +103,12 @@ impl Terms<3, 2, 9> for StepSums {
     }
 }
 
-/// The same as the first, and beside a known change d (r, d), (q, d).
+/// (r, t), (t, q), (t, t), of |t|, (p, p); and with a known change d (r, d), (q, d).
 impl Terms<3, 3, 7> for StepSums {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
         let r = self.approach - h - u;
         [r * t, t * q, t * t, t.abs(), p * p, r * d, q * d]
-    }
-}
-
-/// (r, d) of a known change d, and (r, r).
-impl Terms<2, 1, 2> for Residual {
-    #[inline(always)]
-    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
-        let r = self.approach - h - u;
-        [r * d, r * r]
     }
 }
 
@@ -146,7 +145,7 @@ pub(super) struct Scale {
     pub(super) factor: f64,
 }
 
-impl Change<0, 0> for Scale {
+impl Becomes<0, 0> for Scale {
     #[inline(always)]
     fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], []: [Vector<S>; 0]) -> Vector<S> {
         self.factor * p
@@ -160,7 +159,7 @@ pub(super) struct Moved {
     pub(super) gamma: f64,
 }
 
-impl Change<0, 2> for Moved {
+impl Becomes<0, 2> for Moved {
     #[inline(always)]
     fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], [t, d]: [Vector<S>; 2]) -> Vector<S> {
         p + (self.alpha * t + self.gamma * d)
@@ -170,30 +169,30 @@ impl Change<0, 2> for Moved {
 /// Step (4.1): elements that this move takes beyond a bound, and those that the forecast step leaves next to nothing of their pressure, or of what is
 /// left to their limit.
 #[derive(Clone, Copy)]
-pub(super) struct Leaving<A> {
+pub(super) struct Leaving<Set> {
     pub(super) moved: Moved,
     pub(super) forecast: Option<f64>,
-    pub(super) set: A,
+    pub(super) set: Set,
     /// Elements of the grid.
     pub(super) elements: usize,
 }
 
-impl<A: AdmissibleSet> Wanted<2> for Leaving<A> {
+impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
     #[inline(always)]
     fn of<S: Simd>(&self, first: usize, p: Vector<S>, [t, d]: [Vector<S>; 2]) -> Holds<S> {
         let Leaving { moved, forecast, set, elements } = self;
-        let limits =
-            |p: Vector<S>| p.of_each(|lane| if first + lane < *elements { set.limit(first + lane) } else { 0.0 });
         let to = moved.of(p, [], [t, d]);
         let mut leaves = to.is_below(p.all(0.0));
-        if A::LIMITED {
-            leaves = leaves | limits(p).is_below(to);
-        }
-        if let Some(forecast) = *forecast {
-            let foreseen = p + forecast * t;
+        let foreseen = forecast.map(|forecast| p + forecast * t);
+        if let Some(foreseen) = foreseen {
             leaves = leaves | foreseen.is_at_most(HELD_BACK * p);
-            if A::LIMITED {
-                leaves = leaves | (limits(p) * (1.0 - HELD_BACK)).is_at_most(foreseen);
+        }
+        if Set::LIMITED {
+            // Beyond the last element a vector is padded.
+            let limits = p.of_each(|lane| if first + lane < *elements { set.limit(first + lane) } else { 0.0 });
+            leaves = leaves | limits.is_below(to);
+            if let Some(foreseen) = foreseen {
+                leaves = leaves | (limits * (1.0 - HELD_BACK)).is_at_most(foreseen);
             }
         }
         leaves
@@ -204,14 +203,14 @@ impl<A: AdmissibleSet> Wanted<2> for Leaving<A> {
 #[derive(Clone, Copy)]
 pub(super) struct MovedU<'a>(pub(super) &'a Update);
 
-impl Change<1, 1> for MovedU<'_> {
+impl Becomes<1, 1> for MovedU<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q]: [Vector<S>; 1]) -> Vector<S> {
         self.0.factor * (u + self.0.alpha * q)
     }
 }
 
-impl Change<1, 3> for MovedU<'_> {
+impl Becomes<1, 3> for MovedU<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q, w, z]: [Vector<S>; 3]) -> Vector<S> {
         let u = u + (self.0.alpha * q + self.0.gamma * w);

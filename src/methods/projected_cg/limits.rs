@@ -117,12 +117,10 @@ impl<T: Real> Iteration<T> {
             for (elements, local) in block.segments() {
                 let (p, t) = (&state.p[elements.clone()], &mut t[local]);
                 if set.any_beyond(elements.start, p.iter().zip(&*t).map(|(p, t)| p + forecast * t.to_double())) {
-                    for ((p, t), i) in p.iter().zip(t).zip(elements) {
-                        *t = if p + forecast * t.to_double() > set.limit(i) {
-                            T::of((set.limit(i) - p) / forecast)
-                        } else {
-                            *t
-                        };
+                    for ((p, t), i) in p.iter().zip(t).zip(elements).filter(|(_, i)| state.contact[*i]) {
+                        if p + forecast * t.to_double() > set.limit(i) {
+                            *t = T::of((set.limit(i) - p) / forecast);
+                        }
                     }
                 }
             }
@@ -141,8 +139,10 @@ impl<T: Real> Iteration<T> {
         let (t, farthest) = (&self.t, forecast.map_or(alpha, |forecast| forecast.max(alpha)));
         let [reached] = self.segments.sum(&state.contact, |block| {
             let beyond = block.segments().any(|(elements, _)| {
-                let (first, steps) = (elements.start, state.p[elements.clone()].iter().zip(&t[elements]));
-                set.any_beyond(first, steps.map(|(p, t)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK)))
+                let steps =
+                    state.p[elements.clone()].iter().zip(&t[elements.clone()]).zip(&state.contact[elements.clone()]);
+                let to = |(p, t): (&f64, &T)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK);
+                set.any_beyond(elements.start, steps.map(|(step, inside)| if *inside { to(step) } else { 0.0 }))
             });
             [f64::from(u8::from(beyond))]
         });

@@ -20,10 +20,8 @@ mod preconditioner;
 mod predictor;
 mod scaling;
 mod search;
-mod segment_passes;
 mod segments;
 mod step;
-mod vector;
 mod vectors;
 mod window;
 

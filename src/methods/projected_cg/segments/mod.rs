@@ -7,10 +7,19 @@
 //! Sums are taken per block of the grid and added in the order of the blocks, which do not depend on the number of threads: nor do the
 //! bits of the sums.
 
+mod arrays;
+mod block;
+mod lists;
+mod passes;
+mod vector;
+
 use std::mem::take;
 use std::ops::Range;
 
-use super::segment_passes::Block;
+use arrays::EIGHT;
+pub use block::{Becomes, Block, Terms, Wanted};
+pub use vector::{Holds, Vector};
+
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{keep, reserve, sparse};
@@ -19,8 +28,6 @@ use crate::threads::Threads;
 /// Blocks at most, and elements of a block at least: each costs some additions.
 const BLOCKS: usize = 64;
 const LEAST: usize = 512;
-/// Elements of a segment, one in each byte of a word.
-pub(super) const EIGHT: usize = 8;
 /// Sums at most that a pass takes.
 const MOST_SUMS: usize = 9;
 
@@ -83,10 +90,13 @@ impl Segments {
             .any(|block| block.version > version)
     }
 
-    /// Says that the elements that the last pass listed enter or leave.
-    pub fn change_listed(&mut self) {
-        let listed = self.found.iter_mut().zip(&self.listed);
-        listed.for_each(|(block, listed)| block.changed |= !listed.is_empty());
+    /// Calls `changes(element)` for those that the last pass listed, in the order of the blocks: it enters or leaves if that returns true.
+    pub fn change_listed(&mut self, mut changes: impl FnMut(usize) -> bool) {
+        for (block, listed) in self.found.iter_mut().zip(&self.listed) {
+            for &i in listed {
+                block.changed |= changes(i as usize);
+            }
+        }
     }
 
     /// Says that any element may have changed sides.
@@ -94,9 +104,14 @@ impl Segments {
         self.found.iter_mut().for_each(|block| block.changed = true);
     }
 
+    /// Whether the segments are those of now.
+    fn are_found(&self) -> bool {
+        !self.found.iter().any(|block| block.changed)
+    }
+
     /// Finds the segments of the blocks that changed.
     pub fn find(&mut self, contact: &[bool]) {
-        if !self.found.iter().any(|block| block.changed) {
+        if self.are_found() {
             return;
         }
         self.version += 1;
@@ -117,12 +132,13 @@ impl Segments {
         self.count = self.found.iter().map(|block| block.count).sum();
     }
 
-    /// Sums over C, the elements in `contact`: `work(block)` returns those of a block.
+    /// Sums over C, the elements in `contact`, of which the segments were found: `work(block)` returns those of a block.
     pub fn sum<const K: usize>(
         &mut self,
         contact: &[bool],
         work: impl Fn(Block<'_>) -> [f64; K] + Sync + Send,
     ) -> [f64; K] {
+        debug_assert!(self.are_found(), "segments of the contact area before");
         let (found, length) = (&self.found, self.block);
         self.threads.for_each_plain_row(
             &mut self.sums,
@@ -142,6 +158,7 @@ impl Segments {
         data: &mut [A],
         work: impl Fn(Block<'_>, &mut [A]) -> [f64; K] + Sync + Send,
     ) -> [f64; K] {
+        debug_assert!(self.are_found(), "segments of the contact area before");
         let (found, length) = (&self.found, self.block);
         self.threads.for_each_row_pair(
             (data, length),
@@ -213,5 +230,5 @@ fn find_segments(contact: &[bool], segments: &mut Vec<u32>) -> usize {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/segments.rs"]
+#[path = "../../../../tests/unit/segments.rs"]
 mod tests;

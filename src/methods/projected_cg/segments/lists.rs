@@ -1,0 +1,119 @@
+//! Passes over a block that list elements, in vectors of this machine.
+
+use pulp::{Simd, WithSimd};
+
+use super::arrays::{padded, parts, whole, Arrays, Eight, Segment, EIGHT};
+use super::block::{Becomes, Block, Wanted};
+use super::vector::{Holds, Vector};
+use crate::operator::fft::Real;
+
+/// The elements of [`Block::list`].
+pub(super) struct List<'a, T, F, const B: usize> {
+    pub(super) block: Block<'a>,
+    pub(super) list: &'a mut Vec<u32>,
+    pub(super) data: (&'a [Eight<f64>], Eight<f64>),
+    pub(super) arrays: Arrays<'a, T, 0, B>,
+    pub(super) wanted: F,
+}
+
+impl<T: Real, F: Wanted<B>, const B: usize> WithSimd for List<'_, T, F, B> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let List { block, list, data: (data, last), arrays, wanted } = self;
+        let (segments, rest) = whole(block.segments, data.len());
+        let first = |k: usize| block.start + EIGHT * k;
+        for &k in segments {
+            let k = k as usize;
+            list_segment(simd, (first(k), &data[k]), arrays.at(k), &wanted, list);
+        }
+        if rest {
+            list_segment(simd, (first(data.len()), &last), arrays.last(), &wanted, list);
+        }
+    }
+}
+
+#[inline(always)]
+fn list_segment<S: Simd, const B: usize>(
+    simd: S,
+    (first, values): (usize, &Eight<f64>),
+    segment: Segment<'_, 0, B>,
+    wanted: &impl Wanted<B>,
+    list: &mut Vec<u32>,
+) {
+    for part in 0..parts::<S>() {
+        let first = first + part * EIGHT / parts::<S>();
+        let value = Vector::new(simd, S::as_simd_f64s(values).0[part]);
+        let ([], b, inside) = segment.part(simd, part);
+        append(simd, first, inside & wanted.of(first, value, b), list);
+    }
+}
+
+/// Appends the elements, from `first` on, of which something holds.
+#[inline(always)]
+fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>) {
+    if wanted.anywhere() {
+        let mut ones = [0.0; EIGHT];
+        let some = wanted.choose(Vector::splat(simd, 1.0), Vector::splat(simd, 0.0));
+        S::as_mut_simd_f64s(&mut ones).0[0] = some.values();
+        list.extend((first as u32..).zip(ones).filter(|(_, one)| *one > 0.0).map(|(i, _)| i));
+    }
+}
+
+/// The change and the elements of [`Block::change_and_list_outside`].
+pub(super) struct Everywhere<'a, T, F, G, const A: usize, const B: usize> {
+    pub(super) block: Block<'a>,
+    pub(super) data: &'a mut [f64],
+    pub(super) list: &'a mut Vec<u32>,
+    pub(super) arrays: Arrays<'a, T, A, B>,
+    pub(super) change: F,
+    pub(super) wanted: G,
+}
+
+impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> WithSimd
+    for Everywhere<'_, T, F, G, A, B>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Everywhere { block, data, list, arrays, change, wanted } = self;
+        let (eights, rest) = pulp::as_arrays_mut::<EIGHT, f64>(data);
+        let end_of_whole = block.start + EIGHT * eights.len();
+        for (k, values) in eights.iter_mut().enumerate() {
+            everywhere(simd, (block.start + EIGHT * k, values), arrays.at(k), (&change, &wanted), list);
+        }
+        if !rest.is_empty() {
+            let mut last = padded(rest);
+            everywhere(simd, (end_of_whole, &mut last), arrays.last(), (&change, &wanted), list);
+            // What pads it is no element.
+            let end = block.elements().end as u32;
+            list.truncate(list.partition_point(|i| *i < end));
+            rest.copy_from_slice(&last[..rest.len()]);
+        }
+    }
+}
+
+#[inline(always)]
+fn everywhere<S: Simd, const A: usize, const B: usize>(
+    simd: S,
+    (first, values): (usize, &mut Eight<f64>),
+    segment: Segment<'_, A, B>,
+    (change, wanted): (&impl Becomes<A, B>, &impl Wanted<A>),
+    list: &mut Vec<u32>,
+) {
+    for part in 0..parts::<S>() {
+        let first = first + part * EIGHT / parts::<S>();
+        let (a, b, _) = segment.part(simd, part);
+        let outside = Holds::of_zeros(simd, S::as_simd_u64s(&segment.contact).0[part]);
+        let to = &mut S::as_mut_simd_f64s(values).0[part];
+        let value = change.of(Vector::new(simd, *to), a, b);
+        *to = value.values();
+        append(simd, first, outside & wanted.of(first, value, a), list);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../../tests/unit/segment_passes.rs"]
+mod tests;

@@ -1,0 +1,96 @@
+//! Passes over the segments of a block: sums, and changes of what an array holds on C. They are computed in vectors of this machine, on which no bit
+//! depends: a sum is taken in lanes, one for each place in a segment.
+
+use pulp::{Simd, WithSimd};
+
+use super::arrays::{convert, padded, parts, whole, Arrays, Eight, Segment, EIGHT};
+use super::block::{Becomes, Block, Terms};
+use super::vector::Vector;
+use crate::operator::fft::Real;
+use crate::sums::Value;
+
+/// The sums of [`Block::sum`].
+pub(super) struct Sum<'a, T, F, const A: usize, const B: usize, const K: usize> {
+    pub(super) block: Block<'a>,
+    pub(super) arrays: Arrays<'a, T, A, B>,
+    pub(super) terms: F,
+}
+
+impl<T: Real, F: Terms<A, B, K>, const A: usize, const B: usize, const K: usize> WithSimd for Sum<'_, T, F, A, B, K> {
+    type Output = [f64; K];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; K] {
+        let Sum { arrays, terms, .. } = &self;
+        let (segments, rest) = whole(self.block.segments, arrays.contact.len());
+        let mut sums = [[0.0; EIGHT]; K];
+        for &k in segments {
+            add(simd, arrays.at(k as usize), terms, &mut sums);
+        }
+        if rest {
+            add(simd, arrays.last(), terms, &mut sums);
+        }
+        sums.map(|lanes| lanes.iter().sum())
+    }
+}
+
+#[inline(always)]
+fn add<S: Simd, const A: usize, const B: usize, const K: usize>(
+    simd: S,
+    segment: Segment<'_, A, B>,
+    terms: &impl Terms<A, B, K>,
+    sums: &mut [Eight<f64>; K],
+) {
+    for part in 0..parts::<S>() {
+        let (a, b, inside) = segment.part(simd, part);
+        for (sums, term) in sums.iter_mut().zip(terms.of(a, b)) {
+            let sum = &mut S::as_mut_simd_f64s(sums).0[part];
+            *sum = (Vector::new(simd, *sum) + inside.choose(term, Vector::splat(simd, 0.0))).values();
+        }
+    }
+}
+
+/// The changes of [`Block::change`].
+pub(super) struct Changes<'a, D, T, F, const A: usize, const B: usize> {
+    pub(super) block: Block<'a>,
+    pub(super) data: &'a mut [D],
+    pub(super) arrays: Arrays<'a, T, A, B>,
+    pub(super) change: F,
+}
+
+impl<D: Real, T: Real, F: Becomes<A, B>, const A: usize, const B: usize> WithSimd for Changes<'_, D, T, F, A, B> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Changes { data, arrays, change, .. } = self;
+        let (eights, rest) = pulp::as_arrays_mut::<EIGHT, D>(data);
+        let (segments, with_rest) = whole(self.block.segments, eights.len());
+        for &k in segments {
+            change_segment(simd, &mut eights[k as usize], arrays.at(k as usize), &change);
+        }
+        if with_rest {
+            let mut last = padded(rest);
+            change_segment(simd, &mut last, arrays.last(), &change);
+            rest.copy_from_slice(&last[..rest.len()]);
+        }
+    }
+}
+
+#[inline(always)]
+fn change_segment<D: Real, S: Simd, const A: usize, const B: usize>(
+    simd: S,
+    values: &mut Eight<D>,
+    segment: Segment<'_, A, B>,
+    change: &impl Becomes<A, B>,
+) {
+    let mut doubles = [0.0; EIGHT];
+    convert(values, &mut doubles, Value::to_double);
+    for part in 0..parts::<S>() {
+        let (a, b, inside) = segment.part(simd, part);
+        let value = &mut S::as_mut_simd_f64s(&mut doubles).0[part];
+        let before = Vector::new(simd, *value);
+        *value = inside.choose(change.of(before, a, b), before).values();
+    }
+    convert(&doubles, values, D::of);
+}
