@@ -1,6 +1,5 @@
 //! Passes with vectors of different lengths; what leaves and enters by formulas, beside the rules of the admissible sets.
 
-use super::super::arrays::eights;
 use super::super::block::Terms;
 use super::super::passes::{Changes, Sum};
 use super::*;
@@ -99,7 +98,7 @@ fn leaving<S: AdmissibleSet>(
     wanted: Leaving<S>,
 ) -> Vec<u64> {
     let mut list = Vec::new();
-    arch.dispatch(List { block, list: &mut list, data: eights(p), arrays: Arrays::of(block, [], [t, d]), wanted });
+    arch.dispatch(List { block, list: &mut list, data: p, arrays: Arrays::of(block, [], [t, d]), wanted });
     list.into_iter().map(u64::from).collect()
 }
 

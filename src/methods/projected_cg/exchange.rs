@@ -68,7 +68,9 @@ impl<T: Real> Iteration<T> {
             let enters = !(wait && at_limit[i]);
             if enters {
                 (contact[i], entered) = (true, entered + 1);
-                at_limit.get_mut(i).into_iter().for_each(|at_limit| *at_limit = false);
+                if limited {
+                    at_limit[i] = false;
+                }
             }
             enters
         });

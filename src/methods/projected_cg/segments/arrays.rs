@@ -15,66 +15,69 @@ pub(super) const EIGHT: usize = 8;
 /// One segment of an array.
 pub(super) type Eight<A> = [A; EIGHT];
 
-/// The whole segments of a part of an array, and the rest of it, padded.
+/// The whole segments of a part of an array.
 #[inline(always)]
-pub(super) fn eights<A: Copy + Default>(values: &[A]) -> (&[Eight<A>], Eight<A>) {
-    let (eights, rest) = pulp::as_arrays::<EIGHT, A>(values);
-    (eights, padded(rest))
+pub(super) fn eights<A>(values: &[A]) -> &[Eight<A>] {
+    pulp::as_arrays::<EIGHT, A>(values).0
 }
 
+/// What is behind them, padded to a segment.
 #[inline(always)]
-pub(super) fn padded<A: Copy + Default>(rest: &[A]) -> Eight<A> {
-    let mut last = [A::default(); EIGHT];
-    if !rest.is_empty() {
-        last[..rest.len()].copy_from_slice(rest);
-    }
-    last
+pub(super) fn rest<A: Copy + Default>(values: &[A]) -> Eight<A> {
+    let (mut padded, rest) = ([A::default(); EIGHT], pulp::as_arrays::<EIGHT, A>(values).1);
+    padded[..rest.len()].copy_from_slice(rest);
+    padded
 }
 
 /// The parts of some arrays in a block.
 pub(super) struct Arrays<'a, T, const A: usize, const B: usize> {
-    a: [&'a [Eight<f64>]; A],
-    b: [&'a [Eight<T>]; B],
-    pub(super) contact: &'a [Eight<bool>],
-    /// The rest of each, padded.
-    last: ([Eight<f64>; A], [Eight<T>; B], Eight<bool>),
+    a: [&'a [f64]; A],
+    b: [&'a [T]; B],
+    contact: &'a [bool],
 }
 
 impl<'a, T: Real, const A: usize, const B: usize> Arrays<'a, T, A, B> {
     #[inline(always)]
     pub(super) fn of(block: Block<'a>, a: [&'a [f64]; A], b: [&'a [T]; B]) -> Arrays<'a, T, A, B> {
         let elements = block.elements();
-        let a = a.map(|a| eights(&a[elements.clone()]));
-        let b = b.map(|b| eights(&b[elements.clone()]));
-        let contact = eights(block.contact);
-        Arrays {
-            a: from_fn(|i| a[i].0),
-            b: from_fn(|i| b[i].0),
-            contact: contact.0,
-            last: (from_fn(|i| a[i].1), from_fn(|i| b[i].1), contact.1),
-        }
+        let (a, b) = (a.map(|a| &a[elements.clone()]), b.map(|b| &b[elements.clone()]));
+        Arrays { a, b, contact: block.contact }
     }
 
-    /// Segment k.
+    /// Segment k, a whole one.
     #[inline(always)]
-    pub(super) fn at(&self, k: usize) -> Segment<'_, A, B> {
-        Segment::new(from_fn(|i| &self.a[i][k]), from_fn(|i| &self.b[i][k]), &self.contact[k])
+    pub(super) fn at(&self, k: usize) -> Segment<'a, A, B> {
+        let Arrays { a, b, contact } = self;
+        Segment::new(a.map(|a| &eights(a)[k]), b.map(|b| &eights(b)[k]), &eights(contact)[k])
     }
 
-    /// The rest.
+    /// What is behind the whole ones, of each.
     #[inline(always)]
-    pub(super) fn last(&self) -> Segment<'_, A, B> {
-        let (a, b, contact) = &self.last;
-        Segment::new(a.each_ref(), b.each_ref(), contact)
+    pub(super) fn rest(&self) -> Rest<T, A, B> {
+        Rest { a: self.a.map(rest), b: self.b.map(rest), contact: rest(self.contact) }
     }
 }
 
-/// Those segments of a block that are whole, of which the block has n, and whether the rest is one of its segments.
+/// The last segment of some arrays, padded.
+pub(super) struct Rest<T, const A: usize, const B: usize> {
+    a: [Eight<f64>; A],
+    b: [Eight<T>; B],
+    contact: Eight<bool>,
+}
+
+impl<T: Real, const A: usize, const B: usize> Rest<T, A, B> {
+    #[inline(always)]
+    pub(super) fn segment(&self) -> Segment<'_, A, B> {
+        Segment::new(self.a.each_ref(), self.b.each_ref(), &self.contact)
+    }
+}
+
+/// Those segments of a block that are whole, and whether what is behind them is one of its segments, too.
 #[inline(always)]
-pub(super) fn whole(segments: &[u32], n: usize) -> (&[u32], bool) {
-    match segments.split_last() {
-        Some((&last, others)) if last as usize == n => (others, true),
-        _ => (segments, false),
+pub(super) fn whole(block: Block<'_>) -> (&[u32], bool) {
+    match block.segments.split_last() {
+        Some((&last, others)) if last as usize == eights(block.contact).len() => (others, true),
+        _ => (block.segments, false),
     }
 }
 

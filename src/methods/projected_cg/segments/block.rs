@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use pulp::Simd;
 
-use super::arrays::{eights, Arrays, EIGHT};
+use super::arrays::{Arrays, EIGHT};
 use super::lists::{Everywhere, List};
 use super::passes::{Changes, Sum};
 use super::vector::{Holds, Vector};
@@ -75,7 +75,7 @@ impl<'a> Block<'a> {
         wanted: impl Wanted<B>,
     ) {
         let arrays = Arrays::of(self, [], b);
-        pulp::Arch::new().dispatch(List { block: self, list, data: eights(data), arrays, wanted });
+        pulp::Arch::new().dispatch(List { block: self, list, data, arrays, wanted });
     }
 
     /// Changes all of the block's part of an array, and then appends those elements outside C that are wanted, by what they have become and by

@@ -2,7 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::arrays::{padded, parts, whole, Arrays, Eight, Segment, EIGHT};
+use super::arrays::{eights, parts, rest, whole, Arrays, Eight, Segment, EIGHT};
 use super::block::{Becomes, Block, Wanted};
 use super::vector::{Holds, Vector};
 use crate::operator::fft::Real;
@@ -11,7 +11,7 @@ use crate::operator::fft::Real;
 pub(super) struct List<'a, T, F, const B: usize> {
     pub(super) block: Block<'a>,
     pub(super) list: &'a mut Vec<u32>,
-    pub(super) data: (&'a [Eight<f64>], Eight<f64>),
+    pub(super) data: &'a [f64],
     pub(super) arrays: Arrays<'a, T, 0, B>,
     pub(super) wanted: F,
 }
@@ -21,15 +21,15 @@ impl<T: Real, F: Wanted<B>, const B: usize> WithSimd for List<'_, T, F, B> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let List { block, list, data: (data, last), arrays, wanted } = self;
-        let (segments, rest) = whole(block.segments, data.len());
+        let List { block, list, data, arrays, wanted } = self;
+        let ((segments, with_rest), eights) = (whole(block), eights(data));
         let first = |k: usize| block.start + EIGHT * k;
         for &k in segments {
             let k = k as usize;
-            list_segment(simd, (first(k), &data[k]), arrays.at(k), &wanted, list);
+            list_segment(simd, (first(k), &eights[k]), arrays.at(k), &wanted, list);
         }
-        if rest {
-            list_segment(simd, (first(data.len()), &last), arrays.last(), &wanted, list);
+        if with_rest {
+            list_segment(simd, (first(eights.len()), &rest(data)), arrays.rest().segment(), &wanted, list);
         }
     }
 }
@@ -79,18 +79,18 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Everywhere { block, data, list, arrays, change, wanted } = self;
-        let (eights, rest) = pulp::as_arrays_mut::<EIGHT, f64>(data);
+        let (eights, behind) = pulp::as_arrays_mut::<EIGHT, f64>(data);
         let end_of_whole = block.start + EIGHT * eights.len();
         for (k, values) in eights.iter_mut().enumerate() {
             everywhere(simd, (block.start + EIGHT * k, values), arrays.at(k), (&change, &wanted), list);
         }
-        if !rest.is_empty() {
-            let mut last = padded(rest);
-            everywhere(simd, (end_of_whole, &mut last), arrays.last(), (&change, &wanted), list);
+        if !behind.is_empty() {
+            let mut last = rest(behind);
+            everywhere(simd, (end_of_whole, &mut last), arrays.rest().segment(), (&change, &wanted), list);
             // What pads it is no element.
             let end = block.elements().end as u32;
             list.truncate(list.partition_point(|i| *i < end));
-            rest.copy_from_slice(&last[..rest.len()]);
+            behind.copy_from_slice(&last[..behind.len()]);
         }
     }
 }

@@ -16,7 +16,7 @@ mod vector;
 use std::mem::take;
 use std::ops::Range;
 
-use arrays::EIGHT;
+use arrays::{eights, rest, EIGHT};
 pub use block::{Becomes, Block, Terms, Wanted};
 pub use vector::{Holds, Vector};
 
@@ -56,6 +56,13 @@ struct Found {
     changed: bool,
     /// The version in which they were found.
     version: u64,
+}
+
+impl Found {
+    /// The block that these are of.
+    fn block<'a>(&'a self, start: usize, length: usize, contact: &'a [bool]) -> Block<'a> {
+        Block::new(start, contact, length, &self.segments)
+    }
 }
 
 impl Segments {
@@ -145,7 +152,7 @@ impl Segments {
             1,
             #[inline(always)]
             |b, total| {
-                total[0][..K].copy_from_slice(&work(Block::new(b * length, contact, length, &found[b].segments)));
+                total[0][..K].copy_from_slice(&work(found[b].block(b * length, length, contact)));
             },
         );
         self.total()
@@ -165,8 +172,7 @@ impl Segments {
             (&mut self.sums[..], 1),
             #[inline(always)]
             |b, data, total| {
-                let block = Block::new(b * length, contact, length, &found[b].segments);
-                total[0][..K].copy_from_slice(&work(block, data));
+                total[0][..K].copy_from_slice(&work(found[b].block(b * length, length, contact), data));
             },
         );
         self.total()
@@ -186,7 +192,7 @@ impl Segments {
             #[inline(always)]
             |b, data, listed| {
                 listed[0].clear();
-                work(Block::new(b * length, contact, length, &found[b].segments), data, &mut listed[0]);
+                work(found[b].block(b * length, length, contact), data, &mut listed[0]);
             },
         );
     }
@@ -215,11 +221,8 @@ impl Drop for Segments {
 #[inline(always)]
 fn find_segments(contact: &[bool], segments: &mut Vec<u32>) -> usize {
     segments.clear();
-    let (eights, rest) = pulp::as_arrays::<EIGHT, bool>(contact);
-    let mut last = [false; EIGHT];
-    last[..rest.len()].copy_from_slice(rest);
     let mut count = 0;
-    for (k, eight) in eights.iter().chain([&last]).enumerate() {
+    for (k, eight) in eights(contact).iter().chain([&rest(contact)]).enumerate() {
         let inside = u64::from_le_bytes(eight.map(u8::from));
         if inside != 0 {
             segments.push(k as u32);

@@ -3,7 +3,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::arrays::{convert, padded, parts, whole, Arrays, Eight, Segment, EIGHT};
+use super::arrays::{convert, parts, rest, whole, Arrays, Eight, Segment, EIGHT};
 use super::block::{Becomes, Block, Terms};
 use super::vector::Vector;
 use crate::operator::fft::Real;
@@ -21,14 +21,14 @@ impl<T: Real, F: Terms<A, B, K>, const A: usize, const B: usize, const K: usize>
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; K] {
-        let Sum { arrays, terms, .. } = &self;
-        let (segments, rest) = whole(self.block.segments, arrays.contact.len());
+        let Sum { block, arrays, terms } = &self;
+        let (segments, with_rest) = whole(*block);
         let mut sums = [[0.0; EIGHT]; K];
         for &k in segments {
             add(simd, arrays.at(k as usize), terms, &mut sums);
         }
-        if rest {
-            add(simd, arrays.last(), terms, &mut sums);
+        if with_rest {
+            add(simd, arrays.rest().segment(), terms, &mut sums);
         }
         sums.map(|lanes| lanes.iter().sum())
     }
@@ -63,16 +63,16 @@ impl<D: Real, T: Real, F: Becomes<A, B>, const A: usize, const B: usize> WithSim
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Changes { data, arrays, change, .. } = self;
-        let (eights, rest) = pulp::as_arrays_mut::<EIGHT, D>(data);
-        let (segments, with_rest) = whole(self.block.segments, eights.len());
+        let Changes { block, data, arrays, change } = self;
+        let (segments, with_rest) = whole(block);
+        let (eights, behind) = pulp::as_arrays_mut::<EIGHT, D>(data);
         for &k in segments {
             change_segment(simd, &mut eights[k as usize], arrays.at(k as usize), &change);
         }
         if with_rest {
-            let mut last = padded(rest);
-            change_segment(simd, &mut last, arrays.last(), &change);
-            rest.copy_from_slice(&last[..rest.len()]);
+            let mut last = rest(behind);
+            change_segment(simd, &mut last, arrays.rest().segment(), &change);
+            behind.copy_from_slice(&last[..behind.len()]);
         }
     }
 }
