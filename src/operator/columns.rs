@@ -1,5 +1,5 @@
-//! The kernel of the fused product: blocks of columns of a row-major matrix, gathered, worked on and scattered by
-//! several threads at once. The only file with unsafe code outside `ffi/`.
+//! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and memory asked for
+//! ahead. The only file with unsafe code outside `ffi/`.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -24,6 +24,23 @@ pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
+/// Bytes of a line of the caches; where it is longer, some are asked for twice.
+const LINE: usize = 64;
+
+/// Asks for so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
+/// stands there.
+#[inline(always)]
+pub fn ask_for<V>(first: *const V, count: usize) {
+    #[cfg(target_arch = "x86_64")]
+    for line in (0..count * size_of::<V>()).step_by(LINE) {
+        let line = first.cast::<i8>().wrapping_add(line);
+        // SAFETY: nothing is read, whatever the address; each x86_64 has the instruction.
+        unsafe { core::arch::x86_64::_mm_prefetch::<{ core::arch::x86_64::_MM_HINT_T1 }>(line) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (first, count, LINE);
+}
+
 /// One block of columns of a row-major matrix: no two of them overlap.
 pub struct Block<'a, T> {
     data: *mut Complex<T>,
@@ -42,17 +59,19 @@ pub struct MirroredBlock<'a, T> {
     there: Block<'a, T>,
 }
 
-/// A pointer that several threads may hold: each derives blocks of its own from it.
-struct Shared<T>(*mut Complex<T>);
+// SAFETY: a block is a mutable borrow of its columns, which no other block has.
+unsafe impl<T: Send> Send for Block<'_, T> {}
 
-// SAFETY: `for_each_block` and `for_each_mirrored_block` are the only users, and give each block of the matrix behind it to one thread
-// at a time.
-unsafe impl<T: Send> Sync for Shared<T> {}
-
-impl<T> Shared<T> {
-    fn pointer(&self) -> *mut Complex<T> {
-        self.0
-    }
+/// Blocks of `count` columns of the matrix `data`, `width` columns wide, of these columns; the last may have fewer.
+pub fn blocks_of<'a, T: Real>(
+    data: &'a mut [Complex<T>],
+    width: usize,
+    columns: Range<usize>,
+    count: usize,
+) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+    assert!(columns.end <= width);
+    let (matrix, end) = (Block::of(data, width), columns.end);
+    columns.step_by(count).map(move |first| matrix.part(first, count.min(end - first)))
 }
 
 /// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that does it.
@@ -63,14 +82,7 @@ pub fn for_each_block<T: Real, S: Send>(
     scratch: &mut [S],
     work: impl Fn(&mut Block<'_, T>, &mut S) + Sync + Send,
 ) {
-    assert_eq!(data.len() % width, 0);
-    let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
-    let blocks = width.div_ceil(BLOCK);
-    threads.for_each_with(blocks, scratch, |b, s| {
-        let (first, owner) = (b * BLOCK, PhantomData);
-        let columns = BLOCK.min(width - first);
-        work(&mut Block { data: shared.pointer(), rows, width, first, columns, owner }, s);
-    });
+    threads.share(blocks_of(data, width, 0..width, BLOCK), scratch, |mut block, s| work(&mut block, s));
 }
 
 /// Calls `work` on each block of columns of the matrix `data` with their mirror images, with the scratch of the thread that does it.
@@ -81,21 +93,14 @@ pub fn for_each_mirrored_block<T: Real, S: Send>(
     scratch: &mut [S],
     work: impl Fn(&mut MirroredBlock<'_, T>, &mut S) + Sync + Send,
 ) {
-    assert_eq!(data.len() % width, 0);
-    let (rows, shared) = (data.len() / width, Shared(data.as_mut_ptr()));
-    let half = width / 2 + 1;
-    let blocks = half.div_ceil(BLOCK);
-    threads.for_each_with(blocks, scratch, |b, s| {
+    let (matrix, half) = (Block::of(data, width), width / 2 + 1);
+    let blocks = (0..half.div_ceil(BLOCK)).map(move |b| {
         let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
         // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
         let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
-        let block = |first: usize, columns: usize| {
-            let (data, owner) = (shared.pointer(), PhantomData);
-            Block { data, rows, width, first, columns, owner }
-        };
-        let there = block(mirrored, behind - mirrored);
-        work(&mut MirroredBlock { here: block(first, end - first), there }, s);
+        MirroredBlock { here: matrix.part(first, end - first), there: matrix.part(mirrored, behind - mirrored) }
     });
+    threads.share(blocks, scratch, |mut block, s| work(&mut block, s));
 }
 
 impl<T: Real> MirroredBlock<'_, T> {
@@ -154,13 +159,24 @@ impl<T: Real> MirroredBlock<'_, T> {
     }
 }
 
-impl<T: Real> Block<'_, T> {
+impl<'a, T: Real> Block<'a, T> {
+    /// All columns of a matrix.
+    pub fn of(data: &'a mut [Complex<T>], width: usize) -> Block<'a, T> {
+        assert_eq!(data.len() % width, 0);
+        Block { rows: data.len() / width, data: data.as_mut_ptr(), width, first: 0, columns: width, owner: PhantomData }
+    }
+
+    /// Some of its columns. Those who call it give each column to one block, and do not use this one.
+    fn part(&self, first: usize, columns: usize) -> Block<'a, T> {
+        Block { first, columns, ..*self }
+    }
+
     /// The first column.
     pub fn first(&self) -> usize {
         self.first
     }
 
-    /// Number of columns: all blocks of a matrix but the last have [`BLOCK`].
+    /// Number of columns.
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -230,6 +246,15 @@ impl<T: Real> Block<'_, T> {
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 
+    /// Asks for part k of n of the block's part of a row, if there is such a row.
+    #[inline(always)]
+    pub fn ask_for(&self, row: usize, (k, n): (usize, usize)) {
+        if row < self.rows {
+            let count = self.columns / n;
+            ask_for(self.data.wrapping_add(row * self.width + self.first + k * count), count);
+        }
+    }
+
     /// The same, to be written.
     #[inline(always)]
     pub fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
@@ -238,3 +263,7 @@ impl<T: Real> Block<'_, T> {
         unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), self.columns()) }
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/columns.rs"]
+mod tests;

@@ -85,13 +85,17 @@ impl<T: Real> Convolution<T> {
     /// Transforms in y, multiplies by the spectrum and transforms back; rows `loaded` hold pressures.
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
         if let (Some((in_x, even)), Spectrum::Even(spectrum)) = (&self.by_lanes, &self.spectrum) {
-            let (bins, pieces) = product.at_a_line();
-            let nb = in_x.room();
-            return for_each_block(&mut bins[..rows.my * nb], nb, &rows.threads, pieces, |block, piece| {
+            let (bins, pieces) = rows.blocks_of_bins(in_x, product);
+            let (length, kept) = (rows.height(in_x) * BLOCK, BLOCK * even.kept_rows());
+            let blocks = bins.chunks_exact_mut(length).zip(spectrum.chunks_exact(kept)).enumerate();
+            return rows.threads.share(blocks, pieces, |(b, (block, spectrum)), piece| {
                 #[cfg(feature = "test-panics")]
                 crate::panics::at_a_block();
-                let columns = in_x.bins() - block.first();
-                even.multiply((block, columns), loaded.clone(), spectrum, &mut piece.columns);
+                // Each thread goes on from block to block as it came to this one.
+                let step = b as isize - std::mem::replace(&mut piece.block, b) as isize;
+                let next = block.as_ptr().wrapping_offset(step * length as isize);
+                let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
+                even.multiply((block, columns), next, loaded.clone(), spectrum, &mut piece.columns);
             });
         }
         let Product { bins, pieces } = product;

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and
-//! the first stage of the inverse are one pass. Rows are as [`LaneRows`](super::lane_rows::LaneRows) write them. S is kept as
+//! the first stage of the inverse are one pass. Blocks of columns are as [`LaneRows`](super::lane_rows::LaneRows) write them,
+//! `[row][part][column]`; a vector of columns is asked for while the one before is worked on. S is kept as
 //! `[block of columns][kept row][column]` ([`even_plan`](super::even_plan)).
 
 use std::ops::Range;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
-use super::columns::{parts, parts_mut, Block, BLOCK};
+use super::columns::{ask_for, parts, parts_mut, BLOCK};
 use super::even_plan::{EvenPlan, Kept};
 use super::fft::{even_plan, Complex, Real};
 use super::half_stages::{first_of_half, last_to_half};
@@ -51,59 +52,65 @@ impl<T: Real> EvenColumns<T> {
         }
     }
 
-    /// Multiplies the columns of a block, `columns` of which mean something and rows `loaded` of which hold values, in memory for them.
+    /// Multiplies the columns of a block, `columns` of which mean something and rows `loaded` of which hold values, by its spectrum, in memory
+    /// for them. `next` is where the next block stands, of as many rows.
     pub fn multiply(
         &self,
-        (block, columns): (&mut Block<'_, T>, usize),
+        (block, columns): (&mut [Complex<T>], usize),
+        next: *const Complex<T>,
         loaded: Range<usize>,
         spectrum: &[T],
         memory: &mut [Complex<T>],
     ) {
-        let (length, kept) = (self.plan.stages.length(), BLOCK * self.kept_rows());
-        assert!(block.rows() <= length && loaded.end <= block.rows() && block.columns() == BLOCK);
-        let spectrum = &spectrum[block.first() / BLOCK * kept..][..kept];
-        self.arch.dispatch(Multiply { plan: &self.plan, columns, block, loaded, spectrum, memory });
+        let rows = block.len() / BLOCK;
+        assert!(rows <= self.plan.stages.length() && loaded.end <= rows && block.len() % BLOCK == 0);
+        assert_eq!(spectrum.len(), BLOCK * self.kept_rows());
+        self.arch.dispatch(Multiply { plan: &self.plan, columns, block, next, loaded, spectrum, memory });
     }
 }
 
 /// One pass over the columns of a block.
-struct Multiply<'a, 'b, T: Real> {
+struct Multiply<'a, T: Real> {
     plan: &'a EvenPlan<T>,
     columns: usize,
-    block: &'a mut Block<'b, T>,
+    block: &'a mut [Complex<T>],
+    next: *const Complex<T>,
     loaded: Range<usize>,
     spectrum: &'a [T],
     memory: &'a mut [Complex<T>],
 }
 
-impl<T: Real> WithSimd for Multiply<'_, '_, T> {
+impl<T: Real> WithSimd for Multiply<'_, T> {
     type Output = ();
 
     /// One vector of columns after the other: what is worked on stays in the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        for vector in 0..self.columns.min(BLOCK).div_ceil(places::<T, S>()) {
-            self.one_vector(simd, vector);
+        let vectors = self.columns.min(BLOCK).div_ceil(places::<T, S>());
+        for vector in 0..vectors {
+            let next = if vector + 1 < vectors { (self.block.as_ptr(), vector + 1) } else { (self.next, 0) };
+            self.one_vector(simd, vector, next);
         }
     }
 }
 
-impl<T: Real> Multiply<'_, '_, T> {
-    /// The columns of one vector of the block.
+impl<T: Real> Multiply<'_, T> {
+    /// The columns of one vector of the block; the next is this one of a block.
     #[inline(always)]
-    fn one_vector<S: Simd>(&mut self, simd: S, vector: usize) {
+    fn one_vector<S: Simd>(&mut self, simd: S, vector: usize, (next_block, next): (*const Complex<T>, usize)) {
         let Multiply { plan, block, loaded, spectrum, memory, .. } = self;
         let (a, vectors, stages) = (Arithmetic::<T, S>::new(simd), BLOCK / places::<T, S>(), &plan.stages);
         let rows = &mut rows_of::<T, S>(memory)[..stages.length()];
         let zero = Parts { re: a.splat(T::zero()), im: a.splat(T::zero()) };
+        let (my, values) = (block.len() / BLOCK, T::vectors::<S>(parts(block)));
         let load = inlined(
             #[inline(always)]
             |row: usize| -> C<T, S> {
                 if !loaded.contains(&row) {
                     return zero;
                 }
-                let values = T::vectors::<S>(parts(block.row(row)));
-                Parts { re: values[vector], im: values[vectors + vector] }
+                let at = 2 * vectors * row + vector;
+                Parts { re: values[at], im: values[at + vectors] }
             },
         );
         if stages.first.is_of_half(loaded.end) {
@@ -116,14 +123,25 @@ impl<T: Real> Multiply<'_, '_, T> {
             #[inline(always)]
             |kept: &Kept, q: usize| spectrum[kept.row(q) * vectors + vector],
         );
-        between(a, plan, rows, factor);
-        let my = block.rows();
+        let ask = inlined(
+            #[inline(always)]
+            |part: usize, parts: usize| {
+                let (next, per_part) = (next_block.cast::<T::Vector<S>>().wrapping_add(next), my.div_ceil(parts));
+                for row in part * per_part..my.min((part + 1) * per_part) {
+                    let at = next.wrapping_add(2 * vectors * row);
+                    ask_for(at, 1);
+                    ask_for(at.wrapping_add(vectors), 1);
+                }
+            },
+        );
+        between(a, plan, rows, factor, ask);
+        let values = T::vectors_mut::<S>(parts_mut(block));
         let store = inlined(
             #[inline(always)]
             |row: usize, value: C<T, S>| {
                 if row < my {
-                    let values = T::vectors_mut::<S>(parts_mut(block.row_mut(row)));
-                    (values[vector], values[vectors + vector]) = (value.re, value.im);
+                    let at = 2 * vectors * row + vector;
+                    (values[at], values[at + vectors]) = (value.re, value.im);
                 }
             },
         );
@@ -135,13 +153,15 @@ impl<T: Real> Multiply<'_, '_, T> {
     }
 }
 
-/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`.
+/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`. `ask(part, parts)` is
+/// called for each part of what is needed next.
 #[inline(always)]
 fn between<T: Real, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &EvenPlan<T>,
     rows: &mut [Row<T, S>],
     factor: impl Fn(&Kept, usize) -> T::Vector<S>,
+    ask: impl Fn(usize, usize),
 ) {
     let stages = &plan.stages;
     let (wide, near) = stages.middle.split_at(stages.wide);
@@ -150,16 +170,27 @@ fn between<T: Real, S: Simd>(
     }
     // Then part by part, in the nearest cache.
     let blocks = stages.part / stages.last;
+    let (mut asked, asks) = (0, rows.len() / stages.part * (2 * near.len() + 1));
+    let mut ask_on = inlined(
+        #[inline(always)]
+        || {
+            ask(asked, asks);
+            asked += 1;
+        },
+    );
     for (rows, kept) in rows.chunks_exact_mut(stages.part).zip(plan.kept.chunks_exact(blocks)) {
         for stage in near {
+            ask_on();
             of_radix!(stage.radix, forward, a, stage, rows);
         }
         let factor = inlined(
             #[inline(always)]
             |b: usize, q: usize| factor(&kept[b], q),
         );
+        ask_on();
         of_radix!(stages.last, multiply, a, rows, factor);
         for stage in near.iter().rev() {
+            ask_on();
             of_radix!(stage.radix, backwards, a, stage, rows);
         }
     }

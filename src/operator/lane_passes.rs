@@ -1,9 +1,10 @@
 //! Between rows in memory and rows in the places of vectors: values, four columns at a time, and bins of real rows
-//! ([`lane_rows`](super::lane_rows) has the formulas).
+//! ([`lane_rows`](super::lane_rows) has the formulas). Blocks of bins are far from each other, so each is asked for while the one before is
+//! worked on.
 
 use pulp::Simd;
 
-use super::columns::{parts, parts_mut, BLOCK};
+use super::columns::{parts, parts_mut, Block, BLOCK};
 use super::fft::{Complex, Real};
 use super::lane_rows::RowPlan;
 use super::lanes::{places, Arithmetic, Parts};
@@ -35,12 +36,8 @@ fn to_rows<T: Real, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: 
     }
 }
 
-/// Where the four bins from 4 q on of a row stand, counted in fours: the real parts, and behind the rest of the block the imaginary ones.
-#[inline(always)]
-fn four_of_bins(q: usize) -> usize {
-    const PER_BLOCK: usize = BLOCK / FOUR;
-    q / PER_BLOCK * 2 * PER_BLOCK + q % PER_BLOCK
-}
+/// Fours of real parts, and as many of imaginary ones, that a row has in a block.
+const PER_BLOCK: usize = BLOCK / FOUR;
 
 /// z of rows, zero beyond them.
 #[inline(always)]
@@ -84,12 +81,10 @@ pub(super) fn store_bins<T: Real, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &RowPlan<T>,
     z: &[Row<T, S>],
-    bins: &mut [Complex<T>],
+    bins: &mut Block<'_, T>,
 ) {
     let (h, half, zero) = (plan.length(), a.splat(T::of(0.5)), a.splat(T::zero()));
-    let per_row = 2 * plan.room() / FOUR;
     let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
-    let fours = pulp::as_arrays_mut::<FOUR, _>(parts_mut(bins)).0;
     let value = inlined(
         #[inline(always)]
         |k: usize| {
@@ -102,28 +97,30 @@ pub(super) fn store_bins<T: Real, S: Simd>(
             Parts { re: a.add_real(mean.re, turned.re), im: a.sub_real(mean.im, turned.im) }
         },
     );
-    for q in 0..per_row / 2 {
-        let (mut re, mut im) = ([zero; FOUR], [zero; FOUR]);
-        for i in 0..FOUR {
-            let k = FOUR * q + i;
-            if k <= h {
-                Parts { re: re[i], im: im[i] } = value(k);
+    for block in 0..plan.blocks() {
+        for at in 0..PER_BLOCK {
+            bins.ask_for(block + 1, (at, PER_BLOCK));
+            let fours = pulp::as_arrays_mut::<FOUR, _>(parts_mut(bins.row_mut(block))).0;
+            let (mut re, mut im) = ([zero; FOUR], [zero; FOUR]);
+            for i in 0..FOUR {
+                let k = block * BLOCK + FOUR * at + i;
+                if k <= h {
+                    Parts { re: re[i], im: im[i] } = value(k);
+                }
             }
+            to_rows::<T, S>(
+                a.simd,
+                re,
+                #[inline(always)]
+                |r: usize, four| fours[2 * PER_BLOCK * r + at] = four,
+            );
+            to_rows::<T, S>(
+                a.simd,
+                im,
+                #[inline(always)]
+                |r: usize, four| fours[2 * PER_BLOCK * r + PER_BLOCK + at] = four,
+            );
         }
-        let at = four_of_bins(q);
-        to_rows::<T, S>(
-            a.simd,
-            re,
-            #[inline(always)]
-            |r: usize, four| fours[r * per_row + at] = four,
-        );
-        let at = at + BLOCK / FOUR;
-        to_rows::<T, S>(
-            a.simd,
-            im,
-            #[inline(always)]
-            |r: usize, four| fours[r * per_row + at] = four,
-        );
     }
 }
 
@@ -138,26 +135,24 @@ fn conjugate<T: Real>(w: Complex<T>) -> Complex<T> {
 pub(super) fn load_bins<T: Real, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &RowPlan<T>,
-    bins: &[Complex<T>],
+    bins: &Block<'_, T>,
     z: &mut [Row<T, S>],
 ) {
     let h = plan.length();
-    let per_row = 2 * plan.room() / FOUR;
     let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
-    let fours = pulp::as_arrays::<FOUR, _>(parts(bins)).0;
     let four = inlined(
         #[inline(always)]
         |q: usize| {
-            let at = four_of_bins(q);
+            let (fours, at) = (pulp::as_arrays::<FOUR, _>(parts(bins.row(q / PER_BLOCK))).0, q % PER_BLOCK);
             let re = from_rows::<T, S>(
                 a.simd,
                 #[inline(always)]
-                |r| fours[r * per_row + at],
+                |r| fours[2 * PER_BLOCK * r + at],
             );
             let im = from_rows::<T, S>(
                 a.simd,
                 #[inline(always)]
-                |r| fours[r * per_row + at + BLOCK / FOUR],
+                |r| fours[2 * PER_BLOCK * r + PER_BLOCK + at],
             );
             [[re[0], im[0]], [re[1], im[1]], [re[2], im[2]], [re[3], im[3]]]
         },
@@ -166,9 +161,11 @@ pub(super) fn load_bins<T: Real, S: Simd>(
     for k in 0..=h / 2 {
         let m = h - k;
         if k % FOUR == 0 {
+            bins.ask_for(k / BLOCK + 1, (k / FOUR % PER_BLOCK, PER_BLOCK));
             front = four(k / FOUR);
         }
         if m % FOUR == FOUR - 1 {
+            bins.ask_for((m / BLOCK).wrapping_sub(1), (m / FOUR % PER_BLOCK, PER_BLOCK));
             behind = four(m / FOUR);
         }
         let ([re, im], [mirrored_re, mirrored_im]) = (front[k % FOUR], behind[m % FOUR]);

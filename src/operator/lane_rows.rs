@@ -6,14 +6,15 @@
 //! Z_k = X_k + X*_(h-k) + i w*_k (X_k - X*_(h-k))                       backwards, unnormalised: 2 h times z
 //! ```
 //!
-//! The bins of a row stand in blocks of [`BLOCK`], first all real, then all imaginary parts, as the columns are loaded afterwards. Values of
-//! rows become vectors four columns at a time, and back.
+//! Bins stand in blocks of [`BLOCK`], `[block][row][part][bin]`, the real parts of a row before its imaginary ones: so columns, which are loaded
+//! afterwards, find all of a block in one piece, and some rows are columns of the matrix whose rows are blocks. Values of rows become vectors
+//! four columns at a time, and back.
 
 use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
-use super::columns::BLOCK;
+use super::columns::{Block, BLOCK};
 use super::fft::{row_plan, twiddle, Complex, Real};
 use super::half_stages::{backwards_to_half, forward_of_half};
 use super::lane_passes::{load, load_bins, store, store_bins};
@@ -49,9 +50,9 @@ impl<T: Real> RowPlan<T> {
         self.row_of.len() - 1
     }
 
-    /// Bins of a row in memory: whole blocks, those beyond h without meaning.
-    pub(super) fn room(&self) -> usize {
-        (self.length() + 1).next_multiple_of(BLOCK)
+    /// Blocks of bins; those beyond h have no meaning.
+    pub(super) fn blocks(&self) -> usize {
+        (self.length() + 1).div_ceil(BLOCK)
     }
 }
 
@@ -79,9 +80,9 @@ impl<T: Real> LaneRows<T> {
         self.plan.length() + 1
     }
 
-    /// Bins of a row in memory: whole blocks, those beyond n/2 without meaning.
-    pub fn room(&self) -> usize {
-        self.plan.room()
+    /// Blocks of bins; those beyond n/2 have no meaning.
+    pub fn blocks(&self) -> usize {
+        self.plan.blocks()
     }
 
     /// Rows that are transformed together.
@@ -94,17 +95,21 @@ impl<T: Real> LaneRows<T> {
         self.plan.length() * self.places + before_a_line::<T>()
     }
 
-    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins of as many rows: there are always all of these. What rows lack
-    /// of their length is zero.
-    pub fn forward(&self, rows: &[T], width: usize, bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
-        assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && rows.len() >= width);
+    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][bin]` of as many rows: there are always all
+    /// of these. What rows lack of their length is zero.
+    pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
+        assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
         self.arch.dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
     }
 
     /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
-    pub fn inverse(&self, bins: &[Complex<T>], rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
-        assert!(bins.len() == self.places * self.room() && width <= 2 * self.plan.length() && width > 0);
+    pub fn inverse(&self, bins: &Block<'_, T>, rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
+        assert!(self.fits(bins) && width <= 2 * self.plan.length() && width > 0);
         self.arch.dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
+    }
+
+    fn fits(&self, bins: &Block<'_, T>) -> bool {
+        bins.rows() == self.blocks() && bins.columns() == self.places * BLOCK
     }
 }
 
@@ -120,15 +125,15 @@ impl<T: Real> WithSimd for Places<T> {
     }
 }
 
-struct Forward<'a, T: Real> {
+struct Forward<'a, 'b, T: Real> {
     plan: &'a RowPlan<T>,
     rows: &'a [T],
     width: usize,
-    bins: &'a mut [Complex<T>],
+    bins: &'a mut Block<'b, T>,
     scratch: &'a mut [Complex<T>],
 }
 
-impl<T: Real> WithSimd for Forward<'_, T> {
+impl<T: Real> WithSimd for Forward<'_, '_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -148,15 +153,15 @@ impl<T: Real> WithSimd for Forward<'_, T> {
     }
 }
 
-struct Inverse<'a, T: Real> {
+struct Inverse<'a, 'b, T: Real> {
     plan: &'a RowPlan<T>,
-    bins: &'a [Complex<T>],
+    bins: &'a Block<'b, T>,
     rows: &'a mut [T],
     width: usize,
     scratch: &'a mut [Complex<T>],
 }
 
-impl<T: Real> WithSimd for Inverse<'_, T> {
+impl<T: Real> WithSimd for Inverse<'_, '_, T> {
     type Output = ();
 
     #[inline(always)]

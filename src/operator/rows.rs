@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::columns::{blocks_of, Block, BLOCK};
 use super::fft::{Complex, Real};
 use super::lane_rows::LaneRows;
 use super::row_transform::RowTransform;
@@ -18,6 +19,8 @@ pub(super) struct Rows<T: Real> {
 
 /// Scratch of one piece of the work.
 pub(super) struct Piece<T: Real> {
+    /// The block of columns that was worked on last.
+    pub block: usize,
     pub row: Vec<T>,
     pub columns: Vec<Complex<T>>,
     pub scratch: Vec<Complex<T>>,
@@ -25,16 +28,9 @@ pub(super) struct Piece<T: Real> {
 
 /// Memory of one product.
 pub(super) struct Product<T: Real> {
-    /// `[my][px/2 + 1]`: the rows, transformed in x. In the places of vectors, as [`LaneRows`] have them.
+    /// `[my][px/2 + 1]`: the rows, transformed in x. In the places of vectors, blocks as [`LaneRows`] have them.
     pub bins: Vec<Complex<T>>,
     pub pieces: Vec<Piece<T>>,
-}
-
-impl<T: Real> Product<T> {
-    /// The bins from a line of the cache on, and the pieces.
-    pub fn at_a_line(&mut self) -> (&mut [Complex<T>], &mut [Piece<T>]) {
-        (from_a_line(&mut self.bins), &mut self.pieces)
-    }
 }
 
 impl<T: Real> Rows<T> {
@@ -47,9 +43,24 @@ impl<T: Real> Rows<T> {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// Bins of all rows, with these transforms or without. In vectors there are always all rows that are transformed together.
+    /// Rows of a block of bins in the places of vectors: there are always all that are transformed together, whichever is the first.
+    pub fn height(&self, lanes: &LaneRows<T>) -> usize {
+        self.my + lanes.at_a_time() - 1
+    }
+
+    /// The blocks of bins in the places of vectors, from a line of the cache on, and the pieces.
+    pub fn blocks_of_bins<'a>(
+        &self,
+        lanes: &LaneRows<T>,
+        product: &'a mut Product<T>,
+    ) -> (&'a mut [Complex<T>], &'a mut [Piece<T>]) {
+        let bins = from_a_line(&mut product.bins);
+        (&mut bins[..lanes.blocks() * self.height(lanes) * BLOCK], &mut product.pieces)
+    }
+
+    /// Bins of all rows, with these transforms or without.
     pub fn room(&self, lanes: Option<&LaneRows<T>>) -> usize {
-        let in_vectors = |lanes: &LaneRows<T>| (self.my + lanes.at_a_time() - 1) * lanes.room() + before_a_line::<T>();
+        let in_vectors = |lanes: &LaneRows<T>| lanes.blocks() * self.height(lanes) * BLOCK + before_a_line::<T>();
         lanes.map_or(0, in_vectors).max(self.my * self.transform.bins())
     }
 
@@ -60,32 +71,39 @@ impl<T: Real> Rows<T> {
 
     /// Transforms the rows that hold pressures; returns which.
     pub fn forward(&self, p: &[T], product: &mut Product<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
-        let (loaded, together) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes));
-        let (bins, pieces) = match lanes {
-            Some(_) => product.at_a_line(),
-            None => (&mut product.bins[..], &mut product.pieces[..]),
-        };
-        let p = &p[loaded.start * self.mx..loaded.end * self.mx];
-        let rows = |i: usize| &p[i * together * self.mx..p.len().min((i + 1) * together * self.mx)];
+        let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
+        let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
         if let Some(lanes) = lanes {
-            let nb = lanes.room();
-            let bins = &mut bins[loaded.start * nb..][..loaded.len().next_multiple_of(together) * nb];
-            self.threads.for_each_row(bins, together * nb, pieces, |i, bins, piece| {
-                lanes.forward(rows(i), self.mx, bins, &mut piece.scratch);
+            let (bins, pieces) = self.blocks_of_bins(lanes, product);
+            let bins = self.some_rows(lanes, bins, loaded.clone());
+            self.threads.share(rows.zip(bins), pieces, |(rows, mut bins), piece| {
+                lanes.forward(rows, mx, &mut bins, &mut piece.scratch);
             });
         } else {
             let nb = self.transform.bins();
-            let bins = &mut bins[loaded.start * nb..loaded.end * nb];
-            self.threads.for_each_row(bins, together * nb, pieces, |i, bins, piece| {
-                self.transform.forward_together(rows(i), self.mx, bins, &mut piece.scratch);
+            let bins = product.bins[loaded.start * nb..loaded.end * nb].chunks_mut(together * nb);
+            self.threads.share(rows.zip(bins), &mut product.pieces, |(rows, bins), piece| {
+                self.transform.forward_together(rows, mx, bins, &mut piece.scratch);
             });
         }
         loaded
     }
 
+    /// Those rows of blocks, as many at a time as are transformed together.
+    fn some_rows<'a>(
+        &self,
+        lanes: &LaneRows<T>,
+        bins: &'a mut [Complex<T>],
+        rows: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+        let together = lanes.at_a_time();
+        let end = rows.start + rows.len().next_multiple_of(together);
+        blocks_of(bins, self.height(lanes) * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
+    }
+
     /// Transforms all rows back to u.
     pub fn back(&self, u: &mut [T], product: &mut Product<T>, lanes: Option<&LaneRows<T>>) {
-        self.back_by(u, product, lanes, |_, u, bins, piece| self.inverse(lanes, bins, u, &mut piece.scratch));
+        self.back_by(u, product, lanes, |_, u, piece, inverse| inverse(u, &mut piece.scratch));
     }
 
     /// Transforms all rows back; `write(first element, values of u, values)` takes some of them.
@@ -97,43 +115,35 @@ impl<T: Real> Rows<T> {
         write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
     ) {
         let together = self.at_a_time(lanes);
-        self.back_by(u, product, lanes, |i, u, bins, piece| {
+        self.back_by(u, product, lanes, |i, u, piece, inverse| {
             let rows = &mut piece.row[..u.len()];
-            self.inverse(lanes, bins, rows, &mut piece.scratch);
+            inverse(rows, &mut piece.scratch);
             write(i * together * self.mx, u, rows);
         });
     }
 
-    fn inverse(
-        &self,
-        lanes: Option<&LaneRows<T>>,
-        bins: &mut [Complex<T>],
-        rows: &mut [T],
-        scratch: &mut [Complex<T>],
-    ) {
-        match lanes {
-            Some(lanes) => lanes.inverse(bins, rows, self.mx, scratch),
-            None => self.transform.inverse_together(bins, rows, self.mx, scratch),
-        }
-    }
-
+    /// `work(i, values of u, piece, inverse)` for all rows that are transformed together; `inverse(rows, scratch)` transforms them.
     fn back_by(
         &self,
         u: &mut [T],
         product: &mut Product<T>,
         lanes: Option<&LaneRows<T>>,
-        work: impl Fn(usize, &mut [T], &mut [Complex<T>], &mut Piece<T>) + Sync + Send,
+        work: impl Fn(usize, &mut [T], &mut Piece<T>, &mut dyn FnMut(&mut [T], &mut [Complex<T>])) + Sync + Send,
     ) {
-        let together = self.at_a_time(lanes);
-        let (bins, pieces, nb, rows) = match lanes {
-            Some(lanes) => {
-                let (bins, pieces) = product.at_a_line();
-                (bins, pieces, lanes.room(), self.my.next_multiple_of(together))
-            }
-            None => (&mut product.bins[..], &mut product.pieces[..], self.transform.bins(), self.my),
-        };
-        let bins = &mut bins[..rows * nb];
-        self.threads.for_each_row_pair_with((u, together * self.mx), (bins, together * nb), pieces, work);
+        let (mx, together) = (self.mx, self.at_a_time(lanes));
+        let u = u.chunks_mut(together * mx).enumerate();
+        if let Some(lanes) = lanes {
+            let (bins, pieces) = self.blocks_of_bins(lanes, product);
+            let bins = self.some_rows(lanes, bins, 0..self.my);
+            return self.threads.share(u.zip(bins), pieces, |((i, u), bins), piece| {
+                work(i, u, piece, &mut |rows, scratch| lanes.inverse(&bins, rows, mx, scratch));
+            });
+        }
+        let nb = self.transform.bins();
+        let bins = product.bins[..self.my * nb].chunks_mut(together * nb);
+        self.threads.share(u.zip(bins), &mut product.pieces, |((i, u), bins), piece| {
+            work(i, u, piece, &mut |rows, scratch| self.transform.inverse_together(bins, rows, mx, scratch));
+        });
     }
 }
 

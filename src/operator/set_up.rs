@@ -28,8 +28,8 @@ pub(super) struct Even<F, G> {
 /// Memory that a spectrum is computed in. An operator whose coefficients change often keeps it.
 #[derive(Default)]
 pub struct SetUp {
-    pub(super) real: Vec<f64>,
-    complex: Vec<Complex<f64>>,
+    real: Vec<f64>,
+    pub(super) complex: Vec<Complex<f64>>,
     pub(super) pieces: Vec<Piece>,
 }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
-use super::columns::{parts, BLOCK};
+use super::columns::{blocks_of, parts, parts_mut, Block, BLOCK};
 use super::even_plan::EvenPlan;
 use super::fft::{even_plan, Complex, Real};
 use super::lane_rows::LaneRows;
@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::memory::unwritten;
 use crate::threads::Threads;
 
-/// Columns that are the real parts of a block's transforms.
+/// Columns that are the real parts of a block's transforms; and complex numbers in whose memory the real values of a row of a block stand.
 const HALF: usize = BLOCK / 2;
 
 /// The transforms of both directions, and who does them.
@@ -49,7 +49,7 @@ impl<'a> LaneTransforms<'a> {
     pub fn of_even<T: Real, F, G>(
         &self,
         even: &Even<F, G>,
-        SetUp { real: in_x, pieces, .. }: &mut SetUp,
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
         order: EvenOrder<'_, T>,
         spectrum: &mut Vec<T>,
     ) -> Result<()>
@@ -59,27 +59,34 @@ impl<'a> LaneTransforms<'a> {
     {
         let LaneTransforms { rows, plan, px, arch, threads } = self;
         let (px, py, (row_given, rows_given)) = (*px, plan.stages.length(), even.given);
-        let (nb, together) = (rows.room(), rows.at_a_time());
-        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, threads)?;
+        let together = rows.at_a_time();
+        let (nb, height) = (rows.blocks() * BLOCK, rows_given.next_multiple_of(together) * HALF);
+        let nan = Complex::new(f64::NAN, f64::NAN);
+        unwritten(in_x, rows.blocks() * height, nan, COEFFICIENTS, threads)?;
         pieces.resize_with(threads.count(), Default::default);
         let column = (together * nb).max(HALF * py + before_a_line::<f64>());
         pieces.iter_mut().try_for_each(|piece| piece.fit((together * px, column, rows.scratch_length())))?;
-        threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
-            let count = out.len() / nb;
+        let groups = blocks_of(in_x, height, 0..height, together * HALF).enumerate();
+        threads.share(groups, pieces, |(k, mut out), piece| {
+            let count = together.min(rows_given - k * together);
             for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {
                 fill_even((k * together + i) as i64, row_given, row, &even.fill);
             }
             let bins = &mut piece.column[..together * nb];
-            rows.forward(&piece.row[..count * px], px, bins, &mut piece.rows);
+            rows.forward(&piece.row[..count * px], px, &mut Block::of(bins, together * BLOCK), &mut piece.rows);
             // The real parts of blocks.
-            for (out, bins) in out.chunks_exact_mut(BLOCK).zip(parts(bins).chunks_exact(2 * BLOCK)) {
-                out.copy_from_slice(&bins[..BLOCK]);
+            for (b, block) in parts(bins).chunks_exact(together * 2 * BLOCK).enumerate() {
+                out.ask_for(b + 1, (0, 1));
+                let of_rows = block.chunks_exact(2 * BLOCK);
+                for (out, of_row) in parts_mut(out.row_mut(b)).chunks_exact_mut(BLOCK).zip(of_rows) {
+                    out.copy_from_slice(&of_row[..BLOCK]);
+                }
             }
         });
         let scale = 1.0 / (px as f64 * py as f64);
         unwritten(spectrum, order.len(), T::nan(), SPECTRUM, threads)?;
         threads.for_each_row(spectrum, order.block(), pieces, |k, out, piece| {
-            let (in_x, memory) = ((&in_x[k * BLOCK..], rows_given, nb), &mut piece.column[..]);
+            let (in_x, memory) = ((parts(&in_x[k * height..][..height]), rows_given), &mut piece.column[..]);
             let (columns, value) = (rows.bins() - k * BLOCK, |value: f64| scale * (even.finish)(value));
             arch.dispatch(SpectrumOfBlock { plan, in_x, columns, value, out, memory });
         });
@@ -90,8 +97,8 @@ impl<'a> LaneTransforms<'a> {
 /// The spectrum of one block of columns, in double precision, kept in another.
 struct SpectrumOfBlock<'a, T, G> {
     plan: &'a EvenPlan<f64>,
-    /// Coefficients transformed in x, of this block on; how many rows, at offsets ky >= 0; and values from one row to the next.
-    in_x: (&'a [f64], usize, usize),
+    /// Coefficients transformed in x, `[ky][column]` at offsets ky >= 0; and how many rows there are.
+    in_x: (&'a [f64], usize),
     /// Columns that mean something.
     columns: usize,
     /// What is kept of each value of these.
@@ -106,7 +113,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, T, G> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let SpectrumOfBlock { plan, in_x: (in_x, given, width), columns, value, out, memory } = self;
+        let SpectrumOfBlock { plan, in_x: (in_x, given), columns, value, out, memory } = self;
         let (a, n, stages) = (Arithmetic::<f64, S>::new(simd), places::<f64, S>(), &plan.stages);
         let length = stages.length();
         let rows = &mut rows_of::<f64, S>(memory)[..length];
@@ -120,7 +127,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SpectrumOfBlock<'_, T, G> {
                     if ky >= given {
                         return zero;
                     }
-                    let values = f64::vectors::<S>(&in_x[ky * width..][..BLOCK]);
+                    let values = f64::vectors::<S>(&in_x[ky * BLOCK..][..BLOCK]);
                     Parts { re: values[column / n], im: values[(column + HALF) / n] }
                 },
             );

@@ -37,7 +37,7 @@ impl<T: Real> Workspace<T> {
         let scratch = most(Operator::scratch_room);
         let piece = |_| {
             let (columns, scratch) = (blank(columns, nan, WORKSPACE)?, blank(scratch, nan, WORKSPACE)?);
-            Ok(Piece { row: zeros(row, WORKSPACE)?, columns, scratch })
+            Ok(Piece { block: 0, row: zeros(row, WORKSPACE)?, columns, scratch })
         };
         let memory = |n| zeros(n, WORKSPACE);
         let (bins, mut product_bins) = (most(Operator::bins), Vec::new());

@@ -65,14 +65,11 @@ impl Threads {
         );
     }
 
-    /// Calls `work(k, scratch)` for each `k < count`, with the scratch of the thread that does it.
-    pub fn for_each_with<S: Send>(&self, count: usize, scratch: &mut [S], work: impl Fn(usize, &mut S) + Sync + Send) {
-        self.share(0..count, scratch, work);
-    }
-
-    /// The threads take pieces until there are none, each with scratch of its own. The caller begins at once, at the front, and does not wait for
+    /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of the thread that does it.
+    ///
+    /// The threads take pieces until there are none. The caller begins at once, at the front, and does not wait for
     /// others to wake; they begin at the back: so a thread finds in its cache much of what it worked on in the pass before.
-    fn share<P: Send, S: Send>(
+    pub fn share<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
         scratch: &mut [S],

@@ -1,10 +1,8 @@
 //! Columns in the places of vectors, by another implementation's transforms, rustfft's.
 
-use super::super::columns::for_each_block;
 use super::super::fft::ColumnTransform;
 use super::super::stages::before_a_line;
 use super::*;
-use crate::threads::Threads;
 
 /// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
 /// largest value.
@@ -32,17 +30,17 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     for (b, block) in spectrum.chunks_exact_mut(kept).enumerate() {
         even.write(block, width - b * BLOCK, |column, bin| s(b * BLOCK + column, bin));
     }
-    let place = |y: usize, x: usize| y * 2 * wide + x / BLOCK * 2 * BLOCK + x % BLOCK;
+    let place = |y: usize, x: usize| (x / BLOCK * my + y) * 2 * BLOCK + x % BLOCK;
     let mut blocks = vec![Complex::new(T::nan(), T::nan()); my * wide];
     for (i, z) in matrix.iter().enumerate() {
         let at = place(i / width, i % width);
         (parts_mut(&mut blocks)[at], parts_mut(&mut blocks)[at + BLOCK]) = (z.re, z.im);
     }
     let memory = vec![Complex::new(T::nan(), T::nan()); BLOCK * length + before_a_line::<T>()];
-    for_each_block(&mut blocks, wide, &Threads::One, &mut [()], |block, ()| {
-        let columns = width - block.first();
-        even.multiply((block, columns), loaded.clone(), &spectrum, &mut memory.clone());
-    });
+    for (b, (block, spectrum)) in blocks.chunks_exact_mut(my * BLOCK).zip(spectrum.chunks_exact(kept)).enumerate() {
+        let next = block.as_ptr();
+        even.multiply((block, width - b * BLOCK), next, loaded.clone(), spectrum, &mut memory.clone());
+    }
     let (mut difference, mut largest) = (0.0, 0.0);
     for y in 0..my {
         for (x, column) in expected.iter().enumerate() {
@@ -94,10 +92,9 @@ fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
     let (mut spectrum, my) = (vec![T::nan(); BLOCK * even.kept_rows()], length / 2);
     even.write(&mut spectrum, BLOCK, |column, bin| value(column * 31 + bin * 17));
     let mut block: Vec<_> = (0..my * BLOCK).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
-    let memory = vec![Complex::default(); BLOCK * length + before_a_line::<T>()];
-    for_each_block(&mut block, BLOCK, &Threads::One, &mut [()], |block, ()| {
-        even.multiply((block, BLOCK), 0..my, &spectrum, &mut memory.clone());
-    });
+    let mut memory = vec![Complex::default(); BLOCK * length + before_a_line::<T>()];
+    let next = block.as_ptr();
+    even.multiply((&mut block, BLOCK), next, 0..my, &spectrum, &mut memory);
     block
 }
 

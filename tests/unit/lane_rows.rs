@@ -1,27 +1,28 @@
 //! Rows in the places of vectors, by another implementation's transforms, realfft's.
 
-use super::super::columns::parts;
+use super::super::columns::{blocks_of, parts};
 use super::*;
 use realfft::RealFftPlanner;
 
 /// The largest error of all bins of some rows, and of the rows that come back, relative to the largest value.
 fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
     let lanes = LaneRows::<T>::new(n).expect("a plan");
-    let (together, nb) = (lanes.at_a_time(), lanes.room());
+    let together = lanes.at_a_time();
     let count = together - missing.min(together - 1);
     let rows: Vec<T> = (0..count * width).map(|i| T::of(((i * 7919 + n) % 1013) as f64 / 7.0 - 60.0)).collect();
-    let mut bins = vec![Complex::new(T::nan(), T::nan()); together * nb];
+    let mut bins = vec![Complex::new(T::nan(), T::nan()); lanes.blocks() * together * BLOCK];
+    let mut bins = Block::of(&mut bins, together * BLOCK);
     let mut scratch = vec![Complex::new(T::nan(), T::nan()); lanes.scratch_length()];
     lanes.forward(&rows, width, &mut bins, &mut scratch);
     let mut planner = RealFftPlanner::<f64>::new();
     let (mut difference, mut largest) = (0.0, 0.0);
-    for (row, bins) in rows.chunks_exact(width).zip(bins.chunks_exact(nb)) {
+    for (r, row) in rows.chunks_exact(width).enumerate() {
         let mut padded: Vec<f64> = row.iter().map(|x| x.to_double()).collect();
         padded.resize(n, 0.0);
         let mut expected = vec![Complex::default(); n / 2 + 1];
         planner.plan_fft_forward(n).process(&mut padded, &mut expected).unwrap();
         for (k, expected) in expected.iter().enumerate() {
-            let block = &parts(bins)[k / BLOCK * 2 * BLOCK..][..2 * BLOCK];
+            let block = &parts(bins.row(k / BLOCK))[r * 2 * BLOCK..][..2 * BLOCK];
             let (re, im) = (block[k % BLOCK].to_double(), block[BLOCK + k % BLOCK].to_double());
             let error = (re - expected.re).hypot(im - expected.im);
             assert!(error.is_finite(), "{n}, {width} values, bin {k}");
@@ -67,15 +68,16 @@ fn rows_in_the_places_of_vectors_have_the_bins_of_each() {
 fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Vec<T>) {
     let lanes = LaneRows::<T>::on(arch, n).expect("a plan");
     let rows: Vec<T> = (0..16 * width).map(|i| T::of(((i * 7919 + n) % 1013) as f64 / 7.0 - 60.0)).collect();
-    let (mut bins, mut back) = (vec![Complex::default(); 16 * lanes.room()], vec![T::nan(); 16 * width]);
+    let (mut bins, mut back) = (vec![Complex::default(); 16 * lanes.blocks() * BLOCK], vec![T::nan(); 16 * width]);
     let mut scratch = vec![Complex::default(); lanes.scratch_length()];
-    let (together, room) = (lanes.at_a_time(), lanes.room());
-    for (rows, bins) in rows.chunks_exact(together * width).zip(bins.chunks_exact_mut(together * room)) {
-        lanes.forward(rows, width, bins, &mut scratch);
-    }
-    for (rows, bins) in back.chunks_exact_mut(together * width).zip(bins.chunks_exact(together * room)) {
-        lanes.inverse(bins, rows, width, &mut scratch);
-    }
+    let together = lanes.at_a_time();
+    let of_all = |bins: &mut Vec<Complex<T>>, work: &mut dyn FnMut(usize, &mut Block<'_, T>)| {
+        let blocks = blocks_of(bins, 16 * BLOCK, 0..16 * BLOCK, together * BLOCK);
+        blocks.enumerate().for_each(|(k, mut some)| work(k * together * width, &mut some));
+    };
+    let count = together * width;
+    of_all(&mut bins, &mut |at, bins| lanes.forward(&rows[at..][..count], width, bins, &mut scratch));
+    of_all(&mut bins, &mut |at, bins| lanes.inverse(bins, &mut back[at..][..count], width, &mut scratch));
     (bins, back)
 }
 
