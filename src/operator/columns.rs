@@ -1,5 +1,5 @@
 //! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and memory asked for
-//! ahead. The only file with unsafe code outside `ffi/`.
+//! ahead. Outside of `ffi/` only this file and `memory/pages.rs` have unsafe code.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -28,7 +28,7 @@ pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
 const LINE: usize = 64;
 
 /// Asks for so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
-/// stands there.
+/// stands there; of values that do not begin at a line the last line is left out.
 #[inline(always)]
 pub fn ask_for<V>(first: *const V, count: usize) {
     #[cfg(target_arch = "x86_64")]
@@ -62,7 +62,7 @@ pub struct MirroredBlock<'a, T> {
 // SAFETY: a block is a mutable borrow of its columns, which no other block has.
 unsafe impl<T: Send> Send for Block<'_, T> {}
 
-/// Blocks of `count` columns of the matrix `data`, `width` columns wide, of these columns; the last may have fewer.
+/// The columns `columns` of the matrix `data`, `width` columns wide, in blocks of `count`; the last may have fewer.
 pub fn blocks_of<'a, T: Real>(
     data: &'a mut [Complex<T>],
     width: usize,
@@ -168,6 +168,7 @@ impl<'a, T: Real> Block<'a, T> {
 
     /// Some of its columns. Those who call it give each column to one block, and do not use this one.
     fn part(&self, first: usize, columns: usize) -> Block<'a, T> {
+        assert!(first >= self.first && first + columns <= self.first + self.columns);
         Block { first, columns, ..*self }
     }
 
@@ -212,10 +213,10 @@ impl<'a, T: Real> Block<'a, T> {
         }
     }
 
-    /// Copies the columns in `from`, each `length` long, to rows `rows`.
+    /// Copies the columns in `from`, at most [`BLOCK`], each `length` long, to rows `rows`.
     pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>]) {
         let columns = self.columns();
-        assert!(rows.end <= self.rows.min(length) && from.len() >= columns * length);
+        assert!(columns <= BLOCK && rows.end <= self.rows.min(length) && from.len() >= columns * length);
         // TILE rows at a time: the reads of each column are neighbours.
         let mut row = rows.start;
         let mut tile = [[Complex::default(); BLOCK]; TILE];

@@ -37,6 +37,18 @@ pub(super) fn room_of_column(length: usize) -> usize {
     }
 }
 
+/// The block that a thread takes after block b, one of so many, as it came from the one before; at first the one beside b away from the end.
+fn next_block(before: usize, b: usize, count: usize) -> usize {
+    let on = (2 * b).wrapping_sub(before);
+    if on != b && on < count {
+        on
+    } else if 2 * b < count {
+        b + 1
+    } else {
+        b - 1
+    }
+}
+
 /// Transforms in y, and the spectrum.
 pub(super) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
@@ -87,13 +99,13 @@ impl<T: Real> Convolution<T> {
         if let (Some((in_x, even)), Spectrum::Even(spectrum)) = (&self.by_lanes, &self.spectrum) {
             let (bins, pieces) = rows.blocks_of_bins(in_x, product);
             let (length, kept) = (rows.height(in_x) * BLOCK, BLOCK * even.kept_rows());
+            assert_eq!(spectrum.len(), in_x.blocks() * kept, "a spectrum that was not set up");
             let blocks = bins.chunks_exact_mut(length).zip(spectrum.chunks_exact(kept)).enumerate();
             return rows.threads.share(blocks, pieces, |(b, (block, spectrum)), piece| {
                 #[cfg(feature = "test-panics")]
                 crate::panics::at_a_block();
-                // Each thread goes on from block to block as it came to this one.
-                let step = b as isize - std::mem::replace(&mut piece.block, b) as isize;
-                let next = block.as_ptr().wrapping_offset(step * length as isize);
+                let next = next_block(std::mem::replace(&mut piece.block, b), b, in_x.blocks());
+                let next = block.as_ptr().wrapping_add(next.wrapping_sub(b).wrapping_mul(length));
                 let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
                 even.multiply((block, columns), next, loaded.clone(), spectrum, &mut piece.columns);
             });

@@ -95,7 +95,7 @@ impl<T: Real> WithSimd for Multiply<'_, T> {
 }
 
 impl<T: Real> Multiply<'_, T> {
-    /// The columns of one vector of the block; the next is this one of a block.
+    /// The columns of one vector of the block; then comes vector `next` of `next_block`.
     #[inline(always)]
     fn one_vector<S: Simd>(&mut self, simd: S, vector: usize, (next_block, next): (*const Complex<T>, usize)) {
         let Multiply { plan, block, loaded, spectrum, memory, .. } = self;
@@ -125,10 +125,10 @@ impl<T: Real> Multiply<'_, T> {
         );
         let ask = inlined(
             #[inline(always)]
-            |part: usize, parts: usize| {
-                let (next, per_part) = (next_block.cast::<T::Vector<S>>().wrapping_add(next), my.div_ceil(parts));
+            |part: usize, count: usize| {
+                let (first, per_part) = (next_block.cast::<T::Vector<S>>().wrapping_add(next), my.div_ceil(count));
                 for row in part * per_part..my.min((part + 1) * per_part) {
-                    let at = next.wrapping_add(2 * vectors * row);
+                    let at = first.wrapping_add(2 * vectors * row);
                     ask_for(at, 1);
                     ask_for(at.wrapping_add(vectors), 1);
                 }
@@ -153,7 +153,7 @@ impl<T: Real> Multiply<'_, T> {
     }
 }
 
-/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`. `ask(part, parts)` is
+/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`. `ask(part, count)` is
 /// called for each part of what is needed next.
 #[inline(always)]
 fn between<T: Real, S: Simd>(

@@ -95,8 +95,8 @@ impl<T: Real> LaneRows<T> {
         self.plan.length() * self.places + before_a_line::<T>()
     }
 
-    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][bin]` of as many rows: there are always all
-    /// of these. What rows lack of their length is zero.
+    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][part][bin]`, which have room for all of
+    /// these even where there are fewer rows. What rows lack of their length is zero.
     pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
         assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
         self.arch.dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });

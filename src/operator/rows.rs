@@ -17,7 +17,7 @@ pub(super) struct Rows<T: Real> {
     pub threads: Threads,
 }
 
-/// Scratch of one piece of the work.
+/// What one thread works with.
 pub(super) struct Piece<T: Real> {
     /// The block of columns that was worked on last.
     pub block: usize,
@@ -43,7 +43,8 @@ impl<T: Real> Rows<T> {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// Rows of a block of bins in the places of vectors: there are always all that are transformed together, whichever is the first.
+    /// Rows that a block of bins has room for in the places of vectors: a group of rows that are transformed together may begin at the last row of
+    /// the grid, and is always whole.
     pub fn height(&self, lanes: &LaneRows<T>) -> usize {
         self.my + lanes.at_a_time() - 1
     }
@@ -72,8 +73,8 @@ impl<T: Real> Rows<T> {
     /// Transforms the rows that hold pressures; returns which.
     pub fn forward(&self, p: &[T], product: &mut Product<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
         let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
-        let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
         if let Some(lanes) = lanes {
+            let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
             let (bins, pieces) = self.blocks_of_bins(lanes, product);
             let bins = self.some_rows(lanes, bins, loaded.clone());
             self.threads.share(rows.zip(bins), pieces, |(rows, mut bins), piece| {
@@ -81,15 +82,16 @@ impl<T: Real> Rows<T> {
             });
         } else {
             let nb = self.transform.bins();
-            let bins = product.bins[loaded.start * nb..loaded.end * nb].chunks_mut(together * nb);
-            self.threads.share(rows.zip(bins), &mut product.pieces, |(rows, bins), piece| {
+            let bins = &mut product.bins[loaded.start * nb..loaded.end * nb];
+            self.threads.for_each_row(bins, together * nb, &mut product.pieces, |i, bins, piece| {
+                let rows = &p[(loaded.start + i * together) * mx..][..bins.len() / nb * mx];
                 self.transform.forward_together(rows, mx, bins, &mut piece.scratch);
             });
         }
         loaded
     }
 
-    /// Those rows of blocks, as many at a time as are transformed together.
+    /// Those rows of blocks, as many at a time as are transformed together: the last of them may lie beyond `rows`.
     fn some_rows<'a>(
         &self,
         lanes: &LaneRows<T>,
@@ -131,8 +133,8 @@ impl<T: Real> Rows<T> {
         work: impl Fn(usize, &mut [T], &mut Piece<T>, &mut dyn FnMut(&mut [T], &mut [Complex<T>])) + Sync + Send,
     ) {
         let (mx, together) = (self.mx, self.at_a_time(lanes));
-        let u = u.chunks_mut(together * mx).enumerate();
         if let Some(lanes) = lanes {
+            let u = u.chunks_mut(together * mx).enumerate();
             let (bins, pieces) = self.blocks_of_bins(lanes, product);
             let bins = self.some_rows(lanes, bins, 0..self.my);
             return self.threads.share(u.zip(bins), pieces, |((i, u), bins), piece| {
@@ -140,8 +142,8 @@ impl<T: Real> Rows<T> {
             });
         }
         let nb = self.transform.bins();
-        let bins = product.bins[..self.my * nb].chunks_mut(together * nb);
-        self.threads.share(u.zip(bins), &mut product.pieces, |((i, u), bins), piece| {
+        let bins = (&mut product.bins[..self.my * nb], together * nb);
+        self.threads.for_each_row_pair_with((u, together * mx), bins, &mut product.pieces, |i, u, bins, piece| {
             work(i, u, piece, &mut |rows, scratch| self.transform.inverse_together(bins, rows, mx, scratch));
         });
     }

@@ -21,8 +21,10 @@ use crate::error::Result;
 use crate::memory::unwritten;
 use crate::threads::Threads;
 
-/// Columns that are the real parts of a block's transforms; and complex numbers in whose memory the real values of a row of a block stand.
+/// Columns that are the real parts of a block's transforms.
 const HALF: usize = BLOCK / 2;
+/// Complex numbers in whose memory the real values of a row of a block stand.
+const PLACE: usize = BLOCK / 2;
 
 /// The transforms of both directions, and who does them.
 pub(super) struct LaneTransforms<'a> {
@@ -60,13 +62,13 @@ impl<'a> LaneTransforms<'a> {
         let LaneTransforms { rows, plan, px, arch, threads } = self;
         let (px, py, (row_given, rows_given)) = (*px, plan.stages.length(), even.given);
         let together = rows.at_a_time();
-        let (nb, height) = (rows.blocks() * BLOCK, rows_given.next_multiple_of(together) * HALF);
+        let (nb, height) = (rows.blocks() * BLOCK, rows_given.next_multiple_of(together) * PLACE);
         let nan = Complex::new(f64::NAN, f64::NAN);
         unwritten(in_x, rows.blocks() * height, nan, COEFFICIENTS, threads)?;
         pieces.resize_with(threads.count(), Default::default);
         let column = (together * nb).max(HALF * py + before_a_line::<f64>());
         pieces.iter_mut().try_for_each(|piece| piece.fit((together * px, column, rows.scratch_length())))?;
-        let groups = blocks_of(in_x, height, 0..height, together * HALF).enumerate();
+        let groups = blocks_of(in_x, height, 0..height, together * PLACE).enumerate();
         threads.share(groups, pieces, |(k, mut out), piece| {
             let count = together.min(rows_given - k * together);
             for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {

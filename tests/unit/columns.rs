@@ -53,7 +53,7 @@ fn all_columns_are_each_in_one_mirrored_block() {
 fn what_is_asked_for_need_not_be_there() {
     let mut matrix = zeros(32);
     ask_for(std::ptr::null::<f64>(), 100);
-    ask_for(matrix.as_ptr().wrapping_add(1 << 40), 7);
+    ask_for(matrix.as_ptr().wrapping_add(usize::MAX / 64), 7);
     let block = Block::of(&mut matrix, 32);
     for row in [0, ROWS - 1, ROWS, usize::MAX] {
         block.ask_for(row, (3, 4));

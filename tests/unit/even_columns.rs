@@ -24,7 +24,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
         expected.push(column);
     }
 
-    // In blocks, first all real, then all imaginary parts; columns beyond the last have none of the result.
+    // As [block][row][part][column]; columns beyond the last have none of the result.
     let (wide, kept) = (width.next_multiple_of(BLOCK), BLOCK * even.kept_rows());
     let mut spectrum = vec![T::nan(); wide / BLOCK * kept];
     for (b, block) in spectrum.chunks_exact_mut(kept).enumerate() {
