@@ -1,16 +1,17 @@
-//! The passes of the extension over some rows of the grid, with sums over boxes of elements.
+//! The passes of the extension over some rows of cells, with sums over boxes of cells. A cell is S x S elements.
 //!
 //! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
 //! C.
 
 use std::ops::Range;
 
+use super::cells::{for_its_elements, sums_of_cells};
 use crate::operator::fft::Real;
 
-/// Elements of a box in each direction.
+/// Cells of a box in each direction.
 pub(super) const BOX: usize = 2 * REACH + 1;
 pub(super) const REACH: usize = 4;
-/// Elements of a row that are worked on together, or not at all where they are far from the rim of C.
+/// Cells of a row that are worked on together, or not at all where they are far from the rim of C.
 pub(super) const CHUNK: usize = 64;
 /// Rows that are worked on together: they share much of their boxes.
 pub(super) const ROWS: usize = 4;
@@ -20,33 +21,40 @@ const TOGETHER: usize = 2;
 /// Columns of a chunk's boxes.
 const LENGTH: usize = CHUNK + BOX - 1;
 
-/// The counts of rows from y on.
-pub(super) struct Count<'a> {
-    pub(super) contact: &'a [bool],
+/// The counts of rows of cells from y on, from those of the cells themselves.
+pub(super) struct Count<'a, A, F, const S: usize> {
+    pub(super) inside: &'a [A],
+    /// How many elements of a cell are in C: of a type that has room for those of a box.
+    pub(super) count: F,
     pub(super) mx: usize,
     pub(super) y: usize,
-    pub(super) near: &'a mut [u8],
+    pub(super) near: &'a mut [u16],
     pub(super) rim: &'a mut [bool],
 }
 
-impl pulp::NullaryFnOnce for Count<'_> {
+impl<A, B, F, const S: usize> pulp::NullaryFnOnce for Count<'_, A, F, S>
+where
+    A: Copy,
+    B: Copy + Default + Into<u16> + std::ops::Add<Output = B>,
+    F: Fn(A) -> B,
+{
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Count { contact, mx, y, near, rim } = self;
-        let (rows, chunks, here) = (near.len() / mx, mx.div_ceil(CHUNK), &contact[y * mx..]);
+        let Count { inside, count, mx, y, near, rim } = self;
+        let (rows, chunks, here) = (near.len() / mx, mx.div_ceil(CHUNK), &inside[y * mx..]);
         box_sums(
-            (contact, mx),
+            (inside, mx),
             y..y + rows,
-            u8::from,
+            &count,
             #[inline(always)]
             |_, _| true,
             #[inline(always)]
-            |row, k, elements, counts| {
+            |row, k, cells, counts| {
                 let mut any = 0;
-                for ((near, count), inside) in near[elements.clone()].iter_mut().zip(counts).zip(&here[elements]) {
-                    *near = if *inside { 0 } else { *count };
+                for ((near, sum), inside) in near[cells.clone()].iter_mut().zip(counts).zip(&here[cells]) {
+                    *near = if usize::from(count(*inside).into()) == S * S { 0 } else { (*sum).into() };
                     any |= *near;
                 }
                 rim[row * chunks + k] = any != 0;
@@ -55,89 +63,119 @@ impl pulp::NullaryFnOnce for Count<'_> {
     }
 }
 
-/// Rows of E z from y on.
-pub(super) struct Extend<'a, T> {
-    pub(super) z: &'a [T],
-    pub(super) mx: usize,
+/// Rows of E z, from row y of cells on.
+pub(super) struct Extend<'a, T, const S: usize> {
+    /// Of whole cells.
+    pub(super) sums: &'a [T],
+    /// Elements of a row, and cells.
+    pub(super) mx: (usize, usize),
     pub(super) y: usize,
-    pub(super) near: &'a [u8],
+    pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
     pub(super) absent: T,
+    /// z and C of these rows of elements.
+    pub(super) z: &'a [T],
+    pub(super) contact: &'a [bool],
     pub(super) values: &'a mut [T],
 }
 
-impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
+impl<T: Real, const S: usize> pulp::NullaryFnOnce for Extend<'_, T, S> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Extend { z, mx, y, near, rim, absent, values } = self;
-        let (rows, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
-        values.copy_from_slice(&z[y * mx..][..rows * mx]);
+        let Extend { sums, mx: (mx, cells), y, near, rim, absent, z, contact, values } = self;
+        let (rows, chunks) = (values.len().div_ceil(mx * S), cells.div_ceil(CHUNK));
+        values.copy_from_slice(z);
         box_sums(
-            (z, mx),
+            (sums, cells),
             y..y + rows,
-            |z| z,
+            |sum| sum,
             #[inline(always)]
             |row, k| rim[row * chunks + k],
             #[inline(always)]
-            |_, _, elements, sums| {
-                for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
-                    *value += share(*near, absent) * *sum;
+            |row, k, cells, sums| {
+                let mut outside = [T::zero(); CHUNK];
+                for ((outside, near), sum) in outside.iter_mut().zip(&near[cells]).zip(sums) {
+                    *outside = share(*near, absent) * *sum;
                 }
+                for_its_elements::<_, S>(&outside, (row, k), (values.len(), mx), |elements, outside| {
+                    if S == 1 {
+                        return values[elements]
+                            .iter_mut()
+                            .zip(outside)
+                            .for_each(|(value, outside)| *value += *outside);
+                    }
+                    let inside = &contact[elements.clone()];
+                    for ((value, inside), outside) in values[elements].iter_mut().zip(inside).zip(outside) {
+                        *value = if *inside { *value } else { *outside };
+                    }
+                });
             },
         );
     }
 }
 
-/// What elements outside pass on to each of C that is near them.
-pub(super) struct Share<'a, T> {
+/// What the elements outside in a row of cells pass on to each of C that is near them.
+pub(super) struct Share<'a, T, const S: usize> {
+    /// Of this row of cells.
     pub(super) values: &'a [T],
-    pub(super) near: &'a [u8],
+    pub(super) contact: &'a [bool],
+    pub(super) mx: usize,
+    pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
     pub(super) absent: T,
     pub(super) shares: &'a mut [T],
 }
 
-impl<T: Real> pulp::NullaryFnOnce for Share<'_, T> {
+impl<T: Real, const S: usize> pulp::NullaryFnOnce for Share<'_, T, S> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Share { values, near, rim, absent, shares } = self;
-        let parts = shares.chunks_mut(CHUNK).zip(values.chunks(CHUNK)).zip(near.chunks(CHUNK));
-        for (((shares, values), near), rim) in parts.zip(rim) {
-            if *rim {
+        let Share { values, contact, mx, near, rim, absent, shares } = self;
+        for (k, ((shares, near), rim)) in shares.chunks_mut(CHUNK).zip(near.chunks(CHUNK)).zip(rim).enumerate() {
+            if !*rim {
+                shares.fill(T::zero());
+                continue;
+            }
+            if S == 1 {
+                let values = &values[k * CHUNK..][..shares.len()];
                 for ((z, value), near) in shares.iter_mut().zip(values).zip(near) {
                     *z = share(*near, absent) * *value;
                 }
-            } else {
-                shares.fill(T::zero());
+                continue;
+            }
+            let outside = |value, inside| if inside { T::zero() } else { value };
+            let sums = sums_of_cells::<_, _, S>((values, contact, mx), k, outside);
+            for ((z, near), sum) in shares.iter_mut().zip(near).zip(&sums) {
+                *z = share(*near, absent) * *sum;
             }
         }
     }
 }
 
-/// What elements of C in rows from y on get.
-pub(super) struct Collect<'a, T> {
+/// What elements of C get, from row y of cells on.
+pub(super) struct Collect<'a, T, const S: usize> {
     pub(super) shares: &'a [T],
-    pub(super) mx: usize,
+    /// Elements of a row, and cells.
+    pub(super) mx: (usize, usize),
     pub(super) y: usize,
     pub(super) rim: &'a [bool],
     pub(super) values: &'a mut [T],
 }
 
-impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
+impl<T: Real, const S: usize> pulp::NullaryFnOnce for Collect<'_, T, S> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Collect { shares, mx, y, rim, values } = self;
-        let (count, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
+        let Collect { shares, mx: (mx, cells), y, rim, values } = self;
+        let (count, chunks) = (values.len().div_ceil(mx * S), cells.div_ceil(CHUNK));
         // Of all rows together: nothing is collected from chunks that have nothing to give.
         let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + count + REACH) * chunks);
         box_sums(
-            (shares, mx),
+            (shares, cells),
             y..y + count,
             |share| share,
             #[inline(always)]
@@ -146,15 +184,19 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
                 rim[rows.clone()].chunks_exact(chunks).any(|rim| rim[near.clone()].contains(&true))
             },
             #[inline(always)]
-            |_, _, elements, sums| values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum),
+            |row, k, _, sums| {
+                for_its_elements::<_, S>(sums, (row, k), (values.len(), mx), |elements, sums| {
+                    values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += *sum);
+                });
+            },
         );
     }
 }
 
 /// `1/(n + c)`; 0 where n is.
 #[inline(always)]
-fn share<T: Real>(near: u8, absent: T) -> T {
-    let part = T::one() / (T::from_u8(near).unwrap_or_default() + absent);
+fn share<T: Real>(near: u16, absent: T) -> T {
+    let part = T::one() / (T::from_u16(near).unwrap_or_default() + absent);
     if near > 0 {
         part
     } else {
@@ -162,9 +204,9 @@ fn share<T: Real>(near: u8, absent: T) -> T {
     }
 }
 
-/// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
-/// `wanted(row, chunk)`; `value` makes them of what the grid holds. Calls `take(row, chunk, its elements among those of the rows, sums)`, rows
-/// counted from the first; sums beyond the elements have no meaning.
+/// Sums over the boxes around the cells of some rows of a grid, up to [`ROWS`], `mx` cells in each, for those chunks that are
+/// `wanted(row, chunk)`; `value` makes them of what the grid holds. Calls `take(row, chunk, its cells among those of the rows, sums)`, rows
+/// counted from the first; sums beyond the cells have no meaning.
 #[inline(always)]
 fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
     (from, mx): (&[A], usize),
@@ -190,8 +232,8 @@ fn box_sums<A: Copy, B: Copy + Default + std::ops::Add<Output = B>>(
         }
         for (&k, threes) in which[..some].iter().zip(&threes) {
             for row in (0..count).filter(|row| wanted(*row, k)) {
-                let elements = row * mx + k * CHUNK..row * mx + mx.min((k + 1) * CHUNK);
-                take(row, k, elements, &sums_across(&threes[row]));
+                let cells = row * mx + k * CHUNK..row * mx + mx.min((k + 1) * CHUNK);
+                take(row, k, cells, &sums_across(&threes[row]));
             }
         }
     }

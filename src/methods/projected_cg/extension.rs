@@ -10,15 +10,19 @@
 //! with the number of elements across a piece of C, and a rough surface has much rim. So E r is a mean of what is near,
 //!
 //! ```text
-//! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 elements around, n of them in C, c: an eighth of B
+//! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 cells around, n of its elements in C, c: an eighth of B
 //! ```
 //!
-//! and E^T M E, symmetric and positive definite for any E, takes the place of M. With a box of 7 or 13, a c of half or twice that, the
-//! iterations differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of an
+//! a cell being an element, or S x S elements where the pieces of C are large (module `cells`), and E^T M E, symmetric and positive definite for any E, takes the place of M. With a box of 7 or 13, a c of half or twice that, the
+//! iterations at 512 x 512 differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of an
 //! element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero
-//! outside and now): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
+//! outside and now): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3. With cells of one
+//! element, and now: rough surface 2048 11 and 9, 4096 12 and 9.
+
+use std::ops::Range;
 
 use super::boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
+use super::cells::{suitable_side, CellSums, MOST};
 use super::segments::Segments;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -38,11 +42,15 @@ const WHAT: &str = "the extended residual";
 /// E, and the memory for it.
 pub(super) struct Extension<T: Real> {
     mx: usize,
-    /// c, without a layer.
-    absent: f64,
+    my: usize,
+    /// Elements of a cell in each direction.
+    side: usize,
     values: Vec<T>,
-    /// Elements of C in each box; 0 in C.
-    near: Vec<u8>,
+    /// Elements of C in each box; 0 where its cell is all in C.
+    near: Vec<u16>,
+    /// Of cells with more than one element: those in C, and sums over cells.
+    inside: Vec<u16>,
+    sums: Vec<T>,
     /// Whether a chunk has elements outside whose box has elements of C.
     rim: Vec<bool>,
     /// The version of C of which they are.
@@ -58,6 +66,19 @@ pub(super) struct Area<'a> {
     pub(super) segments: &'a Segments,
 }
 
+/// The same call for the side of the cells there are.
+macro_rules! for_side {
+    ($side:expr, $self:ident . $call:ident :: <S>($($argument:expr),*)) => {
+        match $side {
+            1 => $self.$call::<1>($($argument),*),
+            2 => $self.$call::<2>($($argument),*),
+            4 => $self.$call::<4>($($argument),*),
+            8 => $self.$call::<8>($($argument),*),
+            _ => $self.$call::<MOST>($($argument),*),
+        }
+    };
+}
+
 impl<T: Real> Extension<T> {
     /// On `grid`; none on one that is too small.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T>>> {
@@ -66,70 +87,150 @@ impl<T: Real> Extension<T> {
 
     /// Memory for a contact area on `grid`.
     fn new(grid: &Grid, threads: &Threads) -> Result<Extension<T>> {
-        let n = grid.len();
-        let (mut values, mut near) = (Vec::new(), Vec::new());
+        let (n, cells) = (grid.len(), grid.mx.div_ceil(2) * grid.my.div_ceil(2));
+        let (mut values, mut near, mut inside, mut sums) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         reserve(&mut values, n, WHAT)?;
         reserve(&mut near, n, WHAT)?;
+        reserve(&mut inside, cells, WHAT)?;
+        reserve(&mut sums, cells, WHAT)?;
         Ok(Extension {
             mx: grid.mx,
-            absent: ABSENT * (BOX.min(grid.mx) * BOX.min(grid.my)) as f64,
+            my: grid.my,
+            side: 1,
             values,
             near,
+            inside,
+            sums,
             rim: zeros(grid.my * grid.mx.div_ceil(CHUNK), WHAT)?,
             version: None,
             threads: threads.clone(),
         })
     }
 
+    /// Chooses cells that suit the contact area, before it is used, at first or after a rest.
+    pub fn suit(&mut self, contact: &[bool]) {
+        self.take_cells(suitable_side(contact, self.mx));
+    }
+
+    fn take_cells(&mut self, side: usize) {
+        if side != self.side {
+            (self.side, self.version) = (side, None);
+        }
+        let (cells, rows) = self.cells();
+        let (cells, several) = (cells * rows, if side > 1 { cells * rows } else { 0 });
+        if self.near.len() != cells || self.inside.len() != several {
+            self.version = None;
+        }
+        wake(&mut self.near, cells, 0, &self.threads);
+        wake(&mut self.inside, several, 0, &self.threads);
+        wake(&mut self.sums, several, T::nan(), &self.threads);
+    }
+
+    /// Cells of a row, and rows of them.
+    fn cells(&self) -> (usize, usize) {
+        (self.mx.div_ceil(self.side), self.my.div_ceil(self.side))
+    }
+
     /// z = E^T M E z; z is zero outside C before, and of no meaning there afterwards. `compliance`: an element's influence on itself,
     /// relative to that without a layer.
     fn around(&mut self, z: &mut Vec<T>, area: Area<'_>, compliance: f64, apply: impl FnOnce(&mut [T])) {
-        let absent = T::of(self.absent * compliance * compliance);
-        self.count(area);
-        self.extend(z, absent);
+        let (cells, rows) = self.cells();
+        let in_a_box = BOX.min(cells) * BOX.min(rows) * self.side * self.side;
+        let absent = T::of(ABSENT * in_a_box as f64 * compliance * compliance);
+        for_side!(self.side, self.count::<S>(area));
+        for_side!(self.side, self.extend::<S>(z, area.contact, absent));
         apply(&mut self.values);
-        self.collect(z, absent);
+        for_side!(self.side, self.collect::<S>(z, area.contact, absent));
         std::mem::swap(z, &mut self.values);
     }
 
     /// The elements of C in the boxes of rows near which C has changed.
-    fn count(&mut self, Area { contact, segments }: Area<'_>) {
+    fn count<const S: usize>(&mut self, Area { contact, segments }: Area<'_>) {
         let before = self.version.replace(segments.version());
         if before == self.version {
             return;
         }
-        let (mx, my) = (self.mx, self.near.len() / self.mx);
-        let (near, rim) = ((&mut self.near[..], ROWS * mx), (&mut self.rim[..], ROWS * mx.div_ceil(CHUNK)));
+        let ((cells, height), mx) = (self.cells(), self.mx);
+        let has_changed = |rows: Range<usize>| {
+            let elements = rows.start * S * mx..contact.len().min(rows.end * S * mx);
+            before.is_none_or(|before| segments.changed_since(before, elements))
+        };
+        if S > 1 {
+            self.threads.for_each_plain_row(&mut self.inside, cells, |y, sums| {
+                if has_changed(y..y + 1) {
+                    let contact = rows_of::<_, S>(contact, mx, y..y + 1);
+                    let value = |inside, _| u16::from(inside);
+                    pulp::Arch::new().dispatch(CellSums::<_, _, _, S> { elements: contact, contact, mx, value, sums });
+                }
+            });
+        }
+        let (near, rim) = ((&mut self.near[..], ROWS * cells), (&mut self.rim[..], ROWS * cells.div_ceil(CHUNK)));
+        let inside = &self.inside[..];
         self.threads.for_each_row_pair(near, rim, |k, near, rim| {
             let y = ROWS * k;
-            let rows = y.saturating_sub(REACH) * mx..my.min(y + ROWS + REACH) * mx;
-            if before.is_none_or(|before| segments.changed_since(before, rows)) {
-                pulp::Arch::new().dispatch(Count { contact, mx, y, near, rim });
+            if !has_changed(y.saturating_sub(REACH)..height.min(y + ROWS + REACH)) {
+                return;
+            }
+            let arch = pulp::Arch::new();
+            if S > 1 {
+                arch.dispatch(Count::<_, _, S> { inside, count: |count| count, mx: cells, y, near, rim });
+            } else {
+                arch.dispatch(Count::<_, _, S> { inside: contact, count: u8::from, mx, y, near, rim });
             }
         });
     }
 
     /// values = E z.
-    fn extend(&mut self, z: &[T], absent: T) {
-        let Extension { mx, values, near, rim, threads, .. } = self;
-        let (mx, chunks) = (*mx, mx.div_ceil(CHUNK));
-        threads.for_each_plain_row(values, ROWS * mx, |k, values| {
+    fn extend<const S: usize>(&mut self, z: &[T], contact: &[bool], absent: T) {
+        let (cells, _) = self.cells();
+        let Extension { mx, values, near, sums, rim, threads, .. } = self;
+        if S > 1 {
+            threads.for_each_plain_row(sums, cells, |y, sums| {
+                let (z, contact) = (rows_of::<_, S>(z, *mx, y..y + 1), rows_of::<_, S>(contact, *mx, y..y + 1));
+                pulp::Arch::new().dispatch(CellSums::<_, _, _, S> {
+                    elements: z,
+                    contact,
+                    mx: *mx,
+                    value: |z, _| z,
+                    sums,
+                });
+            });
+        }
+        let (mx, chunks) = (*mx, cells.div_ceil(CHUNK));
+        let sums = if S > 1 { &sums[..] } else { z };
+        threads.for_each_plain_row(values, ROWS * S * mx, |k, values| {
             let y = ROWS * k;
-            let (near, rim) = (&near[y * mx..], &rim[y * chunks..]);
-            pulp::Arch::new().dispatch(Extend { z, mx, y, near, rim, absent, values });
+            let (near, rim) = (&near[y * cells..], &rim[y * chunks..]);
+            let here = y * S * mx..y * S * mx + values.len();
+            let (z, contact) = (&z[here.clone()], &contact[here]);
+            pulp::Arch::new().dispatch(Extend::<_, S> {
+                sums,
+                mx: (mx, cells),
+                y,
+                near,
+                rim,
+                absent,
+                z,
+                contact,
+                values,
+            });
         });
     }
 
     /// values = E^T values on C; z is what it needs of the others.
-    fn collect(&mut self, z: &mut [T], absent: T) {
-        let Extension { mx, values, near, rim, threads, .. } = self;
-        let (mx, chunks) = (*mx, mx.div_ceil(CHUNK));
-        threads.for_each_plain_row(z, mx, |y, shares| {
-            let (near, rim) = (&near[y * mx..][..mx], &rim[y * chunks..][..chunks]);
-            pulp::Arch::new().dispatch(Share { values: &values[y * mx..], near, rim, absent, shares });
+    fn collect<const S: usize>(&mut self, z: &mut [T], contact: &[bool], absent: T) {
+        let (cells, _) = self.cells();
+        let (mx, chunks) = (self.mx, cells.div_ceil(CHUNK));
+        let Extension { values, near, sums, rim, threads, .. } = self;
+        let shares = if S > 1 { &mut sums[..] } else { z };
+        threads.for_each_plain_row(shares, cells, |y, shares| {
+            let (near, rim) = (&near[y * cells..][..cells], &rim[y * chunks..][..chunks]);
+            let (values, contact) = (rows_of::<_, S>(values, mx, y..y + 1), rows_of::<_, S>(contact, mx, y..y + 1));
+            pulp::Arch::new().dispatch(Share::<_, S> { values, contact, mx, near, rim, absent, shares });
         });
-        threads.for_each_plain_row(values, ROWS * mx, |k, values| {
-            pulp::Arch::new().dispatch(Collect { shares: z, mx, y: ROWS * k, rim, values });
+        let shares = &*shares;
+        threads.for_each_plain_row(values, ROWS * S * mx, |k, values| {
+            pulp::Arch::new().dispatch(Collect::<_, S> { shares, mx: (mx, cells), y: ROWS * k, rim, values });
         });
     }
 
@@ -137,21 +238,24 @@ impl<T: Real> Extension<T> {
     pub fn rest(&mut self) {
         rest(&mut self.values);
         rest(&mut self.near);
+        rest(&mut self.inside);
+        rest(&mut self.sums);
     }
 
-    /// Before it is used, at first or again, on a grid of n elements.
+    /// Before it is used, at first or again, on a grid of n elements. Then cells are chosen.
     pub fn wake(&mut self, n: usize) {
-        if self.near.len() < n {
-            self.version = None;
-        }
         wake(&mut self.values, n, T::zero(), &self.threads);
-        wake(&mut self.near, n, 0, &self.threads);
     }
 
     /// Bytes held, for n elements.
     pub fn bytes(&self, n: usize) -> usize {
-        n * (size_of::<T>() + 1) + self.rim.len()
+        n * (size_of::<T>() + size_of::<u16>()) + n / 4 * (size_of::<T>() + size_of::<u16>()) + self.rim.len()
     }
+}
+
+/// The elements of some rows of cells.
+fn rows_of<A, const S: usize>(elements: &[A], mx: usize, rows: Range<usize>) -> &[A] {
+    &elements[rows.start * S * mx..elements.len().min(rows.end * S * mx)]
 }
 
 /// z = E^T M E z; z = M z where there is no extension.
@@ -169,8 +273,8 @@ pub(super) fn extended<T: Real>(
 
 impl<T: Real> Drop for Extension<T> {
     fn drop(&mut self) {
-        keep([&mut self.values]);
-        keep([&mut self.near]);
+        keep([&mut self.values, &mut self.sums]);
+        keep([&mut self.near, &mut self.inside]);
     }
 }
 

@@ -2,6 +2,7 @@
 //! iteration over the grids.
 
 mod boxes;
+mod cells;
 mod coarse_grids;
 mod debts;
 mod energy;
