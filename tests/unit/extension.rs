@@ -53,22 +53,28 @@ fn it_is_what_the_definition_says() {
         ((280, 7), 16),
         ((3, 500), 16),
     ];
-    for ((mx, my), side) in by_elements.into_iter().chain(by_cells) {
-        for threads in [Threads::One, Threads::new(2).unwrap()] {
-            is_by_definition((mx, my), side, &threads);
+    for threads in [Threads::One, Threads::new(2).unwrap()] {
+        for (size, side) in by_elements.into_iter().chain(by_cells) {
+            is_by_definition(size, [side; 3], &threads);
         }
+        // Cells change, and with them what is counted; a row of more than one chunk of cells, and rows that share their boxes.
+        is_by_definition((150, 26), [1, 2, 1], &threads);
+        is_by_definition((150, 26), [16, 4, 2], &threads);
+        is_by_definition((33, 40), [2, 8, 1], &threads);
     }
 }
 
-fn is_by_definition((mx, my): (usize, usize), side: usize, threads: &Threads) {
+/// With cells of these sides, one after the other.
+fn is_by_definition((mx, my): (usize, usize), sides: [usize; 3], threads: &Threads) {
     let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
-    let in_contact = |i: usize| i / mx < my.div_ceil(3) && ((7 * i) % 11 < 3 || side > 1 && i % mx / side % 5 == 2);
+    let in_contact =
+        |i: usize| i / mx < my.div_ceil(3) && ((7 * i) % 11 < 3 || sides[0] > 1 && i % mx / sides[0] % 5 == 2);
     let mut contact: Vec<bool> = (0..mx * my).map(in_contact).collect();
     let mut segments = Segments::new(&grid, threads).unwrap();
     segments.change_all();
     let mut extension = Extension::<f64>::new(&grid, threads).unwrap();
     // As it is, changed in one place, and as it was: what was there before does not matter.
-    for _ in 0..3 {
+    for side in sides {
         segments.find(&contact);
         let z = |i: usize| if contact[i] { (i as f64).sin() + 0.3 } else { 0.0 };
         let z: Vec<f64> = (0..mx * my).map(z).collect();

@@ -116,7 +116,7 @@ impl<T: Real, const S: usize> pulp::NullaryFnOnce for Extend<'_, T, S> {
     }
 }
 
-/// What the elements outside in a row of cells pass on to each of C that is near them.
+/// What the elements outside C in a row of cells pass on to each of C that is near them.
 pub(super) struct Share<'a, T, const S: usize> {
     /// Of this row of cells.
     pub(super) values: &'a [T],

@@ -5,20 +5,21 @@ use std::ops::{Add, Range};
 use super::boxes::CHUNK;
 
 /// Elements of the largest cell in each direction.
-pub(super) const MOST: usize = 16;
-/// Elements of C in a row, on an average, beside those of a cell. Measured (tolerance 1e-6, one thread, iterations on the finest grid with cells of
-/// 1, 2, 4 elements): rough surface 1024, 16 elements in a row, 9, 9, 8; 2048, 32 in a row, 11, 9, 9. Boxes that are large beside the pieces of C harm:
-/// rough 1024 with 7.7 in a row 24, 49, 87.
-const CHORD: f64 = 6.0;
+pub(super) const LARGEST_SIDE: usize = 16;
+/// Pieces of C have at least this mean length, in cells. Measured (tolerance 1e-6, iterations on the finest grid with boxes of 9, 17, 33 elements):
+/// rough surface 2048, 32 elements in a piece, 11, 9, 9. Boxes that are large beside the pieces of C harm: rough surface 1024 with 7.7 in a
+/// piece 24, 49, 87.
+const LEAST_LENGTH: f64 = 6.0;
 
 /// Elements of a cell in each direction that suits C: a power of two. The mean length of pieces of C in a row or a column counts, whichever
-/// is shorter. Where a row has one piece, there is little rim, and larger cells save nothing (ellipse 512: 3 iterations with any).
+/// is shorter. Cells have one element where there are no more pieces than rows or columns of the grid: then there is little rim, and larger
+/// cells save nothing (ellipse 512: 3 iterations with any).
 pub(super) fn suitable_side(contact: &[bool], mx: usize) -> usize {
     let Pieces { elements, in_rows, in_columns } = pulp::Arch::new().dispatch(CountPieces { contact, mx });
     let (my, pieces) = (contact.len() / mx, in_rows.max(in_columns));
     let mut side = 1;
     if in_rows > my && in_columns > mx {
-        while side < MOST && (2 * side) as f64 * CHORD * pieces as f64 <= elements as f64 {
+        while side < LARGEST_SIDE && (2 * side) as f64 * LEAST_LENGTH * pieces as f64 <= elements as f64 {
             side *= 2;
         }
     }

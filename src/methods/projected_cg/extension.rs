@@ -13,16 +13,17 @@
 //! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 cells around, n of its elements in C, c: an eighth of B
 //! ```
 //!
-//! a cell being an element, or S x S elements where the pieces of C are large (module `cells`), and E^T M E, symmetric and positive definite for any E, takes the place of M. With a box of 7 or 13, a c of half or twice that, the
-//! iterations at 512 x 512 differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of an
-//! element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero
-//! outside and now): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3. With cells of one
-//! element, and now: rough surface 2048 11 and 9, 4096 12 and 9.
+//! a cell being an element, or S x S elements where the pieces of C are large (module `cells`), and E^T M E, symmetric and positive
+//! definite for any E, takes the place of M. With a box of 7 or 13 elements at 512 x 512, or a c of half or twice that, the iterations
+//! differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of an element's
+//! influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside and with
+//! cells of one element): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
+//! With cells of one element, and with those that suit C: rough surface 2048 11 and 9, 4096 12 and 9.
 
 use std::ops::Range;
 
 use super::boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
-use super::cells::{suitable_side, CellSums, MOST};
+use super::cells::{suitable_side, CellSums, LARGEST_SIDE};
 use super::segments::Segments;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -46,12 +47,12 @@ pub(super) struct Extension<T: Real> {
     /// Elements of a cell in each direction.
     side: usize,
     values: Vec<T>,
-    /// Elements of C in each box; 0 where its cell is all in C.
+    /// Elements of C in each box; 0 where its cell is S x S elements of C.
     near: Vec<u16>,
     /// Of cells with more than one element: those in C, and sums over cells.
     inside: Vec<u16>,
     sums: Vec<T>,
-    /// Whether a chunk has elements outside whose box has elements of C.
+    /// Whether a chunk has cells with such elements.
     rim: Vec<bool>,
     /// The version of C of which they are.
     version: Option<u64>,
@@ -74,7 +75,7 @@ macro_rules! for_side {
             2 => $self.$call::<2>($($argument),*),
             4 => $self.$call::<4>($($argument),*),
             8 => $self.$call::<8>($($argument),*),
-            _ => $self.$call::<MOST>($($argument),*),
+            _ => $self.$call::<LARGEST_SIDE>($($argument),*),
         }
     };
 }
@@ -107,7 +108,7 @@ impl<T: Real> Extension<T> {
         })
     }
 
-    /// Chooses cells that suit the contact area, before it is used, at first or after a rest.
+    /// Chooses cells that suit the contact area: after it woke, and whenever C is found anew.
     pub fn suit(&mut self, contact: &[bool]) {
         self.take_cells(suitable_side(contact, self.mx));
     }
@@ -217,9 +218,9 @@ impl<T: Real> Extension<T> {
         });
     }
 
-    /// values = E^T values on C; z is what it needs of the others.
+    /// values = E^T values on C. What it needs of the others goes to z, or to the sums of larger cells.
     fn collect<const S: usize>(&mut self, z: &mut [T], contact: &[bool], absent: T) {
-        let (cells, _) = self.cells();
+        let (cells, rows) = self.cells();
         let (mx, chunks) = (self.mx, cells.div_ceil(CHUNK));
         let Extension { values, near, sums, rim, threads, .. } = self;
         let shares = if S > 1 { &mut sums[..] } else { z };
@@ -228,7 +229,7 @@ impl<T: Real> Extension<T> {
             let (values, contact) = (rows_of::<_, S>(values, mx, y..y + 1), rows_of::<_, S>(contact, mx, y..y + 1));
             pulp::Arch::new().dispatch(Share::<_, S> { values, contact, mx, near, rim, absent, shares });
         });
-        let shares = &*shares;
+        let (shares, rim) = (&*shares, &rim[..rows * chunks]);
         threads.for_each_plain_row(values, ROWS * S * mx, |k, values| {
             pulp::Arch::new().dispatch(Collect::<_, S> { shares, mx: (mx, cells), y: ROWS * k, rim, values });
         });
