@@ -53,7 +53,9 @@ impl<T: Real> Iteration<T> {
     pub(super) fn find_contact(&mut self, state: &State) {
         self.segments.change_all();
         self.segments.find(&state.contact);
-        self.extension.iter_mut().for_each(|extension| extension.suit(&state.contact));
+        if let (Some(_), Some(extension)) = (&self.preconditioner, &mut self.extension) {
+            extension.suit(&state.contact);
+        }
     }
 
     /// With a prescribed force, where no change is known: the approach is the mean over C of h + u, u as `update` will leave it.
