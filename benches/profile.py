@@ -30,7 +30,7 @@ PARTS = [
     ("known change", r"::know\b|restrict_known|step_along_known"),
     ("extension of the residual", r"Extension<T>::(count|extend|collect)"),
     ("preconditioner", r"::precondition\b|Preconditioner<T>::apply"),
-    ("products", r"Operator<T>::(apply|without_coupling|convolve|forward)"),
+    ("products", r"Operator<T>::(apply|without_coupling|convolve|forward)|operator::(rows|lane_rows|even_columns|columns)::"),
     ("between grids", r"prolong|::transfer::|Window::(insert|extract)|part::(enter|leave)|take_displacements"),
     ("passes", r"Iteration<T>|projected_cg|Level"),
 ]
