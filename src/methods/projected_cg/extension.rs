@@ -108,7 +108,7 @@ impl<T: Real> Extension<T> {
         })
     }
 
-    /// Chooses cells that suit the contact area: after it woke, and whenever C is found anew.
+    /// Chooses cells that suit the contact area: after it woke, and whenever C is found anew, before it is used.
     pub fn suit(&mut self, contact: &[bool]) {
         self.take_cells(suitable_side(contact, self.mx));
     }
@@ -243,7 +243,7 @@ impl<T: Real> Extension<T> {
         rest(&mut self.sums);
     }
 
-    /// Before it is used, at first or again, on a grid of n elements. Then cells are chosen.
+    /// Before it is used, at first or again, on a grid of n elements. Cells are to be chosen then.
     pub fn wake(&mut self, n: usize) {
         wake(&mut self.values, n, T::zero(), &self.threads);
     }
