@@ -18,10 +18,14 @@ class Solved(Protocol):
     """What is drawn of a `Result`."""
 
     pressure: Doubles
-    traction: Doubles
-    adhesion: npt.NDArray[np.int32]
     dx: float
     dy: float
+
+    @property
+    def traction(self) -> Doubles: ...
+
+    @property
+    def adhesion(self) -> npt.NDArray[np.int32]: ...
 
     @property
     def contact(self) -> npt.NDArray[np.bool_]: ...

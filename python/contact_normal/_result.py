@@ -90,7 +90,6 @@ class Result:
         self.status, self.message = status, message
         self.pressure, self.deformed_distance, self.displacement = outputs.doubles
         self._scene, self._outputs, self._report = scene, outputs, report
-        self.traction, self.slip, self.adhesion = outputs.traction, outputs.slip, outputs.adhesion
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
 
@@ -106,6 +105,22 @@ class Result:
         """The elements at the pressure limit."""
         at_limit: npt.NDArray[np.bool_] = self._outputs.contact == 2
         return at_limit
+
+    @cached_property
+    def traction(self) -> Doubles:
+        """q on body 1, in x and y; zeros without friction."""
+        return self._outputs.traction if self._outputs.traction is not None else np.zeros((2, *self.pressure.shape))
+
+    @cached_property
+    def slip(self) -> Doubles:
+        """The slip of body 1 over body 2 in the step, in x and y; zeros without friction."""
+        return self._outputs.slip if self._outputs.slip is not None else np.zeros((2, *self.pressure.shape))
+
+    @cached_property
+    def adhesion(self) -> npt.NDArray[np.int32]:
+        """0 exterior, 1 stick, 2 slip; zeros without friction."""
+        adhesion = self._outputs.adhesion
+        return adhesion if adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -223,10 +238,15 @@ def _value(value: Any) -> Any:
 
 
 class Outputs:
-    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess."""
+    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess. Those of friction
+    only where there is friction: to clear and write them would take a tenth of a plain call."""
 
-    def __init__(self, shape: tuple[int, int], pressure: Any, contact: Any, options: Any) -> None:
-        self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
+    traction: Doubles | None = None
+    slip: Doubles | None = None
+    adhesion: npt.NDArray[np.int32] | None = None
+
+    def __init__(self, shape: tuple[int, int], pressure: Any, contact: Any, options: Any, has_friction: bool) -> None:
+        self.doubles: list[Doubles] = [np.zeros(shape), np.empty(shape), np.empty(shape)]
         self.contact = np.zeros(shape, dtype=np.int32)
         if pressure is not None:
             self.doubles[0][:] = doubles("pressure", pressure, shape)
@@ -239,10 +259,15 @@ class Outputs:
         self.fields, self.report = initialised("fields"), initialised("report")
         self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(pointer, self.doubles)
         self.fields.contact = pointer(self.contact, c_int32)
-        self.traction, self.slip = np.zeros((2, *shape)), np.zeros((2, *shape))
-        self.adhesion = np.zeros(shape, dtype=np.int32)
+        if has_friction:
+            self._hold_friction(shape)
+        self.rows = _ROWS()
+        self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM
+
+    def _hold_friction(self, shape: tuple[int, int]) -> None:
+        """Arrays of what friction finds."""
+        self.traction, self.slip = np.empty((2, *shape)), np.empty((2, *shape))
+        self.adhesion = np.empty(shape, dtype=np.int32)
         for k in range(2):
             self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
         self.fields.adhesion = pointer(self.adhesion, c_int32)
-        self.rows = _ROWS()
-        self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM

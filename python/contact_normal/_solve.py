@@ -120,7 +120,7 @@ def solve(
                "row_tables": row_tables, "coating": coating, "friction": friction}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
     struct = options(given)
-    outputs = Outputs(scene.shape, pressure, contact, struct)
+    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
     watched = Watched(progress, struct, scene.h.size)
 
     def call(fields: Any, report: Any) -> int:
@@ -223,7 +223,7 @@ def solve_to_accuracy(
     accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
     if surface:
         accuracy.surface = surface.callback
-    ledger = Outputs((0, 0), None, None, struct)
+    ledger = Outputs((0, 0), None, None, struct, False)
     try:
         status = library.contact_normal_solve_to_accuracy(
             ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle),
@@ -234,7 +234,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status)
-        outputs = Outputs((accuracy.my, accuracy.mx), None, None, struct)
+        outputs = Outputs((accuracy.my, accuracy.mx), None, None, struct, False)
         outputs.rows = ledger.rows
         if handle:
             check(library.contact_normal_solver_fields(handle, ctypes.byref(outputs.fields)))

@@ -124,7 +124,7 @@ class Solver:
         handle = self._handle
         scene = self._scene(h, approach, force, pressure_limit, friction)
         struct = options({**self._given, **given})
-        outputs = Outputs(scene.shape, pressure, contact, struct)
+        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
         watched = Watched(progress, struct, scene.h.size)
 
         def call(fields: Any, report: Any) -> int:
@@ -182,7 +182,7 @@ class Solver:
             one_approach, one_force = (None if values is None else float(values[i]) for values in loads)
             scenes.append(self._scene(h[i], one_approach, one_force, pressure_limit, friction))
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            outputs.append(Outputs(self._shape, guess, area, struct))
+            outputs.append(Outputs(self._shape, guess, area, struct, friction is not None))
         reports = (Report * count)(*(each.report for each in outputs))
         untouched = -(2**31)
         statuses = (c_int32 * count)(*[untouched] * count)
