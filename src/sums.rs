@@ -26,7 +26,7 @@ macro_rules! value {
         })*
     };
 }
-value!(f32, f64);
+value!(f32, f64, bool);
 
 /// Sums over elements, in lanes.
 pub struct Sums<const K: usize>([[f64; LANES]; K]);

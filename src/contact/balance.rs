@@ -1,7 +1,12 @@
 //! A prescribed force that has to be carried within an admissible set.
 
+use std::array::from_fn;
+use std::ops::Range;
+
 use super::{AdmissibleSet, State};
+use crate::blocks;
 use crate::scene::Load;
+use crate::sums::Sums;
 use crate::threads::Threads;
 
 /// Rounds of raising what is below its limit; each but the last brings an element to its limit, most of them many.
@@ -26,7 +31,7 @@ impl State {
     /// Call before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S, threads: &Threads) -> Option<f64> {
         if S::FIXED && self.load == Load::Force(0.0) {
-            self.remove_mean();
+            self.remove_mean(threads);
             return None;
         }
         if !S::LIMITED {
@@ -43,11 +48,7 @@ impl State {
         }
         let pressures = force / self.grid.element_area();
         for _ in 0..ROUNDS {
-            let (mut all, mut free) = (0.0, 0.0);
-            for (p, &inside) in self.p.iter().zip(&self.contact) {
-                all += p;
-                free += if inside { *p } else { 0.0 };
-            }
+            let [all, free, _] = self.sum_on_contact(threads);
             let missing = pressures - all;
             if missing.abs() <= f64::EPSILON * pressures {
                 break;
@@ -82,9 +83,22 @@ impl State {
     }
 
     /// On a given contact area no force is a sum of pressures that push and pull.
-    fn remove_mean(&mut self) {
-        let mean = self.p.iter().sum::<f64>() / self.contact_count().max(1) as f64;
+    fn remove_mean(&mut self, threads: &Threads) {
+        let [all, _, count] = self.sum_on_contact(threads);
+        let mean = all / count.max(1.0);
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p -= mean);
+    }
+
+    /// The sums of p, of p on C, and the elements of C: by blocks, for a plain sum of many equal pressures is off by more than a force may be.
+    fn sum_on_contact(&self, threads: &Threads) -> [f64; 3] {
+        let of_block = |block: Range<usize>| {
+            let mut sums = Sums::new();
+            sums.add([&self.p[block.clone()]], [&self.contact[block]], |[p], [inside]| {
+                [p, if inside > 0.0 { p } else { 0.0 }, inside]
+            });
+            sums.values()
+        };
+        blocks::fold(&self.grid, threads, [0.0; 3], of_block, |sums, block| from_fn(|k| sums[k] + block[k]))
     }
 
     /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.

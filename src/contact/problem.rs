@@ -9,11 +9,14 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::Operator;
+use crate::sums::Sums;
 use crate::threads::Threads;
 
 /// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
 /// to some of them.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+/// A wave of so many elements displaces about as much as an element displaces itself.
+const WAVE: f64 = 16.0;
 
 /// `e = h - approach + A p` on one grid, but for h, the load and the unknowns, which a [`State`] holds.
 pub struct Problem {
@@ -101,7 +104,12 @@ impl Problem {
 
     /// See [`State::round_off`].
     pub fn round_off(&self) -> f64 {
-        ROUND_OFF * self.self_influence()
+        let own = ROUND_OFF * self.self_influence();
+        match self.coefficients.is_mean_free() {
+            // What cancels are displacements by waves of up to the whole grid.
+            true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE),
+            false => own,
+        }
     }
 
     /// `u = A p`.
@@ -109,6 +117,9 @@ impl Problem {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.displace(MadeOf { coefficients, grid, threads }, p, u)?;
         self.products += 1;
+        if self.coefficients.is_mean_free() {
+            remove_mean(u);
+        }
         Ok(())
     }
 
@@ -129,5 +140,16 @@ impl Problem {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.operators.bytes()
+    }
+}
+
+/// Two periods: the mean of u is 0, and what a product has of one is the round-off of sums over the whole grid.
+fn remove_mean(u: &mut [f64]) {
+    let mut sums = Sums::new();
+    sums.add::<f64, 1, 0>([&*u], [], |[u], []| [u]);
+    let [sum] = sums.values();
+    let mean = sum / u.len() as f64;
+    if mean.is_finite() {
+        u.iter_mut().for_each(|u| *u -= mean);
     }
 }

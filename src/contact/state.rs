@@ -137,8 +137,13 @@ impl State {
     }
 
     fn force_by(&self, threads: &Threads) -> f64 {
+        self.pressures(threads) * self.grid.element_area()
+    }
+
+    /// The sum of all pressures, by blocks: a plain sum of many equal ones is off by more than a force may be.
+    pub fn pressures(&self, threads: &Threads) -> f64 {
         let [sum] = self.sum_pressures(threads, |p| [p]);
-        sum * self.grid.element_area()
+        sum
     }
 
     /// Sums over all pressures.

@@ -9,10 +9,14 @@
 //! p = p_max,      e <= 0    at the limit
 //! ```
 
+use std::ops::Range;
+
 use super::effect::{check_values, Effect};
+use crate::blocks;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Load, Plain};
+use crate::threads::Threads;
 
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +62,16 @@ impl Effect for PressureLimit<'_> {
         self.check(&scene.grid)?;
         let Load::Force(force) = scene.load else { return Ok(()) };
         let h = scene.undeformed_distance;
-        let limits = (0..h.len()).filter(|&i| h[i].is_finite()).map(|i| self.at(i));
-        let greatest = limits.sum::<f64>() * scene.grid.element_area();
+        let surface = |block: Range<usize>| block.filter(|&i| h[i].is_finite());
+        // By blocks, or at once: a plain sum of many equal limits is off by more than a force may be.
+        let limits = match self {
+            PressureLimit::Uniform(limit) => surface(0..h.len()).count() as f64 * limit,
+            PressureLimit::PerElement(limits) => {
+                let of_block = |block| surface(block).map(|i| limits[i]).sum::<f64>();
+                blocks::fold(&scene.grid, &Threads::One, 0.0, of_block, |sum, block| sum + block)
+            }
+        };
+        let greatest = limits * scene.grid.element_area();
         // A sum of n terms is good to some units of round-off.
         if force > greatest * (1.0 + 1e-12) {
             return Err(Error::Infeasible(format!(

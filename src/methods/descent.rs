@@ -17,6 +17,9 @@
 //!
 //! The last of these always lowers the energy; the one before it moves many elements at once.
 
+use std::ops::Range;
+
+use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
 use crate::memory::reserve;
@@ -234,7 +237,10 @@ fn truncated_step<S: AdmissibleSet>(
         true => set.project(i, state.p[i] + alpha * t[i] + constant),
         false => state.p[i],
     };
-    let sum = |constant: f64| (0..t.len()).map(|i| moved(i, constant)).sum::<f64>();
+    let sum = |constant: f64| {
+        let of_block = |block: Range<usize>| block.map(|i| moved(i, constant)).sum::<f64>();
+        blocks::fold(&state.grid, &Threads::One, 0.0, of_block, |sum, block| sum + block)
+    };
     let (mut factor, mut constant) = (1.0, 0.0);
     if let Load::Force(force) = state.load {
         let wanted = force / state.grid.element_area();

@@ -85,7 +85,7 @@ impl ByApproach<'_> {
         if stop != Outcome::Converged {
             return Ok(false);
         }
-        let pressures = task.state.p.iter().sum();
+        let pressures = task.state.pressures(&task.problem.threads);
         let is_high = pressures > wanted || task.carries();
         let end = if is_high { &mut self.bracket.high } else { &mut self.bracket.low };
         end.p.clone_from(&task.state.p);

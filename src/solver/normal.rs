@@ -98,6 +98,9 @@ impl Solver {
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
         let stop = if take_over::is_without_contact(task.state, lowest, S::FIXED) {
             Outcome::Converged
+        } else if take_over::fills_limits(task.problem, task.state, set)? {
+            task.count_products();
+            Outcome::Converged
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };

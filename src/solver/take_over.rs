@@ -1,6 +1,9 @@
 //! Where a solve starts from: nothing, the caller's guess, or the solution before.
 
+use std::ops::Range;
+
 use super::{Guess, InitialGuess, Options};
+use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
@@ -10,6 +13,9 @@ use crate::threads::Threads;
 
 /// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
+
+/// A force that lacks less than this part of the greatest one is that one: the round-off of its sum.
+const FULL: f64 = 1e-12;
 
 /// Takes over the undeformed distance: a copy, for a callback may change the caller's.
 pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
@@ -144,6 +150,32 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -
     }
     state.fit_approach(&problem.threads);
     Ok(())
+}
+
+/// Whether a prescribed force is as much as all elements carry at their limit, but for round-off: then they are there, and no iteration finds it, for what
+/// is left of the force to an element in contact is round-off.
+pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
+    let Load::Force(force) = state.load else { return Ok(false) };
+    if !S::LIMITED {
+        return Ok(false);
+    }
+    let limit = |i: usize| if state.h[i].is_finite() { set.limit(i) } else { 0.0 };
+    let of_block = |block: Range<usize>| block.map(limit).sum::<f64>();
+    let greatest = blocks::fold(&state.grid, &problem.threads, 0.0, of_block, |sum, block| sum + block);
+    let greatest = greatest * state.grid.element_area();
+    if !(force >= greatest * (1.0 - FULL)) {
+        return Ok(false);
+    }
+    for i in 0..state.p.len() {
+        let at_limit = state.h[i].is_finite();
+        (state.p[i], state.contact[i], state.at_limit[i]) =
+            (if at_limit { set.limit(i) } else { 0.0 }, false, at_limit);
+    }
+    state.reached_limit = true;
+    problem.displace(&state.p, &mut state.u)?;
+    state.u_is = Freshness::Exact;
+    state.fit_approach(&problem.threads);
+    Ok(true)
 }
 
 /// Whether nothing touches: no force, or no element penetrated by the approach, not even one of the `lowest` distance. Then p = 0 solves the problem.

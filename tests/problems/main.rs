@@ -33,6 +33,7 @@ mod hertz;
 mod influence;
 mod layer;
 mod line_contact;
+mod measured_surfaces;
 mod operator;
 mod paper_tables;
 mod patches;

@@ -9,7 +9,7 @@ use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 /// A random surface of all waves up to `m/part`, their amplitudes falling as `k^-1.8`.
-fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
+pub fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -34,7 +34,7 @@ fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
 }
 
 /// u = A p.
-fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
+pub fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
     let (mx, my) = (scene.grid.mx, scene.grid.my);
     let coefficients = scene.coefficients().unwrap();
     let a: Vec<f64> = (0..p.len()).map(|i| coefficients.at((i % mx) as i64, (i / mx) as i64)).collect();

@@ -72,7 +72,7 @@ fn coefficient(kx: i64, ky: i64) -> f64 {
 }
 
 /// u = A p.
-fn displacements(m: usize, p: &[f64]) -> Vec<f64> {
+pub fn displacements(m: usize, p: &[f64]) -> Vec<f64> {
     let n = (2 * m).next_power_of_two();
     let offset = |k: usize| if k <= n / 2 { k as i64 } else { k as i64 - n as i64 };
     let mut a: Vec<(f64, f64)> = (0..n * n).map(|i| (coefficient(offset(i % n), offset(i / n)), 0.0)).collect();

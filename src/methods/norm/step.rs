@@ -150,7 +150,7 @@ fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let beside_limits = S::LIMITED && state.has_limited();
     match state.load {
         Load::Force(force) if beside_limits && state.contact.contains(&true) => {
-            let missing = force / state.grid.element_area() - state.p.iter().sum::<f64>();
+            let missing = force / state.grid.element_area() - state.pressures(&problem.threads);
             let even = missing / state.contact_count() as f64;
             state.p.iter_mut().zip(&state.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += even);
         }

@@ -56,7 +56,9 @@ impl<T: Real> Iteration<T> {
         match state.load {
             Load::Force(_) => update.factor = self.carry_force::<S>(state),
             Load::Approach(_) if limited => {}
-            Load::Approach(_) => self.least_energy::<S>(state, update, sums.filter(|_| !update.settled)),
+            Load::Approach(_) => {
+                self.least_energy::<S>(state, update, sums.filter(|_| !update.settled && update.gamma == 0.0))
+            }
         }
     }
 
@@ -70,7 +72,8 @@ impl<T: Real> Iteration<T> {
         sums: Option<(f64, f64)>,
     ) {
         self.is_scaled = false;
-        let scales = !(self.known.is_there() || S::LIMITED && state.reached_limit);
+        let along_change = self.known.is_there() && !self.known.is_deflation;
+        let scales = !(along_change || S::LIMITED && state.reached_limit);
         if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.settled) {
             return;
         }

@@ -38,6 +38,9 @@ const ABSENT: f64 = 0.125;
 /// without (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0 to 1.15
 /// at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
 const LEAST: usize = 8192;
+/// Elements of a grid in its shorter direction from which on it is used. Strips of 9 to 36 rows with two periods end in cycles
+/// with it; of 64 rows and more they take half of the iterations.
+const NARROW: usize = 64;
 const WHAT: &str = "the extended residual";
 
 /// E, and the memory for it.
@@ -83,7 +86,7 @@ macro_rules! for_side {
 impl<T: Real> Extension<T> {
     /// On `grid`; none on one that is too small.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T>>> {
-        (grid.len() >= LEAST).then(|| Extension::new(grid, threads)).transpose()
+        (grid.len() >= LEAST && grid.mx.min(grid.my) >= NARROW).then(|| Extension::new(grid, threads)).transpose()
     }
 
     /// Memory for a contact area on `grid`.

@@ -80,6 +80,35 @@ impl Becomes<1, 1> for Direction {
     }
 }
 
+/// `t = t - shift`, held back as by [`Direction`].
+#[derive(Clone, Copy)]
+pub(super) struct Lowered {
+    pub(super) shift: f64,
+    pub(super) forecast: f64,
+}
+
+impl Becomes<1, 0> for Lowered {
+    #[inline(always)]
+    fn of<S: Simd>(&self, t: Vector<S>, [p]: [Vector<S>; 1], []: [Vector<S>; 0]) -> Vector<S> {
+        let t = t - self.shift;
+        (p + self.forecast * t).is_below(p.all(0.0)).choose(-p / self.forecast, t)
+    }
+}
+
+/// The sums of t and of |t|, and how many elements are not held back.
+#[derive(Clone, Copy)]
+pub(super) struct Free {
+    pub(super) forecast: f64,
+}
+
+impl Terms<1, 1, 3> for Free {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [p]: [Vector<S>; 1], [t]: [Vector<S>; 1]) -> [Vector<S>; 3] {
+        let held = (p + self.forecast * t).is_at_most(HELD_BACK * p);
+        [t, t.abs(), held.choose(t.all(0.0), t.all(1.0))]
+    }
+}
+
 /// (r, t), (t, q), (t, t), of |t|, (p, p).
 #[derive(Clone, Copy)]
 pub(super) struct StepSums {

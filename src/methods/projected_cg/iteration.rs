@@ -11,8 +11,16 @@
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
-//! z and t have mean zero over C: directions carry no force. With a prescribed force p is scaled to carry it after a truncation. With a prescribed
-//! approach p is scaled to the least energy after each step (module `energy`), or, in a step in time, moves along the last change (module `known`).
+//! z and t have mean zero over C: directions carry no force, nor do they after they are held back, for t is lowered until its sum is 0 again. What is
+//! truncated beyond that is the error of the forecast; with a prescribed force p is scaled to make up for it. With a prescribed approach p is
+//! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `known`), or along a deflation
+//! direction where few elements carry much of the force (module `deflation`).
+//!
+//! Why t is lowered: scaling p by one part in a hundred changes u by as much, and the depth of a spike may be a thousand times the roughness of all
+//! other elements. Held back and not lowered, directions carry force, which scaling takes from the spike: C goes and comes back for ever. Measured on
+//! planes of 128 x 128 with a spike: 10 to 12 iterations on the finest grid; without, 23, 745 or no end. On rough surfaces it saves one product of
+//! ten.
+//!
 //! Directions carry force only by approach, and there on a given C, after an element has reached its limit, or while p cannot be scaled (p = 0).
 //!
 //! Why: a residual that is uniform over C is the displacement of a flat punch on C, to which M does not come near in few products; p is nearer to its
@@ -197,9 +205,11 @@ impl<T: Real> Iteration<T> {
             return None;
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
+        let alpha = search.shortened(alpha);
         let held_back = search.believed(alpha);
         let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
         if near {
+            self.known.forget();
             self.remember(state);
         }
         self.pay(state, forecast, alpha, &mut step);

@@ -13,7 +13,7 @@
 //! of w and of (d, w): u is owed the difference.
 
 use super::formulas::{Moved, Residual, StepSums};
-use super::known_passes::{Change, Restrict, Subtract};
+use super::known_passes::{measures, Change, Restrict, Subtract};
 use super::passes::Step;
 use super::scaling::Scaling;
 use super::vectors::Iteration;
@@ -50,6 +50,8 @@ pub(super) struct Known<T> {
     /// The sums of d^2, and of w^2 over the elements of d.
     length: f64,
     size: f64,
+    /// Whether d is a deflation direction (module `deflation`): then p is scaled beside it.
+    pub(super) is_deflation: bool,
     /// Elements that left C, which are 0 in d but not in what w is of.
     outside: Vec<(usize, f64)>,
 }
@@ -86,6 +88,23 @@ impl<T: Real> Known<T> {
         self.length.sqrt()
     }
 
+    /// Memory for d and w; elements that left are forgotten.
+    pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
+        for values in [&mut self.d, &mut self.w] {
+            reserve(values, n, "the change of the last step")?;
+            values.resize(n, T::zero());
+        }
+        self.outside.clear();
+        Ok(())
+    }
+
+    /// w is A d from now on.
+    pub(super) fn measure(&mut self) {
+        let mut sums = Sums::new();
+        sums.add([], [&self.d, &self.w], |[], [d, w]| measures(d, w));
+        self.take_measures(sums.values());
+    }
+
     /// Takes (d, w), and the sums of d^2 and of w^2, from a pass; no direction where single precision did not hold w.
     fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
         let energy = if energy.is_finite() { energy } else { 0.0 };
@@ -105,12 +124,9 @@ impl<T: Real> Iteration<T> {
     ) -> Result<()> {
         self.known.forget();
         let Some(last) = last else { return Ok(()) };
-        let Known { d, w, outside, .. } = &mut self.known;
-        for values in [&mut *d, &mut *w] {
-            reserve(values, state.p.len(), "the change of the last step")?;
-            values.resize(state.p.len(), T::zero());
-        }
-        outside.clear();
+        self.known.reserve(state.p.len())?;
+        self.known.is_deflation = false;
+        let Known { d, w, .. } = &mut self.known;
         let mut sums = Sums::new();
         let width = window.x.len();
         let rows = d.chunks_exact_mut(width).zip(w.chunks_exact_mut(width)).zip(window.y.clone()).enumerate();

@@ -74,7 +74,7 @@ impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
 /// What an element adds to (d, w), and to the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN where d is 0: such a
 /// change is none.
 #[inline(always)]
-fn measures(d: f64, w: f64) -> [f64; 3] {
+pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {
     [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]
 }
 

@@ -116,7 +116,7 @@ impl Level {
         if displacement != Freshness::Exact {
             state.carry_force(set, &self.threads);
         }
-        let whole = self.grid;
+        let (whole, is_mean_free) = (self.grid, self.influence.is_mean_free());
         self.on_window(state, set, displacement, |inner, window, units, state, set| {
             let work = state.grid.len() as f64 / finest as f64;
             if displacement == Freshness::Near {
@@ -127,6 +127,8 @@ impl Level {
                 monitor.count_products(1, work);
             }
             in_either!(inner, inner => inner.know(state, last, (window, whole.mx), units))?;
+            let products = in_either!(inner, inner => inner.deflate::<S>(state, is_mean_free))?;
+            monitor.count_products(products, work);
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
@@ -199,6 +201,12 @@ impl Level {
             false => Window::around(state, current, self.influence.is_even(&self.grid), &self.threads),
             true => Window::full(&self.grid),
         }
+    }
+
+    /// Whether contact fills less than half of a window that is not the whole grid: elements outside may enter.
+    pub fn is_scattered(&self, state: &State) -> bool {
+        let window = self.window(state);
+        !window.is_full(&self.grid) && 2 * state.contact_count() < window.elements()
     }
 
     fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {

@@ -68,7 +68,7 @@ impl<T: Real> Iteration<T> {
             return None;
         }
         let pressures = force / state.grid.element_area();
-        let carried: f64 = state.p.iter().sum();
+        let carried = state.pressures(&self.threads);
         if carried > (1.0 + TOO_MUCH) * pressures {
             let factor = pressures / carried;
             state.p.iter_mut().for_each(|p| *p *= factor);

@@ -5,6 +5,7 @@ mod boxes;
 mod cells;
 mod coarse_grids;
 mod debts;
+mod deflation;
 mod energy;
 mod exchange;
 mod extension;

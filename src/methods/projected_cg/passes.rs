@@ -2,11 +2,16 @@
 
 use super::energy::Energy;
 use super::extension::Area;
-use super::formulas::{Conjugate, Direction, Distance, Residual, Scale, StepSums};
+use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepSums};
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
+
+/// A direction without force has at most this part of the sum of |t|.
+const SMALL_FORCE: f64 = 1e-2;
+/// Steps of Newton's method at most.
+const LOWERINGS: u32 = 8;
 
 /// No array of the iteration's precision.
 pub(super) const fn none<'a, T>() -> [&'a [T]; 0] {
@@ -125,6 +130,36 @@ impl<T: Real> Iteration<T> {
                 []
             },
         );
+        if let Some(forecast) = forecast.filter(|_| without_force) {
+            self.remove_force(state, missing, forecast);
+        }
+    }
+
+    /// Lowers t, as far as it is not held back, until its sum over C is `missing`: what is held back would add to it. The sum falls with the
+    /// shift, convex: Newton's method comes from one side.
+    fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
+        for _ in 0..LOWERINGS {
+            let (t, formula) = (&self.t[..], Free { forecast });
+            let [sum, absolute, free] = self.segments.sum(
+                &state.contact,
+                #[inline(always)]
+                |block| block.sum([&state.p], [t], formula),
+            );
+            let excess = sum - missing;
+            if !(excess > SMALL_FORCE * absolute && free > 0.0) {
+                return;
+            }
+            let formula = Lowered { shift: excess / free, forecast };
+            let [] = self.segments.sum_changing(
+                &state.contact,
+                &mut self.t,
+                #[inline(always)]
+                |block, t| {
+                    block.change(t, [&state.p], none::<T>(), formula);
+                    []
+                },
+            );
+        }
     }
 
     /// The mean over C that is taken from z + beta t, and beta. Directions without force have the sum `missing`; others may have any.

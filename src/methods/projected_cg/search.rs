@@ -7,6 +7,10 @@ const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 
+/// A step is at most so many times as long as the forecast: what is held back for that would be truncated by far more than it gained. Strips of two
+/// periods do not converge without.
+const LONGEST: f64 = 2.0;
+
 /// What an iteration leaves to the next.
 pub(super) struct Search {
     /// alpha', if there is one.
@@ -24,6 +28,14 @@ impl Search {
     /// Before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
         Search { forecast, may_hold_back: true, tq: 0.0, is_first: true, products: 0 }
+    }
+
+    /// alpha, but for a step that is far longer than the one that its direction was held back for.
+    pub(super) fn shortened(&self, alpha: f64) -> f64 {
+        match self.forecast.filter(|_| self.may_hold_back) {
+            Some(forecast) => alpha.min(LONGEST * forecast),
+            None => alpha,
+        }
     }
 
     /// The forecast, unless it was far off: then it holds nobody back.

@@ -32,6 +32,9 @@ const NOISE: f64 = 25.0;
 const ROUND: u64 = 60;
 /// An iteration that stagnates above this residual does so on the contact area, which a fresh u does not change; below it, by rounding.
 const STALLED: f64 = 0.1;
+/// Where contact is scattered, the first iteration on the finest grid ends at this residual: elements outside the window that enter bring back one of about
+/// that, and what was reached below is lost.
+const LOOK: f64 = 1e-2;
 /// A last update is believed where the residual by a fresh product is at most this many times the recursive one.
 const BELIEVED: f64 = 2.0;
 
@@ -45,6 +48,8 @@ pub struct ProjectedCg {
     before: Vec<f64>,
     /// Whether the solve began with a prediction.
     predicted: bool,
+    /// Whether the solve begins on the finest grid from what coarser ones found.
+    is_new: bool,
     precision: Precision,
     /// Of the last step: the recursive residual that it ended with, relative.
     recursive: f64,
@@ -59,6 +64,7 @@ impl ProjectedCg {
             predictor: Predictor::default(),
             before: Vec::new(),
             predicted: false,
+            is_new: false,
             precision,
             recursive: 0.0,
         }
@@ -94,6 +100,7 @@ impl ProjectedCg {
         task.state.u_is = coarse.start(task)?;
         let single = self.precision != Precision::Double;
         let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();
+        self.is_new = near;
         let noisy = near && single && coarse.noise(task.problem) > NOISE * task.goal.tolerance;
         if rests(task.state.p.len()) {
             self.coarse = None;
@@ -111,7 +118,7 @@ impl ProjectedCg {
 
     /// Another solve begins.
     pub fn begin_anew(&mut self) {
-        self.predicted = false;
+        (self.predicted, self.is_new) = (false, false);
     }
 
     /// A step in time: moves `state` on from the last solution.
@@ -182,6 +189,8 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let aim = if goal.tolerance < f64::from(f32::EPSILON) { FINE_AIM } else { AIM };
         let tolerance = if goal.by_update() { goal.tolerance } else { aim * goal.tolerance };
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
+        let looks = std::mem::take(&mut self.is_new) && !goal.by_update() && self.finest.is_scattered(state);
+        let tolerance = if looks { tolerance.max(LOOK) } else { tolerance };
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
         self.lend_operator(problem, state)?;

