@@ -5,14 +5,15 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::bytes::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::bytes_friction::Sliding;
-use crate::call::{initialised, Outputs};
+use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
+use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
 use crate::effects::{Effects, OwnCoefficients, Patches, Values};
 use crate::friction_case::{Place, Stop};
 use crate::grid::{Grid, Load};
+use crate::init::initialised;
 use crate::rules::is_true;
 
 /// What the bytes become beside a scene and options.

@@ -4,12 +4,12 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::bytes::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
-use crate::call::initialised;
+use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::friction::{answer, tables};
-use crate::friction_call::Found;
 use crate::friction_case::{Case, Place, Slide, Stop};
+use crate::friction_found::Found;
 use crate::grid::Grid;
+use crate::init::initialised;
 
 /// A pair of arrays, in x and in y.
 type Pair = [Vec<f64>; 2];

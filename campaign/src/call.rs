@@ -1,7 +1,6 @@
 //! Calls of the C ABI.
 
 use std::ffi::{c_void, CStr};
-use std::mem::MaybeUninit;
 use std::ptr::null_mut;
 
 use contact_normal::ffi::*;
@@ -10,20 +9,11 @@ use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
 use crate::effects::OwnCoefficients;
 use crate::grid::{Grid, Load};
+use crate::init::initialised;
 
 /// What outputs hold before a call.
 pub const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
-
-/// A struct as its `_init` fills it.
-pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
-    let mut value = MaybeUninit::uninit();
-    // SAFETY: `_init` fills a whole struct.
-    unsafe {
-        init(value.as_mut_ptr());
-        value.assume_init()
-    }
-}
 
 /// A scene whose effects point into a case.
 struct Scene {

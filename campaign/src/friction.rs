@@ -4,9 +4,10 @@
 
 use contact_normal::ffi::*;
 
-use crate::friction_call::{call, frictionless, Found};
+use crate::friction_call::{call, frictionless};
 use crate::friction_case::{Case, Place};
 use crate::friction_conditions::{conditions, is_monotone, length, Conditions, Operator, Vector, ON_THE_CIRCLE};
+use crate::friction_found::Found;
 use crate::grid::Grid;
 use crate::random::Random;
 use crate::rules::Failure;

@@ -4,7 +4,7 @@ use contact_normal::ffi::*;
 
 use crate::case;
 use crate::effects::Effects;
-use crate::friction_call::Found;
+use crate::friction_found::Found;
 use crate::grid::{Grid, Load};
 use crate::half_space::compliance;
 use crate::random::Random;

@@ -15,8 +15,8 @@ use std::f64::consts::PI;
 
 use contact_normal::ffi::{CONTACT_NORMAL_MOTION_SHIFT, CONTACT_NORMAL_MOTION_STEADY_ROLLING};
 
-use crate::friction_call::Found;
 use crate::friction_case::{Case, Place};
+use crate::friction_found::Found;
 use crate::grid::Grid;
 
 pub type Vector = [f64; 2];

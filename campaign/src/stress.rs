@@ -14,9 +14,9 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::call::initialised;
 use crate::coating::gauss;
 use crate::grid::Grid;
+use crate::init::initialised;
 use crate::random::Random;
 use crate::rules::Failure;
 
