@@ -10,7 +10,7 @@ use crate::call::last_error;
 use crate::half_space::compliance;
 use crate::init::initialised;
 use crate::random::Random;
-use crate::rules::Failure;
+use crate::verdict::Failure;
 
 /// h = r^2/(2 R), from a place of the rectangle.
 struct Ball {

@@ -234,7 +234,7 @@ impl Call {
             return;
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
-        let place = Place { grid, shear_modulus, poisson_ratio, surface: "bytes", h, load };
+        let place = Place { grid, shear_modulus, poisson_ratio, surface: "bytes".into(), h, load };
         // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
         if place.is_alike() {
             let failures = is_true(&case, &found);
@@ -271,7 +271,8 @@ impl Call {
             grid,
             shear_modulus: scene.shear_modulus,
             poisson_ratio: scene.poisson_ratio,
-            surface: "bytes",
+            surface: "bytes".into(),
+            surfaces: crate::surface::any,
             h: self.h[..grid.len()].to_vec(),
             load,
             effects: self.effects.clone(),

@@ -10,7 +10,7 @@ use crate::friction_conditions::{conditions, is_monotone, length, Conditions, Op
 use crate::friction_found::Found;
 use crate::grid::Grid;
 use crate::random::Random;
-use crate::rules::Failure;
+use crate::verdict::Failure;
 
 /// A list of what was not kept.
 struct Broken<'a> {

@@ -17,7 +17,7 @@ pub struct Place {
     pub grid: Grid,
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
-    pub surface: &'static str,
+    pub surface: String,
     pub h: Vec<f64>,
     pub load: Load,
 }
@@ -25,7 +25,14 @@ pub struct Place {
 impl Place {
     /// A flat surface that nothing presses.
     pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
-        Place { grid, shear_modulus, poisson_ratio, surface: "flat", h: vec![0.0; grid.len()], load: Load::Force(0.0) }
+        Place {
+            grid,
+            shear_modulus,
+            poisson_ratio,
+            surface: "flat".into(),
+            h: vec![0.0; grid.len()],
+            load: Load::Force(0.0),
+        }
     }
 
     pub fn random(random: &mut Random) -> Place {
@@ -47,7 +54,7 @@ impl Place {
             _ => ([modulus, modulus * random.decades(0.1, 10.0)], [nu, random.between(0.0, 0.5)]),
         };
         let mut place = Place::new(Grid { mx, my, dx: unit, dy }, shear_modulus, poisson_ratio);
-        let (surface, h) = surface::any(random, mx, my);
+        let (surface, h) = surface::any(random, &place.grid);
         let height = unit * random.decades(1e-4, 1.0);
         (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
         let c = compliance(shear_modulus, poisson_ratio);
@@ -263,6 +270,11 @@ impl Case {
     /// What the motion is called.
     pub fn motion(&self) -> &'static str {
         ["shift", "transient rolling", "steady rolling"][self.slide.motion as usize]
+    }
+
+    /// The motion and whether bodies are alike.
+    pub fn kind(&self) -> String {
+        format!("{}, {} bodies", self.motion(), if self.place.is_alike() { "like" } else { "unlike" })
     }
 
     /// In one line.

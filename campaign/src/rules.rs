@@ -6,36 +6,46 @@ use crate::call::Outputs;
 use crate::case::Case;
 use crate::grid::Load;
 use crate::measures::Measures;
-
-/// A promise that was not kept.
-#[derive(Clone, Debug)]
-pub struct Failure {
-    /// Which one, in a few words.
-    pub promise: &'static str,
-    pub details: String,
-}
+use crate::verdict::{Failure, Verdict};
 
 fn failure(promise: &'static str, details: String) -> Vec<Failure> {
     vec![Failure { promise, details }]
 }
 
-/// Checks an answer; nothing if all promises are kept.
-pub fn check(case: &Case, found: &Outputs) -> Vec<Failure> {
+/// Checks an answer: what does not hold, and why an answer that is no solution passes.
+pub fn check(case: &Case, found: &Outputs) -> Verdict {
     if found.status < 0 {
         return refused(case, found);
     }
-    let mut failures = is_true(case, found);
-    let must_be_solved = case.how.method == CONTACT_NORMAL_METHOD_AUTO
-        && !case.effects.indefinite
-        && !case.effects.unsymmetric
-        && case.how.is_unhindered();
-    if failures.is_empty() && must_be_solved && found.status > 0 {
-        let m = Measures::of(case, found);
-        if !m.holds_to_rounding(case, found) {
-            failures.extend(failure("AUTO solves an elastic body's scene", m.text(found)));
-        }
+    let failures = is_true(case, found);
+    if found.status == CONTACT_NORMAL_OK || !failures.is_empty() {
+        return failures.into();
     }
-    failures
+    let m = Measures::of(case, found);
+    match excuse(case, found, &m) {
+        Some(why) => Verdict::excused(why),
+        None => Verdict::failed("AUTO solves an elastic body's scene", m.text(found)),
+    }
+}
+
+/// Why a solve may stop early; AUTO's of an elastic body may not.
+fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
+    let how = &case.how;
+    match found.status {
+        CONTACT_NORMAL_CANCELLED => Some("cancelled by the callback"),
+        CONTACT_NORMAL_ITERATION_LIMIT if !how.is_unhindered() => Some("few cycles were given, and used up"),
+        _ if !how.is_unhindered() => Some("stagnated within few cycles"),
+        _ if case.effects.indefinite => Some("stopped early: coefficients of no elastic body"),
+        _ if case.effects.unsymmetric => Some("stopped early: coefficients that are not symmetric"),
+        _ if m.holds_to_rounding(case, found) => Some("stagnated where round-off is left"),
+        _ => match how.method {
+            CONTACT_NORMAL_METHOD_NORM => Some("NORM stopped early"),
+            CONTACT_NORMAL_METHOD_MULTIGRID => Some("MULTIGRID stopped early"),
+            CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Some("FULL_MULTIGRID stopped early"),
+            CONTACT_NORMAL_METHOD_PROJECTED_CG => Some("PROJECTED_CG stopped early"),
+            _ => None,
+        },
+    }
 }
 
 /// Checks what an answer with status >= 0 says, and asks for no success.
@@ -166,52 +176,60 @@ fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
 }
 
 /// Status < 0.
-fn refused(case: &Case, found: &Outputs) -> Vec<Failure> {
-    let mut failures = Vec::new();
+fn refused(case: &Case, found: &Outputs) -> Verdict {
+    let mut verdict = Verdict::default();
     let told = || format!("{}: {}", found.status, found.message);
-    if found.written {
-        failures.extend(failure("refused: outputs untouched", told()));
+    verdict.unless(!found.written, "refused: outputs untouched", told);
+    verdict.unless(!found.message.is_empty(), "refused: a message", told);
+    match reason(case, found.status) {
+        Some(why) => verdict.excuse(why),
+        None => verdict.fail("refused without a reason", told()),
     }
-    if found.message.is_empty() {
-        failures.extend(failure("refused: a message", told()));
-    }
-    if !may_be_refused(case, found.status) {
-        failures.extend(failure("refused without a reason", told()));
-    }
-    failures
+    verdict
 }
 
-/// Whether this status is one that the scene may have.
-pub fn may_be_refused(case: &Case, status: i32) -> bool {
+/// The reason of the scene to be refused with this status, if it has one.
+pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
     let (effects, how) = (&case.effects, &case.how);
-    match status {
-        CONTACT_NORMAL_UNSUPPORTED => {
-            let multigrid =
-                [CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_METHOD_FULL_MULTIGRID].contains(&how.method);
-            effects.is_unsupported_pair()
-                || how.fixed.is_some() && effects.limit.is_some()
-                || multigrid && effects.may_lack_multigrid()
-                || how.method == CONTACT_NORMAL_METHOD_PROJECTED_CG && (effects.unsymmetric || effects.indefinite)
+    let multigrid = [CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_METHOD_FULL_MULTIGRID].contains(&how.method);
+    let cg = how.method == CONTACT_NORMAL_METHOD_PROJECTED_CG;
+    let reasons: &[(bool, &'static str)] = match status {
+        CONTACT_NORMAL_UNSUPPORTED => &[
+            (effects.is_unsupported_pair(), "refused: a pair of effects"),
+            (how.fixed.is_some() && effects.limit.is_some(), "refused: a fixed area with a limit"),
+            (multigrid && effects.may_lack_multigrid(), "refused: an effect without multigrid"),
+            (cg && (effects.unsymmetric || effects.indefinite), "refused: PROJECTED_CG of what is not symmetric"),
+        ],
+        CONTACT_NORMAL_INFEASIBLE => &[
+            (exceeds_limit(case), "refused: more force than the limit carries"),
+            (is_in_full_contact(case), "refused: two periods in full contact, by approach"),
+        ],
+        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => {
+            &[(effects.indefinite || effects.unsymmetric, "refused: coefficients of no elastic body")]
         }
-        CONTACT_NORMAL_INFEASIBLE => is_infeasible(case),
-        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => effects.indefinite || effects.unsymmetric,
         // Pressures below 0 are no guess, if the library says so.
-        CONTACT_NORMAL_INVALID_ARGUMENT => how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0)),
-        _ => false,
-    }
+        CONTACT_NORMAL_INVALID_ARGUMENT => {
+            let negative = how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0));
+            &[(negative, "refused: a guess below 0")]
+        }
+        _ => &[],
+    };
+    reasons.iter().find(|(holds, _)| *holds).map(|(_, why)| *why)
 }
 
-/// A force that no pressures within the limit carry; an approach in full contact where the mean displacement is zero.
-fn is_infeasible(case: &Case) -> bool {
-    let finite = || (0..case.h.len()).filter(|&i| case.h[i].is_finite());
-    match case.load {
-        Load::Force(force) => case.effects.limit.as_ref().is_some_and(|limit| {
-            let greatest = finite().map(|i| limit.at(i)).sum::<f64>() * case.grid.element_area();
-            force > greatest * (1.0 - 1e-9)
-        }),
-        Load::Approach(approach) => {
-            let mean = finite().map(|i| case.h[i]).sum::<f64>() / finite().count().max(1) as f64;
-            case.effects.period == Some((true, true)) && approach >= mean - 1e-9 * mean.abs()
-        }
-    }
+/// A force that no pressures within the limit carry. The library adds as many numbers in another order.
+fn exceeds_limit(case: &Case) -> bool {
+    let Load::Force(force) = case.load else { return false };
+    case.effects.limit.as_ref().is_some_and(|limit| {
+        let carried = (0..case.h.len()).filter(|&i| case.h[i].is_finite()).map(|i| limit.at(i));
+        force > carried.sum::<f64>() * case.grid.element_area() * (1.0 - 1e-9)
+    })
+}
+
+/// An approach in full contact where the mean displacement is zero.
+fn is_in_full_contact(case: &Case) -> bool {
+    let Load::Approach(approach) = case.load else { return false };
+    let finite = || case.h.iter().filter(|h| h.is_finite());
+    let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+    case.effects.period == Some((true, true)) && approach >= mean - 1e-9 * mean.abs()
 }

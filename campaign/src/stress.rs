@@ -18,7 +18,7 @@ use crate::coating::gauss;
 use crate::grid::Grid;
 use crate::init::initialised;
 use crate::random::Random;
-use crate::rules::Failure;
+use crate::verdict::Failure;
 
 type Tensor = [f64; 6];
 
