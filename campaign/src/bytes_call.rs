@@ -11,7 +11,7 @@ use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
 use crate::effects::{Effects, OwnCoefficients, Patches, Values};
-use crate::friction_case::{Place, Stop};
+use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 use crate::rules::is_true;
@@ -234,7 +234,8 @@ impl Call {
             return;
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
-        let place = Place { grid, shear_modulus, poisson_ratio, surface: "bytes".into(), h, load };
+        let place =
+            Place { grid, shear_modulus, poisson_ratio, surface: "bytes".into(), h, load, effects: Effects::default() };
         // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
         if place.is_alike() {
             let failures = is_true(&case, &found);
@@ -274,10 +275,12 @@ impl Call {
             surface: "bytes".into(),
             surfaces: crate::surface::any,
             h: self.h[..grid.len()].to_vec(),
+            h_rounding: 0.0,
             load,
             effects: self.effects.clone(),
             how,
             through_handle: false,
+            is_measured: false,
         }
     }
 
@@ -292,6 +295,7 @@ impl Call {
             e: self.distance[..n].to_vec(),
             contact: self.contact[..n].to_vec(),
             report: self.report,
+            overrun: None,
             written: true,
         }
     }

@@ -5,9 +5,11 @@ use std::ptr::null;
 use contact_normal::ffi::*;
 
 use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
-use crate::friction::{answer, tables};
-use crate::friction_case::{Case, Place, Slide, Stop};
+
+use crate::friction_case::{Case, Slide};
 use crate::friction_found::Found;
+use crate::friction_place::{Place, Stop};
+use crate::friction_rules::{answer, tables};
 use crate::grid::Grid;
 use crate::init::initialised;
 
@@ -178,16 +180,22 @@ impl Sliding {
             status,
             message: String::new(),
             p: p.to_vec(),
+            e: Vec::new(),
+            contact: Vec::new(),
             u: u.to_vec(),
             q: vectors(&self.traction),
             slip: vectors(&self.slip),
             adhesion: self.adhesion[..n].to_vec(),
             report,
+            overrun: None,
             written: true,
         };
         let case = Case { place, slide, stop, carried: 0.0 };
-        let failures = answer(&case, &found, self.certified);
-        let mut texts: Vec<String> = failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
+        // An area that is fixed may pull, which is no part of what is certified here.
+        let certified = self.certified && (case.place.is_alike() || p.iter().all(|p| *p >= 0.0));
+        let verdict = answer(&case, &found, certified);
+        let mut texts: Vec<String> =
+            verdict.failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
         texts.extend(beyond.then(|| "friction writes beyond the grid".to_string()));
         texts
     }

@@ -45,10 +45,18 @@ impl Scene {
     }
 }
 
-/// Cancels in a given call.
+/// Cancels once, in a given call of it.
 pub struct Canceller {
     pub calls: u32,
+    /// Which one; 0: never.
     pub at: u32,
+}
+
+impl Canceller {
+    /// Calls after the one that cancelled, if one did: there must be none.
+    pub fn overrun(&self) -> Option<u32> {
+        (self.at > 0).then(|| self.calls.checked_sub(self.at)).flatten()
+    }
 }
 
 /// Counts its calls, and cancels.
@@ -60,7 +68,7 @@ pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user:
     // SAFETY: `user` is the canceller of this call.
     let canceller = unsafe { &mut *user.cast::<Canceller>() };
     canceller.calls += 1;
-    i32::from(canceller.calls >= canceller.at)
+    i32::from(canceller.calls == canceller.at)
 }
 
 fn options(how: &How, previous: bool, canceller: &mut Canceller) -> contact_normal_options {
@@ -91,6 +99,8 @@ pub struct Outputs {
     pub e: Vec<f64>,
     pub contact: Vec<i32>,
     pub report: contact_normal_report,
+    /// Callbacks after the one that cancelled, if one did.
+    pub overrun: Option<u32>,
     /// Whether something was written.
     pub written: bool,
 }
@@ -120,6 +130,7 @@ fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
         e: vec![SENTINEL; n],
         contact,
         report: initialised(contact_normal_report_init),
+        overrun: None,
         written: false,
     };
     let mut fields = initialised(contact_normal_fields_init);
@@ -245,7 +256,7 @@ fn run(
     let force = outputs.report.force.to_bits();
     let status = call(&scene.scene, &options, &mut fields, &mut outputs.report);
     outputs.written = outputs.bits() != before || outputs.report.force.to_bits() != force;
-    outputs.status = status;
+    (outputs.status, outputs.overrun) = (status, canceller.overrun());
     outputs.message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
     outputs
 }

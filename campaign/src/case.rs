@@ -44,11 +44,15 @@ pub struct Case {
     /// Where other surfaces of its kind come from.
     pub surfaces: Surfaces,
     pub h: Vec<f64>,
+    /// What rounding may have done to h.
+    pub h_rounding: f64,
     pub load: Load,
     pub effects: Effects,
     pub how: How,
     /// Solved through a handle, by a sequence of calls.
     pub through_handle: bool,
+    /// Of what people bring.
+    pub is_measured: bool,
 }
 
 impl Case {
@@ -90,10 +94,12 @@ impl Case {
             surface,
             surfaces: surface::any,
             h,
+            h_rounding: 0.0,
             load,
             effects,
             how,
             through_handle,
+            is_measured: false,
         }
     }
 

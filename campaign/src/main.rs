@@ -5,6 +5,7 @@
 //! cargo run --release -p campaign -- 20000 500000     of seeds 500000..520000
 //! cargo run --release -p campaign -- --measured 5000  cases of what people bring, of seeds 0..5000
 //! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
+//! cargo run --release -p campaign -- --measured --friction 5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
 //! ```
@@ -30,7 +31,7 @@ fn main() -> ExitCode {
     }
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
     if is_friction {
-        return friction(count, first);
+        return friction(count, first, is_measured);
     }
     let mut account = Account::default();
     for seed in first..first + count {
@@ -64,22 +65,30 @@ fn replay(run: &Run) -> ExitCode {
 }
 
 /// Cases with friction: how the calls of each motion ended, and what was not kept.
-fn friction(count: u64, first: u64) -> ExitCode {
-    let (mut ends, mut failed) = (BTreeMap::new(), false);
+fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
+    let (mut ends, mut excuses, mut failed) = (BTreeMap::new(), BTreeMap::new(), false);
     for seed in first..first + count {
-        let (case, statuses, failures) = campaign::friction::check(&mut Random::new(seed ^ 0x00f1_c710));
-        for status in statuses {
-            *ends.entry((case.motion(), case.place.is_alike(), status)).or_insert(0) += 1;
+        let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
+        for status in run.statuses {
+            *ends.entry((run.case.kind(), status)).or_insert(0) += 1;
         }
-        for failure in failures {
+        for why in run.verdict.excuses {
+            excuses.entry(why).or_insert((0, seed)).0 += 1;
+        }
+        for failure in run.verdict.failures {
             failed = true;
             println!("seed {seed}: {}: {}", failure.promise, failure.details);
         }
     }
-    println!("| motion | bodies | status | calls |");
-    println!("|---|---|---:|---:|");
-    for ((motion, alike, status), calls) in ends {
-        println!("| {motion} | {} | {status} | {calls} |", if alike { "like" } else { "unlike" });
+    println!("| motion | status | calls |");
+    println!("|---|---:|---:|");
+    for ((kind, status), calls) in ends {
+        println!("| {kind} | {status} | {calls} |");
+    }
+    println!("\n| excused | calls | first seed |");
+    println!("|---|---:|---:|");
+    for (why, (calls, seed)) in excuses {
+        println!("| {why} | {calls} | {seed} |");
     }
     end(!failed)
 }

@@ -48,6 +48,23 @@ fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
     }
 }
 
+/// Whether what is left of the conditions is round-off.
+pub fn is_at_rounding(case: &Case, found: &Outputs) -> bool {
+    Measures::of(case, found).holds_to_rounding(case, found)
+}
+
+/// What holds of pressures whose problem changed after they were found: numbers, bounds, u = A p.
+pub fn is_admissible(case: &Case, found: &Outputs) -> Vec<Failure> {
+    let mut failures = sound(case, found);
+    if failures.is_empty() {
+        let m = Measures::of(case, found);
+        if !(m.wrong_u <= m.rounding) {
+            failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
+        }
+    }
+    failures
+}
+
 /// Checks what an answer with status >= 0 says, and asks for no success.
 pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     let mut failures = sound(case, found);
@@ -60,7 +77,10 @@ pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
         failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
     }
     if !(m.wrong_e <= 0.0) {
-        failures.extend(failure("e is h - approach + u", format!("off by {:.2e}", m.wrong_e)));
+        failures.extend(failure(
+            "e is h - approach + u",
+            format!("off by {:.2e}, {sizes}, {} in contact", m.wrong_e, m.count),
+        ));
     }
     if found.status == CONTACT_NORMAL_OK {
         failures.extend(solved(case, found, &m, &sizes));
@@ -86,6 +106,10 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
         return failure("no NaN or infinity", format!("status {status}, residual reported {:.2e}", report.residual));
     }
     let mut failures = Vec::new();
+    if let Some(overrun) = found.overrun.filter(|n| *n > 0 || found.status != CONTACT_NORMAL_CANCELLED) {
+        let details = format!("status {}, {overrun} callbacks after the one that cancelled", found.status);
+        failures.extend(failure("cancelled once stays cancelled", details));
+    }
     let fixed = &case.how.fixed;
     if fixed.is_none() && found.p.iter().any(|&p| p < 0.0) {
         failures.extend(failure("p >= 0", format!("status {status}")));
@@ -169,7 +193,7 @@ fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     if matches!(case.load, Load::Approach(_)) && !m.residual_holds(1.0) {
         failures.extend(failure("stopped: no worse than p = 0", m.text(found)));
     }
-    if status == CONTACT_NORMAL_CANCELLED && case.how.cancel_at.is_none() {
+    if status == CONTACT_NORMAL_CANCELLED && found.overrun.is_none() {
         failures.extend(failure("cancelled by nobody", m.text(found)));
     }
     failures

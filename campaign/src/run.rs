@@ -90,9 +90,9 @@ fn beside(run: &mut Run) {
         u if u < 0.10 && case.grid.len() < 15000 => batch::run(case, random),
         u if u < 0.15 && case.grid.len() < 15000 => set_influence::run(case, random),
         u if u < 0.25 => {
-            let (asked, statuses, failures) = friction::check(random);
-            run.beside = Some((asked.kind(), statuses));
-            failures.into()
+            let asked = friction::run(random, case.is_measured);
+            run.beside = Some((asked.case.kind(), asked.statuses));
+            asked.verdict
         }
         _ => return,
     };

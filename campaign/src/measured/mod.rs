@@ -5,6 +5,8 @@ mod grids;
 mod heights;
 mod loads;
 
+pub use loads::any as load;
+
 use crate::case::{Case, How};
 use crate::coating;
 use crate::effects::{self, Effects, Kinds};
@@ -39,7 +41,7 @@ pub fn case(seed: u64) -> Case {
     if is_coated(random, &grid, &effects) {
         effects.coating = Some(coating::random(random, &grid, shear_modulus, poisson_ratio));
     }
-    let load = loads::any(random, &grid, &h, c, effects.period);
+    let load = load(random, &grid, &h, c, effects.period);
     if kinds.limit {
         let scales = Scales::of(&h, &effects, &grid, c);
         effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
@@ -54,10 +56,12 @@ pub fn case(seed: u64) -> Case {
         surface: name,
         surfaces: surface,
         h,
+        h_rounding: 0.0,
         load,
         effects,
         how,
         through_handle,
+        is_measured: true,
     }
 }
 
