@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
-use crate::run::Run;
+use crate::run::{Run, BESIDE};
 
 /// Counts of calls by how they ended: solved, stopped (> 0), refused (< 0).
 #[derive(Clone, Copy, Default)]
@@ -69,7 +69,10 @@ impl Account {
         }
         self.excuse(&run.verdict.excuses, run.case.seed);
         for failure in &run.verdict.failures {
-            let text = format!("{}: {}", run.case.describe(), failure.details);
+            let text = match failure.details.strip_prefix(BESIDE) {
+                Some(details) => details.to_string(),
+                None => format!("{}: {}", run.case.describe(), failure.details),
+            };
             self.failures.entry(failure.promise).or_default().push((run.case.seed, text));
         }
     }

@@ -77,7 +77,7 @@ impl Case {
         let own = &mut Random::new(seed ^ 0xc0a7);
         // Elements of an oracle by quadrature are not slender.
         if own.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
-            effects.coating = Some(coating::random(own, &grid, shear_modulus, poisson_ratio));
+            effects.coating = Some(coating::random(own, &grid, (shear_modulus, poisson_ratio), effects.period));
         }
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);

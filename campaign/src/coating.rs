@@ -8,7 +8,7 @@
 //!
 //! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule: layers here are at least
 //! half as thick as elements are long. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
-//! over elements.
+//! over elements, and the mean pressure P compresses the layer by `P t/M`, `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
 
 use std::f64::consts::PI;
 
@@ -39,14 +39,23 @@ const POINTS: usize = 12;
 /// Nodes of a panel of the table, as many as that to be good to 1e-13; panels are half as wide as `asinh(rho/2)` changes by 1.
 const NODES: usize = 14;
 
-/// Layers on one body or on both, of bodies that are not rigid.
-pub fn random(random: &mut Random, grid: &Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Coating {
+/// Layers on one body or on both, of bodies that are not rigid; with two periods on small grids down to 1/16 of an element.
+pub fn random(
+    random: &mut Random,
+    grid: &Grid,
+    (shear_modulus, poisson_ratio): ([f64; 2], [f64; 2]),
+    period: Option<(bool, bool)>,
+) -> Coating {
     let longer = grid.dx.max(grid.dy);
+    let is_thin = period == Some((true, true)) && grid.len() <= 600;
     let size = (grid.mx as f64 * grid.dx).hypot(grid.my as f64 * grid.dy);
     let mut layer = |b: usize| {
         let equal = random.chance(0.05);
         let factor = random.decades(0.01, 100.0);
-        let thickness = f64::max(longer * random.decades(0.5, 50.0), 0.02 * size);
+        let thickness = match is_thin {
+            true => longer * random.decades(0.0626, 50.0),
+            false => f64::max(longer * random.decades(0.5, 50.0), 0.02 * size),
+        };
         let poisson_ratio = if equal { poisson_ratio[b] } else { random.between(0.0, 0.5) };
         let shear_modulus = shear_modulus[b] * if equal { 1.0 } else { factor };
         Layer { thickness: if random.chance(0.05) { 0.0 } else { thickness }, shear_modulus, poisson_ratio }
@@ -174,7 +183,11 @@ impl Coating {
                 continue;
             }
             match period {
-                Some((true, true)) => add_waves(grid, (c, t, mu, nu), &mut quadrant.values),
+                Some((true, true)) => {
+                    add_waves(grid, (c, t, mu, nu), &mut quadrant.values);
+                    let mean = compression((c, t, mu, nu)) / grid.len() as f64;
+                    quadrant.values.iter_mut().for_each(|value| *value += mean);
+                }
                 Some(_) => {}
                 None => add_elements(grid, (c, t, mu, nu), &mut quadrant.values),
             }
@@ -183,6 +196,15 @@ impl Coating {
         quadrant.rounding += ACCURACY * largest;
         quadrant
     }
+}
+
+/// What a mean pressure of 1 compresses a layer by: `t/M`. One that is no other material than the body compresses nothing.
+fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
+    if mu == 1.0 && nu1 == nu2 {
+        return 0.0;
+    }
+    // c is (1 - nu1)/(2 pi G1).
+    PI * c * t * (1.0 - 2.0 * nu1) / ((1.0 - nu1) * (1.0 - nu1))
 }
 
 fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {

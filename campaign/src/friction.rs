@@ -28,7 +28,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
     let without = frictionless(&place, &Stop::unhindered(random));
     if without.status < 0 {
         // More force than the limit carries: the normal campaign asks why.
-        let case = Case::random(random, Place { load: crate::grid::Load::Force(0.0), ..place }, &without);
+        let case = Case::random(random, place, &without);
         return Run { case, statuses: vec![without.status], verdict: Verdict::excused("friction: no normal problem") };
     }
     let mut case = Case::random(random, place, &without);
@@ -43,6 +43,13 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
         verdict.add(negative_pressures(random, &case, &without));
     }
     Run { case, statuses, verdict }
+}
+
+/// A case alone, if its normal problem is one.
+pub fn draw(random: &mut Random) -> Option<Case> {
+    let place = Place::random(random, false);
+    let without = frictionless(&place, &Stop::unhindered(random));
+    (without.status == CONTACT_NORMAL_OK).then(|| Case::random(random, place, &without))
 }
 
 fn on_its_own(case: &Case, statuses: &mut Vec<i32>) -> Verdict {

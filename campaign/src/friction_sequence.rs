@@ -29,6 +29,10 @@ struct Sequence<'a> {
 pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) {
     let place = Place::random(random, is_measured);
     let without = frictionless(&place, &Stop::unhindered(random));
+    if without.status < 0 {
+        let (case, statuses) = (Case::random(random, place, &without), vec![without.status]);
+        return (case, statuses, Verdict::excused("friction: no normal problem"));
+    }
     let mut case = Case::random(random, place, &without);
     (case.stop.max_cycles, case.stop.cancel_at) = (1000, None);
     let handle = match Handle::new(&case.place, &case.stop) {

@@ -39,7 +39,7 @@ pub fn case(seed: u64) -> Case {
     let c = compliance(shear_modulus, poisson_ratio);
     let mut effects = effects::make(random, &kinds, &grid, c);
     if is_coated(random, &grid, &effects) {
-        effects.coating = Some(coating::random(random, &grid, shear_modulus, poisson_ratio));
+        effects.coating = Some(coating::random(random, &grid, (shear_modulus, poisson_ratio), effects.period));
     }
     let load = load(random, &grid, &h, c, effects.period);
     if kinds.limit {
