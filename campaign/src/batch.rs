@@ -43,10 +43,10 @@ pub fn run(case: &Case, random: &mut Random) -> Verdict {
             }
             continue;
         }
-        verdict.add(check(case, outputs).within(&format!("problem {k} of a batch: ")));
+        verdict.add(check(case, outputs).within(&format!("{}: problem {k} of a batch: ", case.describe())));
         let alone = call::solve(case);
         if outputs.status != alone.status || (alone.status >= 0 && outputs.bits() != alone.bits()) {
-            let details = format!("problem {k}: status {} and {}", outputs.status, alone.status);
+            let details = format!("{}: problem {k}: status {} and {}", case.describe(), outputs.status, alone.status);
             verdict.fail("a batch gives the bits of single calls", details);
         }
     }

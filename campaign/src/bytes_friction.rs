@@ -191,8 +191,9 @@ impl Sliding {
             written: true,
         };
         let case = Case { place, slide, stop, carried: 0.0 };
-        // An area that is fixed may pull, which is no part of what is certified here.
-        let certified = self.certified && (case.place.is_alike() || p.iter().all(|p| *p >= 0.0));
+        // Own tables of unlike bodies couple nothing here; an area that is fixed may pull.
+        let couples = !case.place.is_alike();
+        let certified = self.certified && !(couples && (!self.tables.is_empty() || p.iter().any(|p| *p < 0.0)));
         let verdict = answer(&case, &found, certified);
         let mut texts: Vec<String> =
             verdict.failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();

@@ -74,8 +74,10 @@ pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, b
         }
     }
     // Sums of terms of which each is good to some units of round-off, and the trapezoidal rule's 7e-18. The modes of a single element of
-    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient.
-    Quadrant { mx, values, rounding: 64.0 * f64::EPSILON * (sizes + c * dx.max(dy)) }
+    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient. The uniform mode is the difference of two
+    // edges' primitives, which are of the size of the grid's width.
+    let width = my as f64 * dy;
+    Quadrant { mx, values, rounding: f64::EPSILON * (64.0 * (sizes + c * dx.max(dy)) + 16.0 * c * width / mx as f64) }
 }
 
 /// Mode j = 0 for ky = 0..my.

@@ -62,7 +62,7 @@ pub fn run(case: &Case, random: &mut Random) -> Verdict {
             asked.effects.influence = None;
         }
         let outputs = handle.solve(&asked, false);
-        verdict.add(check(&case, &outputs).within("after set_influence: "));
+        verdict.add(check(&case, &outputs).within(&format!("{}: after set_influence: ", case.describe())));
         let fresh = call::solve(&case);
         if outputs.status != fresh.status || outputs.bits() != fresh.bits() {
             let details = format!("status {} and {}", outputs.status, fresh.status);

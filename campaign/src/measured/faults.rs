@@ -8,15 +8,15 @@ pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str>
     let mut names = Vec::new();
     let count = random.pick(&[0, 0, 1, 1, 1, 2, 2, 3]);
     for _ in 0..count {
-        names.push(match random.integer(0, 10) {
+        names.push(match random.integer(0, 11) {
             0 => tilt(random, grid, h),
             1 => quantise(random, h),
             2 => plateau(random, h),
-            3 | 4 => spikes(random, h),
-            5 => pits(random, h),
-            6 => step(random, grid, h),
-            7 => stripes(random, grid, h),
-            8 | 9 => holes(random, grid, h),
+            3..=5 => spikes(random, h),
+            6 => pits(random, h),
+            7 => step(random, grid, h),
+            8 => stripes(random, grid, h),
+            9 | 10 => holes(random, grid, h),
             _ => offset(random, h),
         });
     }

@@ -74,7 +74,7 @@ fn kinds(random: &mut Random, grid: &Grid) -> Kinds {
         kinds.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
     }
     kinds.layer = random.chance(0.12);
-    kinds.limit = random.chance(0.15);
+    kinds.limit = random.chance(0.2);
     if kinds.period.is_none() {
         kinds.patches = random.chance(0.06);
         kinds.influence = random.chance(0.06);
@@ -100,8 +100,11 @@ fn how(
     (limited, grid): (bool, &Grid),
 ) -> How {
     let mut how = How::any(random, scales, h, load, limited);
-    if random.chance(0.5) || grid.len() > 12000 {
+    if random.chance(0.6) || grid.len() > 12000 {
         how.method = 0;
+    }
+    if random.chance(0.6) {
+        (how.given, how.fixed, how.cancel_at, how.max_cycles) = (None, None, None, 1000);
     }
     how
 }
