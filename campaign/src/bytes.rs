@@ -5,8 +5,8 @@ use std::ptr::null_mut;
 
 use contact_normal::ffi::*;
 
-use crate::bytes_call::{Call, Target};
-use crate::bytes_reader::Bytes;
+use crate::bytes_call::Call;
+use crate::bytes_reader::{Bytes, Target};
 
 /// A scene and options from bytes, through the plain call and through a handle. Returns the statuses, here as below.
 pub fn scene_and_options(data: &[u8]) -> Vec<i32> {

@@ -6,7 +6,7 @@ use std::ptr::null;
 use contact_normal::ffi::*;
 
 use crate::bytes_friction::Sliding;
-use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
+use crate::bytes_reader::{Bytes, Target, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
@@ -15,17 +15,6 @@ use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 use crate::rules::is_true;
-
-/// What the bytes become beside a scene and options.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Target {
-    /// Effects that the bytes name, friction among them.
-    Scene,
-    /// A table of coefficients, too.
-    Table,
-    /// Friction, whatever the bytes.
-    Friction,
-}
 
 /// Everything that a call reads or writes.
 pub struct Call {

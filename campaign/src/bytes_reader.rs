@@ -6,6 +6,17 @@ pub const ROOM: usize = 256;
 pub const SENTINEL: f64 = -12345.678;
 pub const SENTINEL_CONTACT: i32 = -77;
 
+/// What the bytes become beside a scene and options.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Target {
+    /// Effects that the bytes name, friction among them.
+    Scene,
+    /// A table of coefficients, too.
+    Table,
+    /// Friction, whatever the bytes.
+    Friction,
+}
+
 /// Bytes, read one value after the other; zeros when there are no more.
 pub struct Bytes<'a> {
     data: &'a [u8],

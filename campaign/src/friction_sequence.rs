@@ -57,7 +57,7 @@ impl Sequence<'_> {
         }
         match self.random.integer(0, 9) {
             0 | 1 => self.without_friction(),
-            2 | 3 => self.from_rest(),
+            2 | 3 => self.start(),
             4 | 5 => self.continued(),
             6 | 7 => self.refused(),
             8 => self.cancelled(),
@@ -100,7 +100,7 @@ impl Sequence<'_> {
         self.fail_unless(found.bits() == fresh.bits(), "a start from nothing has the bits of a new handle");
     }
 
-    fn from_rest(&mut self) {
+    fn start(&mut self) {
         let Case { place, slide, stop, .. } = &self.case;
         let found = self.handle.solve(place, Some((slide, From::Slide)), stop);
         let fresh = call(place, slide, stop);

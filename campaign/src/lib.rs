@@ -1,9 +1,10 @@
 //! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
 //!
-//! `case` makes a scene from a seed, `call` has the library solve it, `operator` (with `half_space`) sums displacements directly,
-//! `rules` has the promises, `bytes` (with `bytes_friction`) turns random bytes into calls, `sequence` what a handle promises beyond them, `account` what was run and
-//! what failed. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`,
-//! `friction`. Nothing of
+//! `case` makes a scene from a seed, `measured` one of what people bring, `call` has the library solve it, `operator` (with `half_space`,
+//! `coating` and `fft`) multiplies displacements, `rules` has the promises, `verdict` what was broken and what is excused, `sequence` what a
+//! handle promises beyond them, `run` puts this together, and `account` tells what was run. `bytes` (with `bytes_friction`) turns random
+//! bytes into calls. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`
+//! (with `stress_waves`), and `friction` with its rules, its coefficients (`tangential`) and its handles (`friction_sequence`). Nothing of
 //! the library is used but the C ABI's functions: a change of its core does not touch this.
 
 pub mod account;
@@ -29,6 +30,7 @@ pub mod friction_rules;
 pub mod friction_sequence;
 pub mod grid;
 pub mod half_space;
+mod hankel;
 mod init;
 pub mod measured;
 mod measures;

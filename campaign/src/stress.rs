@@ -15,10 +15,10 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::coating::gauss;
 use crate::effect_structs::effect_structs;
 use crate::effects::{self, Effects};
 use crate::grid::Grid;
+use crate::hankel::gauss;
 use crate::init::initialised;
 use crate::random::Random;
 use crate::stress_waves::Waves;

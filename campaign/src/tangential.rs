@@ -15,10 +15,10 @@
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
-use crate::coating::gauss;
 use crate::fft::Convolution;
 use crate::friction_place::Place;
 use crate::grid::Grid;
+use crate::hankel::gauss;
 
 pub type Vector = [f64; 2];
 
