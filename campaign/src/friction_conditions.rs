@@ -76,7 +76,7 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
     let (mut left, mut rigid, mut displaced, mut slip_error) = (Vec::new(), Vec::new(), Vec::new(), 0.0f64);
     for i in 0..found.q.len() {
         let (q, bound) = (found.q[i], slide.mu[i] * found.p[i]);
-        if !(bound > 0.0) {
+        if !(found.p[i] > 0.0) {
             continue;
         }
         let (own, largest) = slide.rigid_slip(&case.place.grid, i, found.report.creepage);
@@ -84,6 +84,9 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         rounding = rounding.max(8.0 * f64::EPSILON * largest + d.rounding);
         let s = [0, 1].map(|k: usize| w[k] + d.by_q[i][k] - d.before[i][k]);
         slip_error = slip_error.max(length([0, 1].map(|k: usize| s[k] - found.slip[i][k])));
+        if !(bound > 0.0) {
+            continue;
+        }
         let mut rest = s;
         if length(q) >= bound * ON_THE_CIRCLE {
             let outward = q.map(|value| value / length(q));

@@ -42,11 +42,9 @@ pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
         }
         return broken.verdict;
     }
-    let carried = check_bounds(case, found, &mut broken);
+    check_bounds(case, found, &mut broken);
     let conditions = conditions(case, found, before);
-    if carried > 0.0 {
-        check_slip(found, &conditions, &mut broken);
-    }
+    check_slip(found, &conditions, &mut broken);
     check_contact(found, &conditions, &mut broken);
     if status > 0 && broken.verdict.failures.is_empty() {
         check_stop(found, &conditions, &mut broken);

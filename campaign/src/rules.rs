@@ -176,6 +176,10 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
             failures.extend(failure("OK: force", format!("{force:e} for {prescribed:e}")));
         }
     }
+    if m.count == 0.0 && found.report.residual != 0.0 {
+        let details = format!("reported {:.2e}, no element in contact", found.report.residual);
+        failures.extend(failure("the report's residual is the residual", details));
+    }
     // Two sums of the same numbers, and a residual whose e is off by rounding.
     let rounding = m.rounding * m.count.sqrt() / m.distance;
     if m.distance > 0.0 && !((found.report.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {

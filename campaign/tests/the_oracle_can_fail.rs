@@ -96,7 +96,8 @@ fn spoiled_answers_with_friction_are_found() {
     for seed in 0..200 {
         let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
         let found = call(&case.place, &case.slide, &case.stop);
-        let is_usual = found.status == 0 && found.report.contact_count > 3 && case.stop.tolerance < 1e-3;
+        // Tractions before of 1e9 times the bounds leave no digits of the slip.
+        let is_usual = found.status == 0 && found.report.contact_count > 3 && case.slide.previous.is_none();
         if !is_usual || !campaign::friction_rules::check(&case, &found, &case.before(&found.p)).failures.is_empty() {
             continue;
         }
