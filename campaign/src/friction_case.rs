@@ -83,8 +83,9 @@ pub struct Case {
 }
 
 /// mu of the elements, and what motions go by: extremes do not say what moves.
-fn coefficients(random: &mut Random, n: usize) -> (Vec<f64>, bool, f64) {
+fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bool, f64) {
     let mu = match random.uniform() {
+        u if is_roller && u < 0.5 => random.decades(1e-6, 0.01),
         u if u < 0.05 => 0.0,
         u if u < 0.10 => 1e9,
         u if u < 0.15 => random.decades(1e-9, 1e9),
@@ -125,15 +126,16 @@ impl Case {
     /// A motion or forces of the size that the bodies' pressures suggest.
     pub fn random(random: &mut Random, place: Place, without: &Found) -> Case {
         let (grid, n) = (place.grid, place.grid.len());
-        let (mu, uniform, usual) = coefficients(random, n);
-        let motion = random.integer(0, 2) as i32;
+        let is_roller = place.surface == "roller";
+        let (mu, uniform, usual) = coefficients(random, n, is_roller);
+        let motion = if is_roller && random.chance(0.6) { 2 } else { random.integer(0, 2) as i32 };
         let is_shift = motion == CONTACT_NORMAL_MOTION_SHIFT;
         let size = (grid.mx as f64 * grid.dx).max(grid.my as f64 * grid.dy);
         let largest = |values: &[f64]| values.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
         let slip = usual * largest(&without.u);
         let creepage = if is_shift { slip } else { slip / size };
         let normal: f64 = mu.iter().zip(&without.p).map(|(mu, p)| mu * p * grid.element_area()).sum();
-        let prescribed = [0, 1].map(|_| i32::from(random.chance(0.25)));
+        let prescribed = [0, 1].map(|k| i32::from(random.chance(if is_roller && k == 0 { 0.7 } else { 0.25 })));
         let given = prescribed.iter().filter(|&&k| k == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE).count();
         let signed = |random: &mut Random, value: f64| if random.chance(0.5) { value } else { -value };
         let amount = prescribed.map(|kind| {
@@ -162,8 +164,13 @@ impl Case {
             amount,
             spin: signed(random, spin),
             spin_centre: if random.chance(0.8) { [0.0; 2] } else { [size * random.between(-2.0, 2.0), 0.3 * size] },
-            distance: if random.chance(0.6) { 0.0 } else { grid.dx.max(grid.dy) * step(random.between(0.3, 3.0)) },
+            distance: if is_roller || random.chance(0.6) {
+                0.0
+            } else {
+                grid.dx.max(grid.dy) * step(random.between(0.3, 3.0))
+            },
             direction: match random.uniform() {
+                u if is_roller => [0.0, std::f64::consts::PI][usize::from(u < 0.5)],
                 u if u < 0.4 => 0.0,
                 u if u < 0.7 => random.pick(&[0.5, 1.0, 1.5]) * std::f64::consts::PI,
                 _ => random.between(0.0, 6.0),

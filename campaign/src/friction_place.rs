@@ -43,7 +43,11 @@ fn elements(random: &mut Random, unit: f64) -> Grid {
         u if u < 0.20 => (1, random.integer(2, 24)),
         _ => (random.integer(2, 24), random.integer(2, 24)),
     };
-    let dy = unit * if random.chance(0.5) { 1.0 } else { random.decades(0.25, 4.0) };
+    let dy = match random.uniform() {
+        u if u < 0.5 => unit,
+        u if u < 0.9 => unit * random.decades(0.25, 4.0),
+        _ => unit * random.decades(0.02, 50.0),
+    };
     Grid { mx, my, dx: unit, dy }
 }
 
@@ -55,6 +59,10 @@ fn large(random: &mut Random, unit: f64) -> Grid {
         u if u < 0.9 => (random.integer(10, 50), random.integer(10, 50)),
         _ => (random.integer(50, 100), random.integer(50, 100)),
     };
+    // Rollers: elements as long as the contact is wide, and longer.
+    if my == 1 && random.chance(0.4) {
+        return Grid { mx, my, dx: unit, dy: unit * random.decades(1.0, 5.0 * mx as f64) };
+    }
     let (mx, my) = if random.chance(0.5) { (mx, my) } else { (my, mx) };
     let dy = unit * if random.chance(0.6) { 1.0 } else { random.decades(0.25, 4.0) };
     Grid { mx, my, dx: unit, dy }
@@ -73,6 +81,10 @@ impl Place {
         let grid = if is_measured { large(random, unit) } else { elements(random, unit) };
         let (shear_modulus, poisson_ratio) = bodies(random);
         let mut place = Place::new(grid, shear_modulus, poisson_ratio);
+        if random.chance(0.08) {
+            place.become_roller(random, unit);
+            return place;
+        }
         let surfaces = if is_measured { measured::surface } else { surface::any };
         let (surface, h) = surfaces(random, &grid);
         let height = unit * random.decades(1e-4, 1.0);
@@ -91,6 +103,20 @@ impl Place {
     /// A limit for the load.
     pub fn limit(&self, random: &mut Random) -> Option<Values> {
         Some(scales::limit(random, &self.scales(), self.load, &self.h, &self.grid))
+    }
+
+    /// A smooth cylinder on a line of elements that are long across: plane strain, or nearly; the load is a part of the line's.
+    fn become_roller(&mut self, random: &mut Random, unit: f64) {
+        let (n, length) = (random.integer(3, 300), random.decades(10.0, 1e6));
+        self.grid = Grid { mx: n, my: 1, dx: unit, dy: unit * length };
+        let radius = unit * n as f64 * random.decades(1.0, 1e4);
+        let x = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * unit;
+        self.surface = "roller".into();
+        self.h = (0..n).map(|i| x(i).powi(2) / (2.0 * radius)).collect();
+        // Hertz: a line of half width a carries pi E* a^2/(4 R) on each length.
+        let e_star = 1.0 / (std::f64::consts::PI * compliance(self.shear_modulus, self.poisson_ratio));
+        let a = random.between(0.1, 0.45) * n as f64 * unit;
+        self.load = Load::Force(0.25 * std::f64::consts::PI * e_star * a * a / radius * self.grid.dy);
     }
 
     fn scales(&self) -> Scales {

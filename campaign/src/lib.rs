@@ -45,4 +45,5 @@ pub mod stress;
 mod stress_waves;
 pub mod surface;
 mod tangential;
+mod tangential_coefficients;
 pub mod verdict;

@@ -1,16 +1,5 @@
-//! Displacements by tractions and by pressures, of like and of unlike bodies, by coefficients of the campaign's own.
-//!
-//! Near an element they are differences of closed forms over its corners (Kalker 1990; Johnson, Contact Mechanics, section 3.6), with
-//! `r = hypot(X, Y)`:
-//!
-//! ```text
-//! Axx = ((1 - nu) a + b)/(pi G),   Ayy = (a + (1 - nu) b)/(pi G),   Axy = nu c/(pi G)
-//! Axz = -K/(pi G) [Y ln r + X atan(Y/X)],   Ayz = -K/(pi G) [X ln r + Y atan(X/Y)]
-//! a = [X asinh(Y/|X|)],   b = [Y asinh(X/|Y|)],   c = [-r],   K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4
-//! ```
-//!
-//! and far from it sums over sixteen Gauss points of the kernels that these are integrals of. Tractions displace along the normal by
-//! `-(Axz qx + Ayz qy)`.
+//! Displacements by tractions and by pressures, of like and of unlike bodies, by coefficients of the campaign's own
+//! (`tangential_coefficients`). Tractions displace along the normal by `-(Axz qx + Ayz qy)`.
 
 use std::cell::OnceCell;
 use std::f64::consts::PI;
@@ -18,25 +7,11 @@ use std::f64::consts::PI;
 use crate::fft::Convolution;
 use crate::friction_place::Place;
 use crate::grid::Grid;
-use crate::hankel::gauss;
+pub use crate::tangential_coefficients::Vector;
+use crate::tangential_coefficients::{Compliance, Element, Entry};
 
-pub type Vector = [f64; 2];
-
-/// From so many of an element's longer sides on, points stand for it: four of them a side leave `(1/120)^8`.
-const FAR: f64 = 30.0;
 /// Products of more terms are done by the transform.
 const LONG: usize = 300_000;
-
-/// xx, yy, xy, xz, yz.
-type Entry = [f64; 5];
-
-/// What the bodies do: 1/G, nu/G and K/G, means of both and their difference.
-#[derive(Clone, Copy)]
-struct Compliance {
-    shear: f64,
-    poisson: f64,
-    unlike: f64,
-}
 
 /// Coefficients between the elements of a grid, displaced by so many lengths.
 pub struct Operator {
@@ -49,53 +24,6 @@ pub struct Operator {
     transforms: OnceCell<[Convolution; 5]>,
 }
 
-/// Differences of the closed forms over the corners, and the largest of their terms.
-fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
-    let (mut sums, mut largest) = ([0.0; 5], 0.0f64);
-    for (sx, sy) in [(0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)] {
-        let (cx, cy) = (x + sx * dx, y + sy * dy);
-        let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() };
-        let across = |a: f64, b: f64| {
-            // In units of the element: its logarithm goes out.
-            let along = if b == 0.0 { 0.0 } else { b * (a.hypot(b) / dx).ln() };
-            along + if a == 0.0 { 0.0 } else { a * (b / a).atan() }
-        };
-        let parts = [term(cx, cy), term(cy, cx), -cx.hypot(cy), across(cx, cy), across(cy, cx)];
-        largest = parts.iter().fold(largest, |largest, part| largest.max(part.abs()));
-        (0..5).for_each(|k| sums[k] += 4.0 * sx * sy * parts[k]);
-    }
-    let [a, b, r, xz, yz] = sums;
-    let entry = [
-        c.shear * (a + b) - c.poisson * a,
-        c.shear * (a + b) - c.poisson * b,
-        c.poisson * r,
-        -c.unlike * xz,
-        -c.unlike * yz,
-    ];
-    (entry.map(|value| value / PI), largest)
-}
-
-/// Gauss points.
-fn far(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> Entry {
-    let mut sums = [0.0; 5];
-    for (u, wu) in rule {
-        for (v, wv) in rule {
-            let (x, y) = (x - (u - 0.5) * dx, y - (v - 0.5) * dy);
-            let (r, w) = (x.hypot(y), wu * wv * dx * dy / PI);
-            let (ex, ey) = (x / r, y / r);
-            let kernel = [
-                (c.shear - c.poisson * ey * ey) / r,
-                (c.shear - c.poisson * ex * ex) / r,
-                c.poisson * ex * ey / r,
-                -c.unlike * ex / r,
-                -c.unlike * ey / r,
-            ];
-            (0..5).for_each(|k| sums[k] += w * kernel[k]);
-        }
-    }
-    sums
-}
-
 impl Operator {
     pub fn new(place: &Place, by: Vector) -> Operator {
         let Grid { mx, my, dx, dy } = place.grid;
@@ -103,14 +31,10 @@ impl Operator {
         let [shear, poisson] = [each([1.0; 2]), each(place.poisson_ratio)].map(|[a, b]| 0.5 * (a + b));
         let [one, other] = each(place.poisson_ratio.map(|nu| 1.0 - 2.0 * nu));
         let unlike = if place.is_alike() { 0.0 } else { 0.25 * (one - other) };
-        let (c, rule) = (Compliance { shear, poisson, unlike }, gauss(4));
+        let element = Element::new(Compliance { shear, poisson, unlike }, [dx, dy]);
         let mut largest: f64 = 0.0;
         let mut entry = |kx: i64, ky: i64| {
-            let at = [kx as f64 * dx + by[0], ky as f64 * dy + by[1]];
-            if at[0].hypot(at[1]) > FAR * dx.max(dy) {
-                return far(c, &rule, at, [dx, dy]);
-            }
-            let (entry, terms) = near(c, at, [dx, dy]);
+            let (entry, terms) = element.at([kx as f64 * dx + by[0], ky as f64 * dy + by[1]]);
             largest = largest.max(terms);
             entry
         };
@@ -230,16 +154,6 @@ mod tests {
         for k in 0..5 {
             let size = if k < 3 { sums[0] } else { sums[3].abs() };
             assert!((found[k] - sums[k]).abs() <= 1e-5 * size, "{k}: {} for {}", found[k], sums[k]);
-        }
-    }
-
-    /// Where both are used: to what the closed forms leave of their terms.
-    #[test]
-    fn far_and_near_agree() {
-        let (c, rule) = (Compliance { shear: 0.5, poisson: 0.1, unlike: 0.2 }, gauss(4));
-        for at in [[21.5, 0.3], [0.0, -22.0], [-16.0, 15.0]] {
-            let ((near, terms), far) = (near(c, at, [0.7, 0.4]), far(c, &rule, at, [0.7, 0.4]));
-            assert!((0..5).all(|k| (near[k] - far[k]).abs() <= 32.0 * f64::EPSILON * terms), "{near:?} {far:?}");
         }
     }
 
