@@ -64,11 +64,13 @@ test: tools
 	$(CARGO) test --profile checked --locked --workspace --features contact-normal/test-panics --doc
 
 # N random scenes over all effects, methods, guesses and handles, each certified by an oracle of the campaign's own; prints what
-# was run and every failure. One case again: cargo run --release -p campaign -- --seed S
+# was run, what was excused, and every failure. SURFACES=measured: scenes of what people bring, measured maps with their faults, line
+# scans, strips, punches. One case again: cargo run --release -p campaign -- --seed S, or -- --measured --seed S
 N ?= 20000
 FIRST ?= 0
+SURFACES ?= ordinary
 campaign:
-	$(CARGO) run --release --locked -p campaign -- $(N) $(FIRST)
+	$(CARGO) run --release --locked -p campaign -- $(if $(filter measured,$(SURFACES)),--measured) $(N) $(FIRST)
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
 SOAK ?= 100000

@@ -1,9 +1,9 @@
-//! What was run, what came of it, and every failure.
+//! What was run, what came of it, what was excused, and every failure.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
-use crate::Run;
+use crate::run::{Run, BESIDE};
 
 /// Counts of calls by how they ended: solved, stopped (> 0), refused (< 0).
 #[derive(Clone, Copy, Default)]
@@ -14,6 +14,19 @@ struct Ends {
     failed: usize,
 }
 
+impl Ends {
+    fn add(&mut self, statuses: &[i32], has_failed: bool) {
+        for &status in statuses {
+            *match status {
+                0 => &mut self.solved,
+                1.. => &mut self.stopped,
+                _ => &mut self.refused,
+            } += 1;
+        }
+        self.failed += usize::from(has_failed);
+    }
+}
+
 /// The account of a campaign.
 #[derive(Default)]
 pub struct Account {
@@ -22,6 +35,12 @@ pub struct Account {
     longest: (f64, u64),
     by_effects: BTreeMap<String, Ends>,
     by_method: BTreeMap<&'static str, Ends>,
+    by_surface: BTreeMap<String, Ends>,
+    beside: BTreeMap<String, Ends>,
+    /// Products of AUTO, and the seed, by surface.
+    products: BTreeMap<String, Vec<(f64, u64)>>,
+    /// Per reason: how many, and the first seed.
+    excuses: BTreeMap<&'static str, (usize, u64)>,
     /// Per promise: seed and what happened.
     failures: BTreeMap<&'static str, Vec<(u64, String)>>,
 }
@@ -34,21 +53,34 @@ impl Account {
         if run.seconds > self.longest.0 {
             self.longest = (run.seconds, run.case.seed);
         }
+        // Without its faults.
+        let surface = run.case.surface.split(" + ").next().unwrap_or_default().to_string();
         let effects = self.by_effects.entry(run.case.effects.name()).or_default();
         let method = self.by_method.entry(run.case.method()).or_default();
-        for ends in [effects, method] {
-            for &status in &run.statuses {
-                *match status {
-                    0 => &mut ends.solved,
-                    1.. => &mut ends.stopped,
-                    _ => &mut ends.refused,
-                } += 1;
-            }
-            ends.failed += usize::from(!run.failures.is_empty());
+        let shape = self.by_surface.entry(surface.clone()).or_default();
+        for ends in [effects, method, shape] {
+            ends.add(&run.statuses, !run.verdict.failures.is_empty());
         }
-        for failure in &run.failures {
-            let text = format!("{}: {}", run.case.describe(), failure.details);
+        if let Some((what, statuses)) = &run.beside {
+            self.beside.entry(what.clone()).or_default().add(statuses, !run.verdict.failures.is_empty());
+        }
+        if let Some(products) = run.products {
+            self.products.entry(surface).or_default().push((products, run.case.seed));
+        }
+        self.excuse(&run.verdict.excuses, run.case.seed);
+        for failure in &run.verdict.failures {
+            let text = match failure.details.strip_prefix(BESIDE) {
+                Some(details) => details.to_string(),
+                None => format!("{}: {}", run.case.describe(), failure.details),
+            };
             self.failures.entry(failure.promise).or_default().push((run.case.seed, text));
+        }
+    }
+
+    /// Counts what was excused in a seed.
+    pub fn excuse(&mut self, excuses: &[&'static str], seed: u64) {
+        for why in excuses {
+            self.excuses.entry(why).or_insert((0, seed)).0 += 1;
         }
     }
 
@@ -76,6 +108,9 @@ impl Account {
 }
 
 fn table<K: Display>(f: &mut Formatter<'_>, title: &str, rows: &BTreeMap<K, Ends>) -> fmt::Result {
+    if rows.is_empty() {
+        return Ok(());
+    }
     writeln!(f, "| {title} | OK | stopped early | refused | cases that broke a promise |")?;
     writeln!(f, "|---|---:|---:|---:|---:|")?;
     for (name, Ends { solved, stopped, refused, failed }) in rows {
@@ -84,11 +119,32 @@ fn table<K: Display>(f: &mut Formatter<'_>, title: &str, rows: &BTreeMap<K, Ends
     writeln!(f)
 }
 
+fn table_of_products(f: &mut Formatter<'_>, rows: &BTreeMap<String, Vec<(f64, u64)>>) -> fmt::Result {
+    writeln!(f, "| products of AUTO from nothing | calls | median | 90 % | most | seed of that |")?;
+    writeln!(f, "|---|---:|---:|---:|---:|---:|")?;
+    for (name, list) in rows {
+        let mut sorted = list.clone();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+        let (most, seed) = at(1.0);
+        writeln!(f, "| {name} | {} | {:.1} | {:.1} | {most:.1} | {seed} |", list.len(), at(0.5).0, at(0.9).0)?;
+    }
+    writeln!(f)
+}
+
 impl Display for Account {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         table(f, "effects", &self.by_effects)?;
         table(f, "method", &self.by_method)?;
+        table(f, "surface", &self.by_surface)?;
+        table(f, "asked beside", &self.beside)?;
+        table_of_products(f, &self.products)?;
+        writeln!(f, "| excused | calls | first seed |")?;
+        writeln!(f, "|---|---:|---:|")?;
+        for (why, (calls, seed)) in &self.excuses {
+            writeln!(f, "| {why} | {calls} | {seed} |")?;
+        }
         let (seconds, seed) = self.longest;
-        writeln!(f, "{} cases in {:.1} s; the longest took {seconds:.2} s (seed {seed})", self.cases, self.seconds)
+        writeln!(f, "\n{} cases in {:.1} s; the longest took {seconds:.2} s (seed {seed})", self.cases, self.seconds)
     }
 }

@@ -6,10 +6,11 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::call::{initialised, last_error};
+use crate::call::last_error;
 use crate::half_space::compliance;
+use crate::init::initialised;
 use crate::random::Random;
-use crate::rules::Failure;
+use crate::verdict::Failure;
 
 /// h = r^2/(2 R), from a place of the rectangle.
 struct Ball {

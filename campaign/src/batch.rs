@@ -3,10 +3,11 @@
 use crate::call::{self, Handle};
 use crate::case::{Case, How};
 use crate::random::Random;
-use crate::rules::{check, Failure};
+use crate::rules::check;
+use crate::verdict::Verdict;
 
 /// Solves a case and some of its kind in one call; now and then one of them is none.
-pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
+pub fn run(case: &Case, random: &mut Random) -> Verdict {
     let mut first = case.clone();
     // What all problems of a batch have in common.
     first.how = How {
@@ -16,7 +17,7 @@ pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
         cancel_at: None,
         ..case.how.clone()
     };
-    let Ok(mut handle) = Handle::new(&first) else { return Vec::new() };
+    let Ok(mut handle) = Handle::new(&first) else { return Verdict::default() };
     let mut cases = vec![first.clone()];
     for _ in 0..random.integer(1, 4) {
         let mut next = first.next(random);
@@ -28,29 +29,26 @@ pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
         cases[k].h[0] = f64::NAN;
     }
     let (status, found) = handle.solve_batch(&cases);
-    let mut failures = Vec::new();
+    let mut verdict = Verdict::default();
     let statuses: Vec<i32> = found.iter().map(|outputs| outputs.status).collect();
     let expected = statuses.iter().find(|s| **s < 0).or(statuses.iter().find(|s| **s > 0)).copied().unwrap_or(0);
     if status != expected {
-        failures
-            .push(Failure { promise: "a batch has the first status", details: format!("{status} of {statuses:?}") });
+        verdict.fail("a batch has the first status", format!("{status} of {statuses:?}"));
     }
     for (k, (case, outputs)) in cases.iter().zip(&found).enumerate() {
         if Some(k) == spoiled {
             if outputs.status >= 0 || outputs.written {
                 let details = format!("status {}, written {}", outputs.status, outputs.written);
-                failures.push(Failure { promise: "a batch refuses what is no scene", details });
+                verdict.fail("a batch refuses what is no scene", details);
             }
             continue;
         }
-        let name =
-            |failure: Failure| Failure { details: format!("problem {k} of a batch: {}", failure.details), ..failure };
-        failures.extend(check(case, outputs).into_iter().map(name));
+        verdict.add(check(case, outputs).within(&format!("{}: problem {k} of a batch: ", case.describe())));
         let alone = call::solve(case);
         if outputs.status != alone.status || (alone.status >= 0 && outputs.bits() != alone.bits()) {
-            let details = format!("problem {k}: status {} and {}", outputs.status, alone.status);
-            failures.push(Failure { promise: "a batch gives the bits of single calls", details });
+            let details = format!("{}: problem {k}: status {} and {}", case.describe(), outputs.status, alone.status);
+            verdict.fail("a batch gives the bits of single calls", details);
         }
     }
-    failures
+    verdict
 }

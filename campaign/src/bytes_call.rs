@@ -5,26 +5,16 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::bytes::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::bytes_friction::Sliding;
-use crate::call::{initialised, Outputs};
+use crate::bytes_reader::{Bytes, Target, ROOM, SENTINEL, SENTINEL_CONTACT};
+use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
 use crate::effects::{Effects, OwnCoefficients, Patches, Values};
-use crate::friction_case::{Place, Stop};
+use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
+use crate::init::initialised;
 use crate::rules::is_true;
-
-/// What the bytes become beside a scene and options.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Target {
-    /// Effects that the bytes name, friction among them.
-    Scene,
-    /// A table of coefficients, too.
-    Table,
-    /// Friction, whatever the bytes.
-    Friction,
-}
 
 /// Everything that a call reads or writes.
 pub struct Call {
@@ -233,7 +223,8 @@ impl Call {
             return;
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
-        let place = Place { grid, shear_modulus, poisson_ratio, surface: "bytes", h, load };
+        let place =
+            Place { grid, shear_modulus, poisson_ratio, surface: "bytes".into(), h, load, effects: Effects::default() };
         // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
         if place.is_alike() {
             let failures = is_true(&case, &found);
@@ -270,12 +261,15 @@ impl Call {
             grid,
             shear_modulus: scene.shear_modulus,
             poisson_ratio: scene.poisson_ratio,
-            surface: "bytes",
+            surface: "bytes".into(),
+            surfaces: crate::surface::any,
             h: self.h[..grid.len()].to_vec(),
+            h_rounding: 0.0,
             load,
             effects: self.effects.clone(),
             how,
             through_handle: false,
+            is_measured: false,
         }
     }
 
@@ -290,6 +284,7 @@ impl Call {
             e: self.distance[..n].to_vec(),
             contact: self.contact[..n].to_vec(),
             report: self.report,
+            overrun: None,
             written: true,
         }
     }

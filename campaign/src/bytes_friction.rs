@@ -4,12 +4,14 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::bytes::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
-use crate::call::initialised;
-use crate::friction::{answer, tables};
-use crate::friction_call::Found;
-use crate::friction_case::{Case, Place, Slide, Stop};
+use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
+
+use crate::friction_case::{Case, Slide};
+use crate::friction_found::Found;
+use crate::friction_place::{Place, Stop};
+use crate::friction_rules::{answer, tables};
 use crate::grid::Grid;
+use crate::init::initialised;
 
 /// A pair of arrays, in x and in y.
 type Pair = [Vec<f64>; 2];
@@ -178,16 +180,23 @@ impl Sliding {
             status,
             message: String::new(),
             p: p.to_vec(),
+            e: Vec::new(),
+            contact: Vec::new(),
             u: u.to_vec(),
             q: vectors(&self.traction),
             slip: vectors(&self.slip),
             adhesion: self.adhesion[..n].to_vec(),
             report,
+            overrun: None,
             written: true,
         };
         let case = Case { place, slide, stop, carried: 0.0 };
-        let failures = answer(&case, &found, self.certified);
-        let mut texts: Vec<String> = failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
+        // Own tables of unlike bodies couple nothing here; an area that is fixed may pull.
+        let couples = !case.place.is_alike();
+        let certified = self.certified && !(couples && (!self.tables.is_empty() || p.iter().any(|p| *p < 0.0)));
+        let verdict = answer(&case, &found, certified);
+        let mut texts: Vec<String> =
+            verdict.failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
         texts.extend(beyond.then(|| "friction writes beyond the grid".to_string()));
         texts
     }

@@ -1,7 +1,6 @@
 //! Calls of the C ABI.
 
 use std::ffi::{c_void, CStr};
-use std::mem::MaybeUninit;
 use std::ptr::null_mut;
 
 use contact_normal::ffi::*;
@@ -10,20 +9,11 @@ use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
 use crate::effects::OwnCoefficients;
 use crate::grid::{Grid, Load};
+use crate::init::initialised;
 
 /// What outputs hold before a call.
 pub const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
-
-/// A struct as its `_init` fills it.
-pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
-    let mut value = MaybeUninit::uninit();
-    // SAFETY: `_init` fills a whole struct.
-    unsafe {
-        init(value.as_mut_ptr());
-        value.assume_init()
-    }
-}
 
 /// A scene whose effects point into a case.
 struct Scene {
@@ -55,10 +45,18 @@ impl Scene {
     }
 }
 
-/// Cancels in a given call.
+/// Cancels once, in a given call of it.
 pub struct Canceller {
     pub calls: u32,
+    /// Which one; 0: never.
     pub at: u32,
+}
+
+impl Canceller {
+    /// Calls after the one that cancelled, if one did: there must be none.
+    pub fn overrun(&self) -> Option<u32> {
+        (self.at > 0).then(|| self.calls.checked_sub(self.at)).flatten()
+    }
 }
 
 /// Counts its calls, and cancels.
@@ -70,7 +68,7 @@ pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user:
     // SAFETY: `user` is the canceller of this call.
     let canceller = unsafe { &mut *user.cast::<Canceller>() };
     canceller.calls += 1;
-    i32::from(canceller.calls >= canceller.at)
+    i32::from(canceller.calls == canceller.at)
 }
 
 fn options(how: &How, previous: bool, canceller: &mut Canceller) -> contact_normal_options {
@@ -101,6 +99,8 @@ pub struct Outputs {
     pub e: Vec<f64>,
     pub contact: Vec<i32>,
     pub report: contact_normal_report,
+    /// Callbacks after the one that cancelled, if one did.
+    pub overrun: Option<u32>,
     /// Whether something was written.
     pub written: bool,
 }
@@ -130,6 +130,7 @@ fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
         e: vec![SENTINEL; n],
         contact,
         report: initialised(contact_normal_report_init),
+        overrun: None,
         written: false,
     };
     let mut fields = initialised(contact_normal_fields_init);
@@ -255,7 +256,7 @@ fn run(
     let force = outputs.report.force.to_bits();
     let status = call(&scene.scene, &options, &mut fields, &mut outputs.report);
     outputs.written = outputs.bits() != before || outputs.report.force.to_bits() != force;
-    outputs.status = status;
+    (outputs.status, outputs.overrun) = (status, canceller.overrun());
     outputs.message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
     outputs
 }

@@ -30,6 +30,9 @@ pub struct How {
     pub given: Option<Vec<f64>>,
 }
 
+/// A name and undeformed distances of size about 1.
+pub type Surfaces = fn(&mut Random, &Grid) -> (String, Vec<f64>);
+
 /// A scene and how it is to be solved.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -37,13 +40,19 @@ pub struct Case {
     pub grid: Grid,
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
-    pub surface: &'static str,
+    pub surface: String,
+    /// Where other surfaces of its kind come from.
+    pub surfaces: Surfaces,
     pub h: Vec<f64>,
+    /// What rounding may have done to h.
+    pub h_rounding: f64,
     pub load: Load,
     pub effects: Effects,
     pub how: How,
     /// Solved through a handle, by a sequence of calls.
     pub through_handle: bool,
+    /// Of what people bring.
+    pub is_measured: bool,
 }
 
 impl Case {
@@ -58,7 +67,7 @@ impl Case {
         let shear_modulus =
             [modulus, if random.chance(0.3) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) }];
         let poisson_ratio = [random.between(-0.9, 0.5), 0.3];
-        let (surface, mut h) = surface::any(random, grid.mx, grid.my);
+        let (surface, mut h) = surface::any(random, &grid);
         let height = unit * random.decades(1e-4, 1.0);
         let offset = if random.chance(0.04) { 1e9 * unit } else { 0.0 };
         h.iter_mut().for_each(|h| *h = *h * height + offset);
@@ -68,7 +77,7 @@ impl Case {
         let own = &mut Random::new(seed ^ 0xc0a7);
         // Elements of an oracle by quadrature are not slender.
         if own.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
-            effects.coating = Some(coating::random(own, &grid, shear_modulus, poisson_ratio));
+            effects.coating = Some(coating::random(own, &grid, (shear_modulus, poisson_ratio), effects.period));
         }
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);
@@ -77,7 +86,21 @@ impl Case {
         }
         let how = How::any(random, &scales, &h, load, kinds.limit);
         let through_handle = random.chance(0.2);
-        Case { seed, grid, shear_modulus, poisson_ratio, surface, h, load, effects, how, through_handle }
+        Case {
+            seed,
+            grid,
+            shear_modulus,
+            poisson_ratio,
+            surface,
+            surfaces: surface::any,
+            h,
+            h_rounding: 0.0,
+            load,
+            effects,
+            how,
+            through_handle,
+            is_measured: false,
+        }
     }
 
     /// The same with another surface and load, as the next call of a sequence has it.
@@ -86,7 +109,7 @@ impl Case {
         let c = compliance(self.shear_modulus, self.poisson_ratio);
         let before = Scales::of(&self.h, &self.effects, &self.grid, c);
         if random.chance(0.5) {
-            let (name, h) = surface::any(random, self.grid.mx, self.grid.my);
+            let (name, h) = (self.surfaces)(random, &self.grid);
             (next.surface, next.h) = (name, h.iter().map(|h| h * before.depth).collect());
         }
         let scales = Scales::of(&next.h, &self.effects, &self.grid, c);
@@ -181,7 +204,7 @@ pub fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
 }
 
 impl How {
-    fn any(random: &mut Random, scales: &Scales, h: &[f64], load: Load, limited: bool) -> How {
+    pub fn any(random: &mut Random, scales: &Scales, h: &[f64], load: Load, limited: bool) -> How {
         let method = if random.chance(0.5) { CONTACT_NORMAL_METHOD_AUTO } else { random.integer(1, 4) as i32 };
         let fixed = random.chance(if limited { 0.01 } else { 0.08 }).then(|| contact_area(random, scales, h, load));
         let given = random.chance(0.2).then(|| guess(random, scales, h.len()));

@@ -8,12 +8,13 @@
 //!
 //! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule: layers here are at least
 //! half as thick as elements are long. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
-//! over elements.
+//! over elements, and the mean pressure P compresses the layer by `P t/M`, `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
 
 use std::f64::consts::PI;
 
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
+use crate::hankel::{gauss, transfer, Table};
 use crate::random::Random;
 
 /// Thickness, shear modulus and Poisson ratio of a layer.
@@ -36,17 +37,23 @@ pub struct Coating {
 const ACCURACY: f64 = 2e-10;
 /// Points a side of an element. F has its singularities at +-2i, elements are at most two thicknesses long: `(2 + sqrt 5)^-24 = 1e-15`.
 const POINTS: usize = 12;
-/// Nodes of a panel of the table, as many as that to be good to 1e-13; panels are half as wide as `asinh(rho/2)` changes by 1.
-const NODES: usize = 14;
-
-/// Layers on one body or on both, of bodies that are not rigid.
-pub fn random(random: &mut Random, grid: &Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Coating {
+/// Layers on one body or on both, of bodies that are not rigid; with two periods on small grids down to 1/16 of an element.
+pub fn random(
+    random: &mut Random,
+    grid: &Grid,
+    (shear_modulus, poisson_ratio): ([f64; 2], [f64; 2]),
+    period: Option<(bool, bool)>,
+) -> Coating {
     let longer = grid.dx.max(grid.dy);
+    let is_thin = period == Some((true, true)) && grid.len() <= 600;
     let size = (grid.mx as f64 * grid.dx).hypot(grid.my as f64 * grid.dy);
     let mut layer = |b: usize| {
         let equal = random.chance(0.05);
         let factor = random.decades(0.01, 100.0);
-        let thickness = f64::max(longer * random.decades(0.5, 50.0), 0.02 * size);
+        let thickness = match is_thin {
+            true => longer * random.decades(0.0626, 50.0),
+            false => f64::max(longer * random.decades(0.5, 50.0), 0.02 * size),
+        };
         let poisson_ratio = if equal { poisson_ratio[b] } else { random.between(0.0, 0.5) };
         let shear_modulus = shear_modulus[b] * if equal { 1.0 } else { factor };
         Layer { thickness: if random.chance(0.05) { 0.0 } else { thickness }, shear_modulus, poisson_ratio }
@@ -58,93 +65,6 @@ pub fn random(random: &mut Random, grid: &Grid, shear_modulus: [f64; 2], poisson
         _ => [Some(layers[0]), None],
     };
     Coating { layers, shear_modulus, poisson_ratio }
-}
-
-/// B(s), from N and D as they are defined: for G1/G2 of 0.01 to 100 some four digits cancel at most.
-fn transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> f64 {
-    let lambda = 1.0 - 4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2));
-    let kappa = (mu - 1.0) / (mu + 3.0 - 4.0 * nu1);
-    let th = (-2.0 * s).exp();
-    let n = 1.0 + 4.0 * s * kappa * th - lambda * kappa * th * th;
-    let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
-    n / d
-}
-
-/// Nodes and weights on [0, 1] by Newton's method on the Legendre polynomial.
-pub fn gauss(n: usize) -> Vec<(f64, f64)> {
-    let legendre = |x: f64| {
-        let (mut before, mut p) = (1.0, x);
-        for j in 2..=n {
-            (before, p) = (p, ((2 * j - 1) as f64 * x * p - (j - 1) as f64 * before) / j as f64);
-        }
-        (p, n as f64 * (x * p - before) / (x * x - 1.0))
-    };
-    let node = |k: usize| {
-        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
-        for _ in 0..9 {
-            let (p, slope) = legendre(x);
-            x -= p / slope;
-        }
-        let slope = legendre(x).1;
-        (0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..n).map(node).collect()
-}
-
-/// F up to a distance, on panels in `v = asinh(rho/2)`.
-struct Table {
-    width: f64,
-    panels: Vec<Vec<f64>>,
-    nodes: Vec<f64>,
-    weights: Vec<f64>,
-}
-
-impl Table {
-    fn new(mu: f64, nu: [f64; 2], last: f64) -> Table {
-        let count = ((0.5 * last).asinh() / 0.5).ceil().max(1.0);
-        let width = 1.0001 * (0.5 * last).asinh() / count;
-        // Chebyshev points of the second kind, and their barycentric weights.
-        let nodes: Vec<f64> = (0..NODES).map(|i| 0.5 - 0.5 * (PI * i as f64 / (NODES - 1) as f64).cos()).collect();
-        let weight = |i: usize| if i == 0 || i == NODES - 1 { 0.5 } else { 1.0 } * if i % 2 == 0 { 1.0 } else { -1.0 };
-        let place = |panel: usize, node: f64| 2.0 * ((panel as f64 + node) * width).sinh();
-        let panel = |panel: usize| {
-            let rule = hankel(mu, nu, place(panel, 1.0));
-            let f = |rho: f64| rule.iter().map(|(s, w)| w * libm::j0(s * rho)).sum::<f64>();
-            nodes.iter().map(|&node| f(place(panel, node))).collect()
-        };
-        let panels = (0..count as usize).map(panel).collect();
-        Table { width, panels, weights: (0..NODES).map(weight).collect(), nodes }
-    }
-
-    fn at(&self, rho: f64) -> f64 {
-        let v = (0.5 * rho).asinh() / self.width;
-        let panel = (v as usize).min(self.panels.len() - 1);
-        let x = v - panel as f64;
-        let (mut above, mut below) = (0.0, 0.0);
-        for ((node, weight), f) in self.nodes.iter().zip(&self.weights).zip(&self.panels[panel]) {
-            if x == *node {
-                return *f;
-            }
-            let part = weight / (x - node);
-            (above, below) = (above + part * f, below + part);
-        }
-        above / below
-    }
-}
-
-/// Nodes s and weights times B(s) - 1: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
-fn hankel(mu: f64, nu: [f64; 2], rho: f64) -> Vec<(f64, f64)> {
-    let (widest, rule) = (f64::min(0.5, 8.0 / rho), gauss(10));
-    let (mut nodes, mut low, mut width) = (Vec::new(), 0.0, f64::min(widest, 0.02 / mu.max(1.0)));
-    while low < 22.0 {
-        nodes.extend(rule.iter().map(|(x, w)| {
-            let s = low + width * x;
-            (s, w * width * (transfer(mu, nu, s) - 1.0))
-        }));
-        low += width;
-        width = f64::min(2.0 * width, widest);
-    }
-    nodes
 }
 
 impl Coating {
@@ -174,7 +94,11 @@ impl Coating {
                 continue;
             }
             match period {
-                Some((true, true)) => add_waves(grid, (c, t, mu, nu), &mut quadrant.values),
+                Some((true, true)) => {
+                    add_waves(grid, (c, t, mu, nu), &mut quadrant.values);
+                    let mean = compression((c, t, mu, nu)) / grid.len() as f64;
+                    quadrant.values.iter_mut().for_each(|value| *value += mean);
+                }
                 Some(_) => {}
                 None => add_elements(grid, (c, t, mu, nu), &mut quadrant.values),
             }
@@ -183,6 +107,15 @@ impl Coating {
         quadrant.rounding += ACCURACY * largest;
         quadrant
     }
+}
+
+/// What a mean pressure of 1 compresses a layer by: `t/M`. One that is no other material than the body compresses nothing.
+fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
+    if mu == 1.0 && nu1 == nu2 {
+        return 0.0;
+    }
+    // c is (1 - nu1)/(2 pi G1).
+    PI * c * t * (1.0 - 2.0 * nu1) / ((1.0 - nu1) * (1.0 - nu1))
 }
 
 fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {

@@ -4,8 +4,8 @@ use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::call::initialised;
 use crate::effects::{Effects, Values};
+use crate::init::initialised;
 
 /// A struct for each effect.
 pub struct EffectStructs {

@@ -29,6 +29,13 @@ pub struct Patches {
     pub factors: Vec<f64>,
 }
 
+impl Patches {
+    /// The factor between two elements.
+    pub fn between(&self, i: usize, j: usize) -> f64 {
+        self.factors[self.patch[i] as usize * self.count + self.patch[j] as usize]
+    }
+}
+
 /// Own coefficients, as the C ABI has them.
 #[derive(Clone, Debug)]
 pub struct OwnCoefficients {

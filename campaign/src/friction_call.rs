@@ -4,39 +4,40 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::call::{bare_scene, cancel, initialised, last_error, Canceller, SENTINEL};
-use crate::friction_case::{Case, Place, Slide, Stop};
+use crate::call::{bare_scene, cancel, last_error, Canceller, SENTINEL};
+use crate::effect_structs::{effect_structs, EffectStructs};
+use crate::friction_case::Slide;
+use crate::friction_found::Found;
+use crate::friction_place::{Place, Stop};
+use crate::init::initialised;
 
-/// What a call returned.
-pub struct Found {
-    pub status: i32,
-    pub message: String,
-    pub p: Vec<f64>,
-    /// Displacements along the normal.
-    pub u: Vec<f64>,
-    pub q: Vec<[f64; 2]>,
-    pub slip: Vec<[f64; 2]>,
-    pub adhesion: Vec<i32>,
-    pub report: contact_normal_report,
-    /// Whether something was written.
-    pub written: bool,
+/// A scene whose effects and friction point into a place and a slide.
+struct Scene {
+    scene: contact_normal_scene,
+    // Boxed: the scene points to them.
+    _effects: Box<EffectStructs>,
+    _friction: Option<Box<contact_normal_friction>>,
 }
 
-impl Found {
-    /// Bits that have to be the same where the same is asked for twice.
-    pub fn bits(&self) -> Vec<u64> {
-        let vectors = self.q.iter().chain(&self.slip).flatten();
-        let numbers = self.p.iter().chain(&self.u).chain(vectors).map(|value| value.to_bits());
-        numbers.chain(self.adhesion.iter().map(|&a| a as u64)).chain([self.status as u64]).collect()
-    }
+/// Where tractions before a step come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum From {
+    /// Those of the slide, or none.
+    Slide,
+    /// Those that the handle holds.
+    Handle,
 }
 
-fn scene(place: &Place) -> contact_normal_scene {
-    bare_scene(&place.grid, &place.h, (place.shear_modulus, place.poisson_ratio), place.load)
+fn scene(place: &Place, slide: Option<(&Slide, From)>) -> Scene {
+    let mut scene = bare_scene(&place.grid, &place.h, (place.shear_modulus, place.poisson_ratio), place.load);
+    let effects = effect_structs(&place.effects);
+    effects.point_from(&mut scene, &place.effects);
+    let friction = slide.map(|(slide, from)| Box::new(friction(slide, from)));
+    scene.friction = friction.as_ref().map_or(null(), |friction| &raw const **friction);
+    Scene { scene, _effects: effects, _friction: friction }
 }
 
-/// `continues`: from what the handle holds.
-fn friction(slide: &Slide, continues: bool) -> contact_normal_friction {
+fn friction(slide: &Slide, from: From) -> contact_normal_friction {
     let mut friction = initialised(contact_normal_friction_init);
     if slide.uniform {
         friction.coefficient = slide.mu[0];
@@ -51,8 +52,8 @@ fn friction(slide: &Slide, continues: bool) -> contact_normal_friction {
         arrays.as_ref().map_or([null(); 2], |arrays| [arrays[0].as_ptr(), arrays[1].as_ptr()])
     };
     friction.rigid_slip = pointers(&slide.rigid);
-    (friction.continues, friction.sensitivities) = (i32::from(continues), i32::from(slide.sensitivities));
-    if !continues {
+    (friction.continues, friction.sensitivities) = (i32::from(from == From::Handle), i32::from(slide.sensitivities));
+    if from == From::Slide {
         friction.previous_traction = pointers(&slide.previous);
     }
     friction
@@ -70,68 +71,147 @@ fn options(stop: &Stop, canceller: &mut Canceller) -> contact_normal_options {
     options
 }
 
-/// Calls with outputs full of sentinels.
-fn run(n: usize, call: impl FnOnce(*mut contact_normal_fields, *mut contact_normal_report) -> i32) -> Found {
-    let mut numbers = vec![vec![SENTINEL; n]; 6];
-    let mut adhesion = vec![-77; n];
-    let mut report = initialised(contact_normal_report_init);
-    report.force = SENTINEL;
-    let mut fields = initialised(contact_normal_fields_init);
-    let at: Vec<*mut f64> = numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
-    (fields.pressure, fields.displacement) = (at[0], at[1]);
-    (fields.traction, fields.slip, fields.adhesion) = ([at[2], at[3]], [at[4], at[5]], adhesion.as_mut_ptr());
-    let status = call(&mut fields, &mut report);
-    let written = numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
-        || adhesion.iter().any(|&a| a != -77)
-        || report.force.to_bits() != SENTINEL.to_bits();
-    let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
-    let pairs = |x: usize| numbers[x].iter().zip(&numbers[x + 1]).map(|(x, y)| [*x, *y]).collect();
-    let (q, slip) = (pairs(2), pairs(4));
-    let (p, u) = (numbers[0].clone(), numbers[1].clone());
-    Found { status, message, p, u, q, slip, adhesion, report, written }
+/// Arrays full of sentinels: p, u, e, q, slip, and what each element is.
+struct Arrays {
+    numbers: Vec<Vec<f64>>,
+    integers: [Vec<i32>; 2],
+    report: contact_normal_report,
+}
+
+impl Arrays {
+    fn new(n: usize) -> Arrays {
+        let mut report = initialised(contact_normal_report_init);
+        report.force = SENTINEL;
+        Arrays { numbers: vec![vec![SENTINEL; n]; 7], integers: [vec![-77; n], vec![-77; n]], report }
+    }
+
+    fn fields(&mut self) -> contact_normal_fields {
+        let mut fields = initialised(contact_normal_fields_init);
+        let at: Vec<*mut f64> = self.numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
+        (fields.pressure, fields.displacement, fields.deformed_distance) = (at[0], at[1], at[2]);
+        (fields.traction, fields.slip) = ([at[3], at[4]], [at[5], at[6]]);
+        [fields.contact, fields.adhesion] = self.integers.each_mut().map(|integers| integers.as_mut_ptr());
+        fields
+    }
+
+    fn is_written(&self) -> bool {
+        self.numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
+            || self.integers.iter().flatten().any(|&integer| integer != -77)
+            || self.report.force.to_bits() != SENTINEL.to_bits()
+    }
+
+    fn found(self, status: i32, overrun: Option<u32>) -> Found {
+        let written = self.is_written();
+        let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
+        let [p, u, e, qx, qy, sx, sy]: [Vec<f64>; 7] = self.numbers.try_into().expect("seven arrays");
+        let pairs = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+        let [contact, adhesion] = self.integers;
+        let (q, slip, report) = (pairs(qx, qy), pairs(sx, sy), self.report);
+        Found { status, message, p, e, contact, u, q, slip, adhesion, report, overrun, written }
+    }
+}
+
+/// One call, with outputs full of sentinels.
+fn run(
+    (place, slide, stop): (&Place, Option<(&Slide, From)>, &Stop),
+    call: impl FnOnce(
+        *const contact_normal_scene,
+        *const contact_normal_options,
+        *mut contact_normal_fields,
+        *mut contact_normal_report,
+    ) -> i32,
+) -> Found {
+    let mut canceller = Canceller { calls: 0, at: 0 };
+    let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
+    let mut arrays = Arrays::new(place.grid.len());
+    let mut fields = arrays.fields();
+    let status = call(&scene.scene, &options, &mut fields, &mut arrays.report);
+    arrays.found(status, canceller.overrun())
 }
 
 /// The same without friction.
 pub fn frictionless(place: &Place, stop: &Stop) -> Found {
-    let mut canceller = Canceller { calls: 0, at: 0 };
-    let (scene, options) = (scene(place), options(stop, &mut canceller));
-    run(place.grid.len(), |fields, report| {
+    run((place, None, stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
-        unsafe { contact_normal_solve(&scene, &options, fields, report) }
+        unsafe { contact_normal_solve(scene, options, fields, report) }
     })
 }
 
-/// Solves a case: once on its own, or twice with a handle, from what it holds then.
-pub fn call(case: &Case, twice: bool) -> Vec<Found> {
-    let n = case.place.grid.len();
-    let mut canceller = Canceller { calls: 0, at: 0 };
-    let (mut scene, first) = (scene(&case.place), friction(&case.slide, false));
-    scene.friction = &first;
-    let options = options(&case.stop, &mut canceller);
-    if !twice {
+/// Solves on its own.
+pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
+    run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
-        return vec![run(n, |fields, report| unsafe { contact_normal_solve(&scene, &options, fields, report) })];
+        unsafe { contact_normal_solve(scene, options, fields, report) }
+    })
+}
+
+/// The tangential problem of pressures that are given.
+pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found {
+    run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
+        // SAFETY: structs with the arrays that they declare, and a pressure for each element.
+        unsafe { contact_normal_solve_tangential(scene, p.as_ptr(), options, fields, report) }
+    })
+}
+
+/// A handle of the library's.
+pub struct Handle(*mut contact_normal_solver);
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        // SAFETY: made by `contact_normal_solver_new`.
+        unsafe { contact_normal_solver_free(self.0) }
     }
-    let mut handle = null_mut();
-    // SAFETY: as above.
-    let status = unsafe { contact_normal_solver_new(&scene, &options, &mut handle) };
-    if status != CONTACT_NORMAL_OK {
-        return vec![run(n, |_, _| status)];
+}
+
+impl Handle {
+    /// Set up for a place, or the status and why not.
+    pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
+        let mut canceller = Canceller { calls: 0, at: 0 };
+        let (scene, options) = (scene(place, None), options(stop, &mut canceller));
+        let mut handle = null_mut();
+        // SAFETY: structs with the arrays that they declare.
+        let status = unsafe { contact_normal_solver_new(&scene.scene, &options, &mut handle) };
+        match status {
+            CONTACT_NORMAL_OK => Ok(Handle(handle)),
+            _ => Err((status, last_error())),
+        }
     }
-    // SAFETY: as above, and a handle that no one else uses.
-    let found =
-        run(n, |fields, report| unsafe { contact_normal_solver_solve(handle, &scene, &options, fields, report) });
-    if found.status < 0 {
-        // SAFETY: made above.
-        unsafe { contact_normal_solver_free(handle) };
-        return vec![found];
+
+    /// Solves, with friction or without.
+    pub fn solve(&mut self, place: &Place, slide: Option<(&Slide, From)>, stop: &Stop) -> Found {
+        run((place, slide, stop), |scene, options, fields, report| {
+            // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
+            unsafe { contact_normal_solver_solve(self.0, scene, options, fields, report) }
+        })
     }
-    let continued = friction(&case.slide, true);
-    scene.friction = &continued;
-    // SAFETY: as above.
-    let next =
-        run(n, |fields, report| unsafe { contact_normal_solver_solve(handle, &scene, &options, fields, report) });
-    // SAFETY: made above.
-    unsafe { contact_normal_solver_free(handle) };
-    vec![found, next]
+
+    /// What the handle holds: a `Found` without a report.
+    pub fn fields(&self, n: usize) -> Found {
+        let mut arrays = Arrays::new(n);
+        let mut fields = arrays.fields();
+        // SAFETY: room for n values.
+        let status = unsafe { contact_normal_solver_fields(self.0, &mut fields) };
+        arrays.found(status, None)
+    }
+
+    /// Solves places with one slide in one call: its status, and what came of each.
+    pub fn solve_batch(&mut self, places: &[Place], slide: (&Slide, From), stop: &Stop) -> (i32, Vec<Found>) {
+        let mut canceller = Canceller { calls: 0, at: 0 };
+        let options = options(stop, &mut canceller);
+        let scenes: Vec<Scene> = places.iter().map(|place| scene(place, Some(slide))).collect();
+        let list: Vec<contact_normal_scene> = scenes.iter().map(|scene| scene.scene).collect();
+        let mut arrays: Vec<Arrays> = places.iter().map(|place| Arrays::new(place.grid.len())).collect();
+        let mut fields: Vec<contact_normal_fields> = arrays.iter_mut().map(Arrays::fields).collect();
+        let mut reports: Vec<contact_normal_report> = arrays.iter().map(|arrays| arrays.report).collect();
+        let mut statuses = vec![-77; places.len()];
+        let (count, scenes_at, fields_at) = (places.len() as i32, list.as_ptr(), fields.as_mut_ptr());
+        let (reports_at, statuses_at) = (reports.as_mut_ptr(), statuses.as_mut_ptr());
+        // SAFETY: arrays of as many structs, each with the arrays that it declares.
+        let status = unsafe {
+            contact_normal_solver_solve_batch(self.0, count, scenes_at, &options, fields_at, reports_at, statuses_at)
+        };
+        let found = arrays.into_iter().zip(reports).zip(statuses);
+        let found = found.map(|((arrays, report), status)| Arrays { report, ..arrays }.found(status, None));
+        (status, found.collect())
+    }
 }

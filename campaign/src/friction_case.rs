@@ -2,65 +2,11 @@
 
 use contact_normal::ffi::*;
 
-use crate::case;
-use crate::effects::Effects;
-use crate::friction_call::Found;
+use crate::friction_found::{Before, Found};
+use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
-use crate::half_space::compliance;
 use crate::random::Random;
-use crate::scales::Scales;
-use crate::surface;
-
-/// The bodies and what presses them together.
-#[derive(Clone, Debug)]
-pub struct Place {
-    pub grid: Grid,
-    pub shear_modulus: [f64; 2],
-    pub poisson_ratio: [f64; 2],
-    pub surface: &'static str,
-    pub h: Vec<f64>,
-    pub load: Load,
-}
-
-impl Place {
-    /// A flat surface that nothing presses.
-    pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
-        Place { grid, shear_modulus, poisson_ratio, surface: "flat", h: vec![0.0; grid.len()], load: Load::Force(0.0) }
-    }
-
-    pub fn random(random: &mut Random) -> Place {
-        let unit = if random.chance(0.3) { random.decades(1e-6, 1e6) } else { 1.0 };
-        let (mx, my) = match random.uniform() {
-            u if u < 0.04 => (1, 1),
-            u if u < 0.12 => (random.integer(2, 24), 1),
-            u if u < 0.20 => (1, random.integer(2, 24)),
-            _ => (random.integer(2, 24), random.integer(2, 24)),
-        };
-        let dy = unit * if random.chance(0.5) { 1.0 } else { random.decades(0.25, 4.0) };
-        let modulus = if random.chance(0.3) { random.decades(1e-6, 1e9) } else { 1.0 };
-        let nu = random.between(-0.5, 0.5);
-        let (shear_modulus, poisson_ratio) = match random.uniform() {
-            // Without nu shifts start from a smaller load.
-            u if u < 0.2 => ([modulus; 2], [0.0; 2]),
-            u if u < 0.7 => ([modulus; 2], [nu; 2]),
-            u if u < 0.8 => ([modulus, f64::INFINITY], [nu, 0.3]),
-            _ => ([modulus, modulus * random.decades(0.1, 10.0)], [nu, random.between(0.0, 0.5)]),
-        };
-        let mut place = Place::new(Grid { mx, my, dx: unit, dy }, shear_modulus, poisson_ratio);
-        let (surface, h) = surface::any(random, mx, my);
-        let height = unit * random.decades(1e-4, 1.0);
-        (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
-        let c = compliance(shear_modulus, poisson_ratio);
-        let scales = Scales::of(&place.h, &Effects::default(), &place.grid, c);
-        place.load = case::load(random, &scales, &place.grid);
-        place
-    }
-
-    /// Whether pressures and tractions know nothing of each other.
-    pub fn is_alike(&self) -> bool {
-        self.shear_modulus[0] == self.shear_modulus[1] && self.poisson_ratio[0] == self.poisson_ratio[1]
-    }
-}
+use crate::rules;
 
 /// How they slide.
 #[derive(Clone, Debug)]
@@ -126,29 +72,8 @@ impl Slide {
     }
 }
 
-/// When the solve stops.
-#[derive(Clone, Debug)]
-pub struct Stop {
-    pub tolerance: f64,
-    pub precision: i32,
-    pub threads: i32,
-    pub max_cycles: i32,
-    pub cancel_at: Option<u32>,
-}
-
-impl Stop {
-    pub fn unhindered(random: &mut Random) -> Stop {
-        let tolerance = 10f64.powi(-(random.integer(3, 8) as i32));
-        let (precision, threads) = (random.integer(0, 2) as i32, if random.chance(0.05) { 2 } else { 1 });
-        Stop { tolerance, precision, threads, max_cycles: 1000, cancel_at: None }
-    }
-
-    pub fn is_unhindered(&self) -> bool {
-        self.max_cycles == 1000 && self.cancel_at.is_none()
-    }
-}
-
 /// A case.
+#[derive(Clone)]
 pub struct Case {
     pub place: Place,
     pub slide: Slide,
@@ -158,20 +83,33 @@ pub struct Case {
 }
 
 /// mu of the elements, and what motions go by: extremes do not say what moves.
-fn coefficients(random: &mut Random, n: usize) -> (Vec<f64>, bool, f64) {
+fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bool, f64) {
     let mu = match random.uniform() {
+        u if is_roller && u < 0.5 => random.decades(1e-6, 0.01),
         u if u < 0.05 => 0.0,
         u if u < 0.10 => 1e9,
         u if u < 0.15 => random.decades(1e-9, 1e9),
+        u if u < 0.35 => random.decades(1e-6, 0.05),
         _ => random.between(0.05, 1.0),
     };
-    let usual = if (0.01..=10.0).contains(&mu) { mu } else { 0.3 };
+    let usual = if (1e-6..=10.0).contains(&mu) { mu } else { 0.3 };
     if random.chance(0.7) {
         return (vec![mu; n], true, usual);
     }
     let zeros = random.between(0.0, 0.5);
     let value = |random: &mut Random| if random.chance(zeros) { 0.0 } else { mu * random.between(0.5, 1.5) };
     ((0..n).map(|_| value(random)).collect(), false, usual)
+}
+
+/// A force over what friction carries: nothing, next to nothing, some of it, nearly all, more.
+fn part_of_friction(random: &mut Random) -> f64 {
+    match random.uniform() {
+        u if u < 0.05 => random.decades(1.0, 1e9),
+        u if u < 0.15 => 0.0,
+        u if u < 0.25 => random.decades(1e-9, 1e-3),
+        u if u < 0.45 => 1.0 - random.decades(1e-4, 0.1),
+        _ => random.decades(1e-3, 0.99),
+    }
 }
 
 /// A step in elements: the last tenth of 0.3 to 3 stands for 3 to 1e5, in the longer direction.
@@ -188,15 +126,16 @@ impl Case {
     /// A motion or forces of the size that the bodies' pressures suggest.
     pub fn random(random: &mut Random, place: Place, without: &Found) -> Case {
         let (grid, n) = (place.grid, place.grid.len());
-        let (mu, uniform, usual) = coefficients(random, n);
-        let motion = random.integer(0, 2) as i32;
+        let is_roller = place.surface == "roller";
+        let (mu, uniform, usual) = coefficients(random, n, is_roller);
+        let motion = if is_roller && random.chance(0.6) { 2 } else { random.integer(0, 2) as i32 };
         let is_shift = motion == CONTACT_NORMAL_MOTION_SHIFT;
         let size = (grid.mx as f64 * grid.dx).max(grid.my as f64 * grid.dy);
         let largest = |values: &[f64]| values.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
         let slip = usual * largest(&without.u);
         let creepage = if is_shift { slip } else { slip / size };
         let normal: f64 = mu.iter().zip(&without.p).map(|(mu, p)| mu * p * grid.element_area()).sum();
-        let prescribed = [0, 1].map(|_| i32::from(random.chance(0.25)));
+        let prescribed = [0, 1].map(|k| i32::from(random.chance(if is_roller && k == 0 { 0.7 } else { 0.25 })));
         let given = prescribed.iter().filter(|&&k| k == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE).count();
         let signed = |random: &mut Random, value: f64| if random.chance(0.5) { value } else { -value };
         let amount = prescribed.map(|kind| {
@@ -206,8 +145,7 @@ impl Case {
                     u if u < 0.2 => creepage * random.decades(1e-12, 1e6),
                     _ => creepage * random.decades(0.01, 10.0),
                 },
-                _ if random.chance(0.05) => normal * random.decades(1.0, 1e9),
-                _ => normal * random.decades(1e-3, 0.99) / (given as f64).sqrt(),
+                _ => normal * part_of_friction(random) / (given as f64).sqrt(),
             };
             signed(random, part)
         });
@@ -226,8 +164,13 @@ impl Case {
             amount,
             spin: signed(random, spin),
             spin_centre: if random.chance(0.8) { [0.0; 2] } else { [size * random.between(-2.0, 2.0), 0.3 * size] },
-            distance: if random.chance(0.6) { 0.0 } else { grid.dx.max(grid.dy) * step(random.between(0.3, 3.0)) },
+            distance: if is_roller || random.chance(0.6) {
+                0.0
+            } else {
+                grid.dx.max(grid.dy) * step(random.between(0.3, 3.0))
+            },
             direction: match random.uniform() {
+                u if is_roller => [0.0, std::f64::consts::PI][usize::from(u < 0.5)],
                 u if u < 0.4 => 0.0,
                 u if u < 0.7 => random.pick(&[0.5, 1.0, 1.5]) * std::f64::consts::PI,
                 _ => random.between(0.0, 6.0),
@@ -246,23 +189,46 @@ impl Case {
         Case { place, slide, stop, carried: normal }
     }
 
-    /// Forces beyond mu N, or less where something else takes a part of it: what a spin leaves is not known here.
-    pub fn may_be_infeasible(&self) -> bool {
-        let Slide { prescribed, amount, spin, rigid, previous, .. } = &self.slide;
+    /// Why the forces may be refused, if they may: any force below mu N is reached by a creepage that is large enough.
+    pub fn may_be_infeasible(&self) -> Option<&'static str> {
+        let Slide { prescribed, amount, .. } = &self.slide;
         let given = |k: usize| prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
         let force = [0, 1].map(|k| if given(k) { amount[k] } else { 0.0 });
-        let else_moves = *spin != 0.0 || rigid.is_some() || previous.is_some();
-        let moves = else_moves || (0..2).any(|k| !given(k) && amount[k] != 0.0);
-        // A force of 0 is met where nothing is carried.
-        let nothing = force == [0.0; 2] && self.carried == 0.0;
-        self.slide.has_forces()
-            && !nothing
-            && (force[0].hypot(force[1]) >= 0.99 * self.carried || moves || !self.place.is_alike())
+        let size = force[0].hypot(force[1]);
+        // Tractions change the pressures of unlike bodies: not their sum, where that is given.
+        let sum_is_given = matches!(self.place.load, Load::Force(_)) && self.slide.uniform;
+        let much = self.slide.mu.iter().any(|mu| *mu > 1.0);
+        match () {
+            // A force of 0 is met where nothing is carried.
+            _ if size == 0.0 => None,
+            _ if size >= self.carried * (1.0 - 1e-9) => Some("refused: a force of mu N or more"),
+            _ if size >= self.carried * (1.0 - 1e-4) => Some("refused: a force of 0.9999 mu N or more"),
+            _ if !self.place.is_alike() && !sum_is_given && (size >= 0.5 * self.carried || much) => {
+                Some("refused: a force on unlike bodies whose mu N the tractions change, of half of it or with mu > 1")
+            }
+            _ => None,
+        }
+    }
+
+    /// Why the normal problem may be refused with this status.
+    pub fn normal_reason(&self, status: i32) -> Option<&'static str> {
+        rules::reason(&self.place.normal(&self.stop, &vec![0.0; self.place.h.len()], 0.0), status)
+    }
+
+    /// What the bodies carried before the step: nothing from rest; where tractions are given, the same pressures as now.
+    pub fn before(&self, p: &[f64]) -> Before {
+        let p = if self.slide.previous.is_some() { p.to_vec() } else { vec![0.0; p.len()] };
+        Before { q: self.slide.before(), p }
     }
 
     /// What the motion is called.
     pub fn motion(&self) -> &'static str {
         ["shift", "transient rolling", "steady rolling"][self.slide.motion as usize]
+    }
+
+    /// The motion and whether bodies are alike.
+    pub fn kind(&self) -> String {
+        format!("{}, {} bodies", self.motion(), if self.place.is_alike() { "like" } else { "unlike" })
     }
 
     /// In one line.
@@ -277,9 +243,10 @@ impl Case {
             if slide.rigid.is_some() { ", own slip" } else { "" }
         );
         format!(
-            "{mx} x {my} of {dx:.2e} x {dy:.2e}, {}, {alike}, {}, mu {mu:.1e} ({}), prescribed {:?} {:?}, spin {:.1e}{more}, \
+            "{mx} x {my} of {dx:.2e} x {dy:.2e}, {}, {}, {alike}, {}, mu {mu:.1e} ({}), prescribed {:?} {:?}, spin {:.1e}{more}, \
              tolerance {:.0e}, precision {}, cycles {}, cancel {:?}, step {:?}",
             self.place.surface,
+            self.place.effects.name(),
             self.motion(),
             slide.uniform,
             slide.prescribed,

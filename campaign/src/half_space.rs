@@ -60,6 +60,7 @@ pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, b
     }
     let mut values = vec![0.0; mx * my];
     let mut sizes: f64 = 0.0;
+    let cosines: Vec<f64> = (0..mx).map(|k| (2.0 * PI * k as f64 / mx as f64).cos()).collect();
     for j in 0..=mx / 2 {
         let t = 2.0 * PI * j as f64 / mx as f64;
         let modes = if j == 0 { uniform_mode(my, dy, c, y) } else { wave_mode(t, my, dx, dy, c, y) };
@@ -67,14 +68,16 @@ pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, b
         let weight = if j == 0 || 2 * j == mx { 1.0 } else { 2.0 } / mx as f64;
         sizes += weight * modes.iter().fold(0.0, |size: f64, mode| size.max(mode.abs()));
         for (ky, mode) in modes.into_iter().enumerate() {
-            for kx in 0..mx {
-                values[ky * mx + kx] += weight * mode * (2.0 * PI * ((j * kx) % mx) as f64 / mx as f64).cos();
+            for (kx, value) in values[ky * mx..][..mx].iter_mut().enumerate() {
+                *value += weight * mode * cosines[(j * kx) % mx];
             }
         }
     }
     // Sums of terms of which each is good to some units of round-off, and the trapezoidal rule's 7e-18. The modes of a single element of
-    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient.
-    Quadrant { mx, values, rounding: 64.0 * f64::EPSILON * (sizes + c * dx.max(dy)) }
+    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient. The uniform mode is the difference of two
+    // edges' primitives, which are of the size of the grid's width.
+    let width = my as f64 * dy;
+    Quadrant { mx, values, rounding: f64::EPSILON * (64.0 * (sizes + c * dx.max(dy)) + 16.0 * c * width / mx as f64) }
 }
 
 /// Mode j = 0 for ky = 0..my.
@@ -141,8 +144,13 @@ fn wave_mode(t: f64, my: usize, dx: f64, dy: f64, c: f64, repeats: bool) -> Vec<
             if repeats {
                 rows[0] += 2.0 * weight * at(my);
             }
-            for (ky, row) in rows.iter_mut().enumerate().skip(1) {
-                *row += weight * (at(ky) + if repeats { at(my - ky) } else { 0.0 });
+            // Farther rows get less than e^-80 of it.
+            let reach = ((NEGLIGIBLE / x) as usize).saturating_add(1);
+            for ky in 1..my.min(reach + 1) {
+                rows[ky] += weight * at(ky);
+                if repeats {
+                    rows[my - ky] += weight * at(ky);
+                }
             }
         }
     }

@@ -3,8 +3,11 @@
 //! ```text
 //! cargo run --release -p campaign -- 20000            cases of seeds 0..20000
 //! cargo run --release -p campaign -- 20000 500000     of seeds 500000..520000
-//! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
+//! cargo run --release -p campaign -- --measured 5000  cases of what people bring, of seeds 0..5000
 //! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
+//! cargo run --release -p campaign -- --measured --friction 5000
+//! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
+//! cargo run --release -p campaign -- --measured --seed 17
 //! ```
 
 use std::collections::BTreeMap;
@@ -12,25 +15,35 @@ use std::process::ExitCode;
 
 use campaign::account::Account;
 use campaign::random::Random;
-use campaign::run;
+use campaign::run::{measured, ordinary, Run};
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut named = |name: &str| {
+        let at = arguments.iter().position(|argument| argument == name);
+        at.map(|at| arguments.remove(at)).is_some()
+    };
+    let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
-    if arguments.first().is_some_and(|first| first == "--seed") {
-        return replay(number(1).expect("--seed N: a number"));
-    }
-    if arguments.first().is_some_and(|first| first == "--friction") {
-        return friction(number(1).unwrap_or(1000), number(2).unwrap_or(0));
+    let run = if is_measured { measured } else { ordinary };
+    if one {
+        return replay(&run(number(0).expect("--seed N: a number")));
     }
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
+    if is_friction {
+        return friction(count, first, is_measured);
+    }
     let mut account = Account::default();
     for seed in first..first + count {
         account.add(&run(seed));
     }
     println!("{account}");
     print!("{}", account.failures(usize::MAX));
-    if account.is_clean() {
+    end(account.is_clean())
+}
+
+fn end(is_clean: bool) -> ExitCode {
+    if is_clean {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
@@ -38,41 +51,44 @@ fn main() -> ExitCode {
 }
 
 /// One case, in full.
-fn replay(seed: u64) -> ExitCode {
-    let run = run(seed);
-    println!("seed {seed}: {}", run.case.describe());
-    println!("load {:?}, statuses {:?}, {:.3} s", run.case.load, run.statuses, run.seconds);
-    for failure in &run.failures {
+fn replay(run: &Run) -> ExitCode {
+    println!("seed {}: {}", run.case.seed, run.case.describe());
+    println!(
+        "load {:?}, statuses {:?}, products {:?}, {:.3} s",
+        run.case.load, run.statuses, run.products, run.seconds
+    );
+    println!("beside: {:?}, excused: {:?}", run.beside, run.verdict.excuses);
+    for failure in &run.verdict.failures {
         println!("{}: {}", failure.promise, failure.details);
     }
-    if run.failures.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    end(run.verdict.failures.is_empty())
 }
 
 /// Cases with friction: how the calls of each motion ended, and what was not kept.
-fn friction(count: u64, first: u64) -> ExitCode {
-    let (mut ends, mut failed) = (BTreeMap::new(), false);
+fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
+    let (mut ends, mut excuses, mut failed) = (BTreeMap::new(), BTreeMap::new(), false);
     for seed in first..first + count {
-        let (case, statuses, failures) = campaign::friction::check(&mut Random::new(seed ^ 0x00f1_c710));
-        for status in statuses {
-            *ends.entry((case.motion(), case.place.is_alike(), status)).or_insert(0) += 1;
+        let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
+        for status in run.statuses {
+            *ends.entry((run.case.kind(), status)).or_insert(0) += 1;
         }
-        for failure in failures {
+        for why in run.verdict.excuses {
+            excuses.entry(why).or_insert((0, seed)).0 += 1;
+        }
+        for failure in run.verdict.failures {
             failed = true;
             println!("seed {seed}: {}: {}", failure.promise, failure.details);
         }
     }
-    println!("| motion | bodies | status | calls |");
-    println!("|---|---|---:|---:|");
-    for ((motion, alike, status), calls) in ends {
-        println!("| {motion} | {} | {status} | {calls} |", if alike { "like" } else { "unlike" });
+    println!("| motion | status | calls |");
+    println!("|---|---:|---:|");
+    for ((kind, status), calls) in ends {
+        println!("| {kind} | {status} | {calls} |");
     }
-    if failed {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
+    println!("\n| excused | calls | first seed |");
+    println!("|---|---:|---:|");
+    for (why, (calls, seed)) in excuses {
+        println!("| {why} | {calls} | {seed} |");
     }
+    end(!failed)
 }

@@ -51,7 +51,7 @@ impl Measures {
             let e = h - approach + u;
             // Two sums of three numbers.
             let by_u = h - approach + found.u[i];
-            let allowed = 4.0 * f64::EPSILON * (h.abs() + approach.abs() + u.abs());
+            let allowed = 4.0 * f64::EPSILON * (h.abs() + approach.abs() + u.abs()) + case.h_rounding;
             m.wrong_e = m.wrong_e.max((by_u - found.e[i]).abs() - allowed);
             m.work.1 += p * u.abs();
             match found.contact[i] {
@@ -72,7 +72,7 @@ impl Measures {
         }
         m.rms = ((m.distance + limited.0) / f64::max(m.count + limited.1, 1.0)).sqrt();
         (m.residual, m.distance) = (m.residual.sqrt(), m.distance.sqrt());
-        m.rounding = operator.rounding(&found.p) + 8.0 * f64::EPSILON * largest;
+        m.rounding = operator.rounding(&found.p) + 8.0 * f64::EPSILON * largest + case.h_rounding;
         m
     }
 

@@ -1,6 +1,9 @@
-//! u = A p by direct summation, for every effect, and what rounding may do to it.
+//! u = A p for every effect, and what rounding may do to it: direct sums, or products by the campaign's own transform where those are long.
+
+use std::cell::OnceCell;
 
 use crate::effects::{Effects, OwnCoefficients, Values};
+use crate::fft::Convolution;
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
 
@@ -18,7 +21,12 @@ pub struct Operator<'a> {
     coefficients: Coefficients<'a>,
     /// 2-norm of all coefficients that a transform of the operator holds.
     norm: f64,
+    /// Made when the first long product asks for it.
+    convolution: OnceCell<Convolution>,
 }
+
+/// Products of more terms are done by the transform.
+const LONG: usize = 2_000_000;
 
 impl<'a> Operator<'a> {
     /// Of a scene's effects; `c` is the bodies' compliance over pi.
@@ -40,7 +48,7 @@ impl<'a> Operator<'a> {
         };
         // Four quadrants.
         let norm = 2.0 * values.iter().map(|v| v * v).sum::<f64>().sqrt();
-        Operator { grid: *grid, effects, coefficients, norm }
+        Operator { grid: *grid, effects, coefficients, norm, convolution: OnceCell::new() }
     }
 
     /// The coefficient of the middle element on itself, with its layer.
@@ -81,6 +89,20 @@ impl<'a> Operator<'a> {
 
     /// u = A p.
     pub fn displace(&self, p: &[f64]) -> Vec<f64> {
+        let mut u = if self.is_long(p) { self.by_transform(p) } else { self.by_sums(p) };
+        if let Some(layer) = &self.effects.layer {
+            u.iter_mut().zip(p).enumerate().for_each(|(i, (u, p))| *u += layer.at(i) * p);
+        }
+        u
+    }
+
+    /// Whether the transform does the product. Tables per row are no convolution.
+    fn is_long(&self, p: &[f64]) -> bool {
+        let terms = p.iter().filter(|p| **p != 0.0).count() * p.len();
+        terms > LONG && !matches!(self.coefficients, Coefficients::RowTables(_))
+    }
+
+    fn by_sums(&self, p: &[f64]) -> Vec<f64> {
         let Grid { mx, my, .. } = self.grid;
         let mut u = vec![0.0; p.len()];
         let mut row = vec![0.0; mx];
@@ -98,8 +120,27 @@ impl<'a> Operator<'a> {
                 to.iter_mut().zip(&row).zip(of).for_each(|((u, v), &patch)| *u += factors[patch as usize] * v);
             }
         }
-        if let Some(layer) = &self.effects.layer {
-            u.iter_mut().zip(p).enumerate().for_each(|(i, (u, p))| *u += layer.at(i) * p);
+        u
+    }
+
+    /// A product; with patches one for the loads of each.
+    fn by_transform(&self, p: &[f64]) -> Vec<f64> {
+        let Grid { mx, my, .. } = self.grid;
+        let convolution = self.convolution.get_or_init(|| match &self.coefficients {
+            Coefficients::HalfSpace(quadrant) => Convolution::new(mx, my, |kx, ky| quadrant.at(kx, ky)),
+            Coefficients::Table(own) => Convolution::new(mx, my, |kx, ky| {
+                own.values[(ky + own.cy as i64) as usize * 2 * own.cx + (kx + own.cx as i64) as usize]
+            }),
+            Coefficients::RowTables(_) => unreachable!("tables per row are no convolution"),
+        });
+        let Some(patches) = &self.effects.patches else { return convolution.of(p) };
+        let mut u = vec![0.0; p.len()];
+        for patch in 0..patches.count {
+            let of_patch = |(p, &of): (&f64, &i32)| if of as usize == patch { *p } else { 0.0 };
+            let loads: Vec<f64> = p.iter().zip(&patches.patch).map(of_patch).collect();
+            let factors = &patches.factors[patch * patches.count..];
+            let by = convolution.of(&loads);
+            u.iter_mut().zip(&by).zip(&patches.patch).for_each(|((u, v), &of)| *u += factors[of as usize] * v);
         }
         u
     }
@@ -119,7 +160,9 @@ impl<'a> Operator<'a> {
             None => 0.0,
         };
         let largest = p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
-        let steps = 4.0 + (4.0 * p.len() as f64).log2();
+        // As much again where the transform here does the product.
+        let transforms = if self.is_long(p) { 2.0 } else { 1.0 };
+        let steps = transforms * (4.0 + (4.0 * p.len() as f64).log2());
         // A layer of the same value everywhere is a part of the coefficients.
         let norms = (self.norm + layer) * squares.sqrt();
         let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
@@ -158,6 +201,28 @@ mod tests {
             let found = Operator::new(&GRID, 1.0, &effects).displace(&p);
             // 20 terms.
             assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 20.0 * f64::EPSILON * b), "{found:?}");
+        }
+    }
+
+    /// Products by the transform are the direct sums, with patches and an unsymmetric table.
+    #[test]
+    fn the_transform_does_the_direct_sums() {
+        let mut random = Random::new(3);
+        let grid = Grid { mx: 30, my: 17, dx: 0.5, dy: 0.7 };
+        let p: Vec<f64> = (0..grid.len()).map(|_| random.uniform()).collect();
+        let table = crate::effects::table(&mut random, &grid, 1.0, (true, false));
+        let patches = crate::effects::patches(&mut random, &grid);
+        for effects in [
+            Effects::default(),
+            Effects { influence: Some(table), ..Effects::default() },
+            Effects { patches: Some(patches), ..Effects::default() },
+            Effects { period: Some((true, false)), ..Effects::default() },
+        ] {
+            let operator = Operator::new(&grid, 1.0, &effects);
+            let (found, expected) = (operator.by_transform(&p), operator.by_sums(&p));
+            let rounding = operator.rounding(&p);
+            assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= rounding), "{}", effects.name());
+            assert!(rounding <= 1e-11 * expected[0].abs(), "{rounding:e}");
         }
     }
 

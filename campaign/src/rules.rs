@@ -6,33 +6,60 @@ use crate::call::Outputs;
 use crate::case::Case;
 use crate::grid::Load;
 use crate::measures::Measures;
-
-/// A promise that was not kept.
-#[derive(Clone, Debug)]
-pub struct Failure {
-    /// Which one, in a few words.
-    pub promise: &'static str,
-    pub details: String,
-}
+use crate::verdict::{Failure, Verdict};
 
 fn failure(promise: &'static str, details: String) -> Vec<Failure> {
     vec![Failure { promise, details }]
 }
 
-/// Checks an answer; nothing if all promises are kept.
-pub fn check(case: &Case, found: &Outputs) -> Vec<Failure> {
+/// Checks an answer: what does not hold, and why an answer that is no solution passes.
+pub fn check(case: &Case, found: &Outputs) -> Verdict {
     if found.status < 0 {
         return refused(case, found);
     }
-    let mut failures = is_true(case, found);
-    let must_be_solved = case.how.method == CONTACT_NORMAL_METHOD_AUTO
-        && !case.effects.indefinite
-        && !case.effects.unsymmetric
-        && case.how.is_unhindered();
-    if failures.is_empty() && must_be_solved && found.status > 0 {
+    let failures = is_true(case, found);
+    if found.status == CONTACT_NORMAL_OK || !failures.is_empty() {
+        return failures.into();
+    }
+    let m = Measures::of(case, found);
+    match excuse(case, found, &m) {
+        Some(why) => Verdict::excused(why),
+        None => Verdict::failed("AUTO solves an elastic body's scene", m.text(found)),
+    }
+}
+
+/// Why a solve may stop early; AUTO's of an elastic body may not.
+fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
+    let how = &case.how;
+    match found.status {
+        CONTACT_NORMAL_CANCELLED => Some("cancelled by the callback"),
+        CONTACT_NORMAL_ITERATION_LIMIT if !how.is_unhindered() => Some("few cycles were given, and used up"),
+        _ if !how.is_unhindered() => Some("stagnated within few cycles"),
+        _ if case.effects.indefinite => Some("stopped early: coefficients of no elastic body"),
+        _ if case.effects.unsymmetric => Some("stopped early: coefficients that are not symmetric"),
+        _ if m.holds_to_rounding(case, found) => Some("stagnated where round-off is left"),
+        _ => match how.method {
+            CONTACT_NORMAL_METHOD_NORM => Some("NORM stopped early"),
+            CONTACT_NORMAL_METHOD_MULTIGRID => Some("MULTIGRID stopped early"),
+            CONTACT_NORMAL_METHOD_FULL_MULTIGRID => Some("FULL_MULTIGRID stopped early"),
+            CONTACT_NORMAL_METHOD_PROJECTED_CG => Some("PROJECTED_CG stopped early"),
+            _ => None,
+        },
+    }
+}
+
+/// Whether what is left of the conditions is round-off.
+pub fn is_at_rounding(case: &Case, found: &Outputs) -> bool {
+    Measures::of(case, found).holds_to_rounding(case, found)
+}
+
+/// What holds of pressures whose problem changed after they were found: numbers, bounds, u = A p.
+pub fn is_admissible(case: &Case, found: &Outputs) -> Vec<Failure> {
+    let mut failures = sound(case, found);
+    if failures.is_empty() {
         let m = Measures::of(case, found);
-        if !m.holds_to_rounding(case, found) {
-            failures.extend(failure("AUTO solves an elastic body's scene", m.text(found)));
+        if !(m.wrong_u <= m.rounding) {
+            failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
         }
     }
     failures
@@ -50,7 +77,10 @@ pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
         failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
     }
     if !(m.wrong_e <= 0.0) {
-        failures.extend(failure("e is h - approach + u", format!("off by {:.2e}", m.wrong_e)));
+        failures.extend(failure(
+            "e is h - approach + u",
+            format!("off by {:.2e}, {sizes}, {} in contact", m.wrong_e, m.count),
+        ));
     }
     if found.status == CONTACT_NORMAL_OK {
         failures.extend(solved(case, found, &m, &sizes));
@@ -76,6 +106,10 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
         return failure("no NaN or infinity", format!("status {status}, residual reported {:.2e}", report.residual));
     }
     let mut failures = Vec::new();
+    if let Some(overrun) = found.overrun.filter(|n| *n > 0 || found.status != CONTACT_NORMAL_CANCELLED) {
+        let details = format!("status {}, {overrun} callbacks after the one that cancelled", found.status);
+        failures.extend(failure("cancelled once stays cancelled", details));
+    }
     let fixed = &case.how.fixed;
     if fixed.is_none() && found.p.iter().any(|&p| p < 0.0) {
         failures.extend(failure("p >= 0", format!("status {status}")));
@@ -142,6 +176,10 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
             failures.extend(failure("OK: force", format!("{force:e} for {prescribed:e}")));
         }
     }
+    if m.count == 0.0 && found.report.residual != 0.0 {
+        let details = format!("reported {:.2e}, no element in contact", found.report.residual);
+        failures.extend(failure("the report's residual is the residual", details));
+    }
     // Two sums of the same numbers, and a residual whose e is off by rounding.
     let rounding = m.rounding * m.count.sqrt() / m.distance;
     if m.distance > 0.0 && !((found.report.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {
@@ -159,59 +197,67 @@ fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     if matches!(case.load, Load::Approach(_)) && !m.residual_holds(1.0) {
         failures.extend(failure("stopped: no worse than p = 0", m.text(found)));
     }
-    if status == CONTACT_NORMAL_CANCELLED && case.how.cancel_at.is_none() {
+    if status == CONTACT_NORMAL_CANCELLED && found.overrun.is_none() {
         failures.extend(failure("cancelled by nobody", m.text(found)));
     }
     failures
 }
 
 /// Status < 0.
-fn refused(case: &Case, found: &Outputs) -> Vec<Failure> {
-    let mut failures = Vec::new();
+fn refused(case: &Case, found: &Outputs) -> Verdict {
+    let mut verdict = Verdict::default();
     let told = || format!("{}: {}", found.status, found.message);
-    if found.written {
-        failures.extend(failure("refused: outputs untouched", told()));
+    verdict.unless(!found.written, "refused: outputs untouched", told);
+    verdict.unless(!found.message.is_empty(), "refused: a message", told);
+    match reason(case, found.status) {
+        Some(why) => verdict.excuse(why),
+        None => verdict.fail("refused without a reason", told()),
     }
-    if found.message.is_empty() {
-        failures.extend(failure("refused: a message", told()));
-    }
-    if !may_be_refused(case, found.status) {
-        failures.extend(failure("refused without a reason", told()));
-    }
-    failures
+    verdict
 }
 
-/// Whether this status is one that the scene may have.
-pub fn may_be_refused(case: &Case, status: i32) -> bool {
+/// The reason of the scene to be refused with this status, if it has one.
+pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
     let (effects, how) = (&case.effects, &case.how);
-    match status {
-        CONTACT_NORMAL_UNSUPPORTED => {
-            let multigrid =
-                [CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_METHOD_FULL_MULTIGRID].contains(&how.method);
-            effects.is_unsupported_pair()
-                || how.fixed.is_some() && effects.limit.is_some()
-                || multigrid && effects.may_lack_multigrid()
-                || how.method == CONTACT_NORMAL_METHOD_PROJECTED_CG && (effects.unsymmetric || effects.indefinite)
+    let multigrid = [CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_METHOD_FULL_MULTIGRID].contains(&how.method);
+    let cg = how.method == CONTACT_NORMAL_METHOD_PROJECTED_CG;
+    let reasons: &[(bool, &'static str)] = match status {
+        CONTACT_NORMAL_UNSUPPORTED => &[
+            (effects.is_unsupported_pair(), "refused: a pair of effects"),
+            (how.fixed.is_some() && effects.limit.is_some(), "refused: a fixed area with a limit"),
+            (multigrid && effects.may_lack_multigrid(), "refused: an effect without multigrid"),
+            (cg && (effects.unsymmetric || effects.indefinite), "refused: PROJECTED_CG of what is not symmetric"),
+        ],
+        CONTACT_NORMAL_INFEASIBLE => &[
+            (exceeds_limit(case), "refused: more force than the limit carries"),
+            (is_in_full_contact(case), "refused: two periods in full contact, by approach"),
+        ],
+        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => {
+            &[(effects.indefinite || effects.unsymmetric, "refused: coefficients of no elastic body")]
         }
-        CONTACT_NORMAL_INFEASIBLE => is_infeasible(case),
-        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => effects.indefinite || effects.unsymmetric,
         // Pressures below 0 are no guess, if the library says so.
-        CONTACT_NORMAL_INVALID_ARGUMENT => how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0)),
-        _ => false,
-    }
+        CONTACT_NORMAL_INVALID_ARGUMENT => {
+            let negative = how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0));
+            &[(negative, "refused: a guess below 0")]
+        }
+        _ => &[],
+    };
+    reasons.iter().find(|(holds, _)| *holds).map(|(_, why)| *why)
 }
 
-/// A force that no pressures within the limit carry; an approach in full contact where the mean displacement is zero.
-fn is_infeasible(case: &Case) -> bool {
-    let finite = || (0..case.h.len()).filter(|&i| case.h[i].is_finite());
-    match case.load {
-        Load::Force(force) => case.effects.limit.as_ref().is_some_and(|limit| {
-            let greatest = finite().map(|i| limit.at(i)).sum::<f64>() * case.grid.element_area();
-            force > greatest * (1.0 - 1e-9)
-        }),
-        Load::Approach(approach) => {
-            let mean = finite().map(|i| case.h[i]).sum::<f64>() / finite().count().max(1) as f64;
-            case.effects.period == Some((true, true)) && approach >= mean - 1e-9 * mean.abs()
-        }
-    }
+/// A force that no pressures within the limit carry. The library adds as many numbers in another order.
+fn exceeds_limit(case: &Case) -> bool {
+    let Load::Force(force) = case.load else { return false };
+    case.effects.limit.as_ref().is_some_and(|limit| {
+        let carried = (0..case.h.len()).filter(|&i| case.h[i].is_finite()).map(|i| limit.at(i));
+        force > carried.sum::<f64>() * case.grid.element_area() * (1.0 - 1e-9)
+    })
+}
+
+/// An approach in full contact where the mean displacement is zero.
+fn is_in_full_contact(case: &Case) -> bool {
+    let Load::Approach(approach) = case.load else { return false };
+    let finite = || case.h.iter().filter(|h| h.is_finite());
+    let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+    case.effects.period == Some((true, true)) && approach >= mean - 1e-9 * mean.abs()
 }

@@ -7,12 +7,13 @@ use crate::case::Case;
 use crate::effects;
 use crate::grid::Load;
 use crate::random::Random;
-use crate::rules::{check, may_be_refused, Failure};
+use crate::rules::{check, reason};
+use crate::verdict::Verdict;
 
 /// What happened, and the statuses on the way.
 pub struct Found {
     pub statuses: Vec<i32>,
-    pub failures: Vec<Failure>,
+    pub verdict: Verdict,
 }
 
 /// What the handle may say that it holds.
@@ -25,14 +26,14 @@ struct Held {
 /// Runs the sequence of a case.
 pub fn run(case: &Case) -> Found {
     let mut random = Random::new(case.seed ^ 0x5eed);
-    let mut found = Found { statuses: Vec::new(), failures: Vec::new() };
+    let mut found = Found { statuses: Vec::new(), verdict: Verdict::default() };
     let mut handle = match Handle::new(case) {
         Ok(handle) => handle,
         Err((status, message)) => {
             found.statuses.push(status);
-            if !may_be_refused(case, status) {
-                let details = format!("{status}: {message}");
-                found.failures.push(Failure { promise: "refused without a reason", details });
+            match reason(case, status) {
+                Some(why) => found.verdict.excuse(why),
+                None => found.verdict.fail("refused without a reason", format!("{status}: {message}")),
             }
             return found;
         }
@@ -66,13 +67,12 @@ fn remember(outputs: &Outputs, held: &mut Held, found: &mut Found) {
 fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let outputs = handle.solve(case, previous);
     remember(&outputs, held, found);
-    let name = |failure: Failure| Failure { details: format!("handle, {what}{}", failure.details), ..failure };
-    found.failures.extend(check(case, &outputs).into_iter().map(name));
+    found.verdict.add(check(case, &outputs).within(&format!("handle, {what}")));
     if !previous {
         let fresh = call::solve(case);
         if outputs.status != fresh.status || outputs.bits() != fresh.bits() {
             let details = format!("status {} and {} after {:?}", outputs.status, fresh.status, found.statuses);
-            found.failures.push(Failure { promise: "a handle gives the bits of a fresh call", details });
+            found.verdict.fail("a handle gives the bits of a fresh call", details);
         }
     }
 }
@@ -90,7 +90,7 @@ fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Foun
     found.statuses.push(outputs.status);
     if outputs.status >= 0 || outputs.written {
         let details = format!("status {}, written: {}", outputs.status, outputs.written);
-        found.failures.push(Failure { promise: "a handle refuses what is no scene", details });
+        found.verdict.fail("a handle refuses what is no scene", details);
     }
 }
 
@@ -111,13 +111,14 @@ fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &
     let outputs = handle.solve(&changed, false);
     remember(&outputs, held, found);
     if outputs.status >= 0 {
-        let name = |failure: Failure| Failure {
-            promise: "a handle uses what the scene names",
-            details: format!("{}: {}", failure.promise, failure.details),
-        };
-        found.failures.extend(check(&changed, &outputs).into_iter().take(1).map(name));
+        let Verdict { failures, excuses } = check(&changed, &outputs);
+        found.verdict.excuses.extend(excuses);
+        if let Some(first) = failures.first() {
+            let details = format!("{}: {}", first.promise, first.details);
+            found.verdict.fail("a handle uses what the scene names", details);
+        }
     } else if outputs.written || outputs.message.is_empty() {
-        found.failures.push(Failure { promise: "refused: outputs untouched", details: outputs.message });
+        found.verdict.fail("refused: outputs untouched", outputs.message);
     }
 }
 
@@ -129,6 +130,6 @@ fn holds(handle: &Handle, held: &Held, n: usize, found: &mut Found) {
     };
     if !same(&held.last) && !same(&held.last_solved) {
         let details = format!("after {:?}", found.statuses);
-        found.failures.push(Failure { promise: "a handle holds the last complete result", details });
+        found.verdict.fail("a handle holds the last complete result", details);
     }
 }

@@ -7,23 +7,24 @@ use crate::case::Case;
 use crate::effects::{self, OwnCoefficients};
 use crate::half_space::compliance;
 use crate::random::Random;
-use crate::rules::{check, Failure};
+use crate::rules::check;
+use crate::verdict::Verdict;
 
 /// A handle that was set up without a table takes none.
-fn without_table(case: &Case, own: &OwnCoefficients) -> Vec<Failure> {
-    let Ok(mut handle) = Handle::new(case) else { return Vec::new() };
+fn without_table(case: &Case, own: &OwnCoefficients) -> Verdict {
+    let Ok(mut handle) = Handle::new(case) else { return Verdict::default() };
     let status = handle.set_influence(own);
     if status == CONTACT_NORMAL_INVALID_ARGUMENT {
         return check(case, &handle.solve(case, false));
     }
-    vec![Failure { promise: "a handle without a table takes none", details: format!("status {status}") }]
+    Verdict::failed("a handle without a table takes none", format!("status {status}"))
 }
 
 /// A handle of a scene without a period, row tables, or a coating, whose coefficients change from solve to solve.
-pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
+pub fn run(case: &Case, random: &mut Random) -> Verdict {
     let named = &case.effects;
     if named.period.is_some() || named.row_tables.is_some() || named.coating.is_some() {
-        return Vec::new();
+        return Verdict::default();
     }
     let mut case = case.clone();
     (case.how.given, case.how.fixed, case.how.cancel_at) = (None, None, None);
@@ -35,8 +36,8 @@ pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
         }
         case.effects.influence = Some(own);
     }
-    let Ok(mut handle) = Handle::new(&case) else { return Vec::new() };
-    let mut failures = Vec::new();
+    let Ok(mut handle) = Handle::new(&case) else { return Verdict::default() };
+    let mut verdict = Verdict::default();
     for _ in 0..random.integer(1, 3) {
         let unsymmetric = random.chance(0.3);
         let mut own = effects::table(random, &case.grid, c, (unsymmetric, false));
@@ -49,7 +50,7 @@ pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
         let status = handle.set_influence(&own);
         if (status >= 0) == spoiled {
             let details = format!("status {status}, spoiled {spoiled}");
-            failures.push(Failure { promise: "coefficients are set, or refused where they are none", details });
+            verdict.fail("coefficients are set, or refused where they are none", details);
         }
         if !spoiled {
             let effects = &mut case.effects;
@@ -61,14 +62,12 @@ pub fn run(case: &Case, random: &mut Random) -> Vec<Failure> {
             asked.effects.influence = None;
         }
         let outputs = handle.solve(&asked, false);
-        let name =
-            |failure: Failure| Failure { details: format!("after set_influence: {}", failure.details), ..failure };
-        failures.extend(check(&case, &outputs).into_iter().map(name));
+        verdict.add(check(&case, &outputs).within(&format!("{}: after set_influence: ", case.describe())));
         let fresh = call::solve(&case);
         if outputs.status != fresh.status || outputs.bits() != fresh.bits() {
             let details = format!("status {} and {}", outputs.status, fresh.status);
-            failures.push(Failure { promise: "coefficients that were set give the bits of a fresh call", details });
+            verdict.fail("coefficients that were set give the bits of a fresh call", details);
         }
     }
-    failures
+    verdict
 }

@@ -7,18 +7,22 @@
 //! szz = -3 z^2 (fx x + fy y + fz z)/(2 pi R^5)
 //! ```
 //!
-//! An element is Gauss points of them, more where it is near.
+//! An element is Gauss points of them, more where it is near. With patches the loads of each count by its factor; with two periods the
+//! stresses are sums over waves (`stress_waves`).
 
 use std::f64::consts::PI;
 use std::ptr::null;
 
 use contact_normal::ffi::*;
 
-use crate::call::initialised;
-use crate::coating::gauss;
+use crate::effect_structs::effect_structs;
+use crate::effects::{self, Effects};
 use crate::grid::Grid;
+use crate::hankel::gauss;
+use crate::init::initialised;
 use crate::random::Random;
-use crate::rules::Failure;
+use crate::stress_waves::Waves;
+use crate::verdict::Verdict;
 
 type Tensor = [f64; 6];
 
@@ -66,16 +70,26 @@ struct Loaded {
     grid: Grid,
     nu: f64,
     loads: [Option<Vec<f64>>; 3],
+    effects: Effects,
+    waves: Option<Waves>,
 }
 
 impl Loaded {
-    /// The stresses at a point, x and y from the outer corner of element (0, 0).
-    fn at(&self, point: [f64; 3]) -> Tensor {
+    /// The stresses at a point, x and y from the outer corner of element (0, 0), which lies below this element.
+    fn at(&self, point: [f64; 3], below: Option<usize>) -> Tensor {
         let Grid { mx, dx, dy, .. } = self.grid;
+        if let Some(waves) = &self.waves {
+            return waves.at(self.nu, point);
+        }
+        let factor = |j: usize| match (&self.effects.patches, below) {
+            (Some(patches), Some(i)) => patches.between(i, j),
+            _ => 1.0,
+        };
         let (near, far, kernels) = (gauss(8), gauss(4), [boussinesq, cerruti, cerruti_y]);
         let mut sum = [0.0; 6];
         for j in 0..self.grid.len() {
-            let loads = self.loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| load[j]));
+            let factor = factor(j);
+            let loads = self.loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| factor * load[j]));
             if loads == [0.0; 3] {
                 continue;
             }
@@ -100,9 +114,11 @@ impl Loaded {
 
     /// What the library says at depths below all elements, `[component][depth][element]`, and at points.
     fn library(&self, depths: &[f64], points: &[[f64; 3]]) -> Result<(Vec<Vec<f64>>, Vec<Tensor>), i32> {
+        let structs = effect_structs(&self.effects);
         let mut scene = initialised(contact_normal_scene_init);
         (scene.mx, scene.my) = (self.grid.mx as i32, self.grid.my as i32);
         (scene.dx, scene.dy, scene.poisson_ratio) = (self.grid.dx, self.grid.dy, [0.1, self.nu]);
+        structs.point_from(&mut scene, &self.effects);
         let mut stress = vec![vec![f64::NAN; depths.len() * self.grid.len()]; 6];
         let mut outputs = initialised(contact_normal_stress_outputs_init);
         outputs.stress = std::array::from_fn(|c| stress[c].as_mut_ptr());
@@ -115,6 +131,9 @@ impl Loaded {
         // SAFETY: as above, and room for six values of each point.
         let at_points =
             unsafe { contact_normal_stress_at_points(&scene, 2, p, qx, qy, place, n, null(), at.as_mut_ptr().cast()) };
+        if self.waves.is_some() && at_points == CONTACT_NORMAL_UNSUPPORTED && status == CONTACT_NORMAL_OK {
+            return Ok((stress, Vec::new()));
+        }
         match (status, at_points) {
             (CONTACT_NORMAL_OK, CONTACT_NORMAL_OK) => Ok((stress, at)),
             (CONTACT_NORMAL_OK, refused) | (refused, _) => Err(refused),
@@ -122,12 +141,15 @@ impl Loaded {
     }
 }
 
-/// Random loads and depths: at some elements and at points beside them.
-pub fn check(random: &mut Random) -> Vec<Failure> {
+/// Random loads on a grid: in the open, on patches, or of two periods.
+fn random_loads(random: &mut Random) -> (Loaded, f64) {
     let unit = random.decades(1e-3, 1e3);
+    let kind = random.uniform();
+    let (two_periods, has_patches) = (kind < 0.25, (0.25..0.4).contains(&kind));
+    let most = if two_periods { 10 } else { 24 };
     let grid = Grid {
-        mx: random.integer(1, 24),
-        my: random.integer(1, 24),
+        mx: random.integer(1, most),
+        my: random.integer(1, most),
         dx: unit,
         dy: unit * if random.chance(0.5) { 1.0 } else { random.decades(0.125, 8.0) },
     };
@@ -141,40 +163,63 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     if loads.iter().all(Option::is_none) {
         loads[0] = Some(vec![size; grid.len()]);
     }
-    let loaded = Loaded { grid, nu: random.between(0.0, 0.5), loads };
-    let longer = grid.dx.max(grid.dy);
+    let effects = Effects {
+        period: two_periods.then_some((true, true)),
+        patches: has_patches.then(|| effects::patches(random, &grid)),
+        ..Effects::default()
+    };
+    let of = |element: usize| loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| load[element]));
+    let waves = two_periods.then(|| Waves::new(grid, of));
+    let nu = random.between(0.0, 0.5);
+    (Loaded { grid, nu, loads, effects, waves }, size)
+}
+
+/// Random loads and depths: at some elements and at points beside them.
+pub fn check(random: &mut Random) -> Verdict {
+    let (loaded, size) = random_loads(random);
+    let (grid, longer) = (loaded.grid, loaded.grid.dx.max(loaded.grid.dy));
     let depths = [longer * random.decades(0.2, 3.0), longer * random.decades(1.0, 100.0)];
     let elements: Vec<usize> = (0..2).map(|_| random.integer(0, grid.len() - 1)).collect();
-    let beside = |random: &mut Random, m: usize, d: f64| random.between(-1.0, m as f64 + 1.0) * d;
+    // Within the grid where patches say what is below what.
+    let beyond = if loaded.effects.patches.is_some() { 0.0 } else { 1.0 };
+    let beside = |random: &mut Random, m: usize, d: f64| random.between(-beyond, m as f64 + beyond) * d;
     let points: Vec<[f64; 3]> =
         (0..2).map(|k| [beside(random, grid.mx, grid.dx), beside(random, grid.my, grid.dy), depths[k % 2]]).collect();
     let (on_grid, at_points) = match loaded.library(&depths, &points) {
         Ok(found) => found,
-        Err(status) => {
-            return vec![Failure { promise: "stresses are refused without a reason", details: format!("{status}") }]
+        Err(CONTACT_NORMAL_UNSUPPORTED) if loaded.effects.patches.is_some() => {
+            return Verdict::excused("refused: stresses below patches")
         }
+        Err(status) => return Verdict::failed("stresses are refused without a reason", format!("{status}")),
     };
-    let mut failures = Vec::new();
-    let mut compare = |found: Tensor, place: [f64; 3]| {
-        let exact = loaded.at(place);
+    let mut verdict = Verdict::default();
+    if at_points.len() < points.len() {
+        verdict.excuse("refused: stresses at points of a period");
+    }
+    let mut compare = |found: Tensor, place: [f64; 3], below: Option<usize>| {
+        let exact = loaded.at(place, below);
         for (c, (found, exact)) in found.into_iter().zip(exact).enumerate() {
             // Loads of `size`. Parts of half the distance leave `(4 + sqrt 17)^-16 = 3e-15` of eight points; four points at ten elements
             // `(1/40)^8`, times what differences of 1/R^3 grow by.
-            if !((found - exact).abs() <= 1e-9 * size) {
-                let details =
-                    format!("component {c} at {place:?} of {grid:?}: {found:e} for {exact:e}, loads of {size:e}");
-                failures.push(Failure { promise: "stresses are those of the loads", details });
-            }
+            let is_near = (found - exact).abs() <= 1e-9 * size;
+            verdict.unless(is_near, "stresses are those of the loads", || {
+                let effects = loaded.effects.name();
+                format!("component {c} at {place:?} of {grid:?}, {effects}: {found:e} for {exact:e}, loads of {size:e}")
+            });
         }
     };
     for (k, z) in depths.into_iter().enumerate() {
         for &i in &elements {
             let centre = [((i % grid.mx) as f64 + 0.5) * grid.dx, ((i / grid.mx) as f64 + 0.5) * grid.dy, z];
-            compare(std::array::from_fn(|c| on_grid[c][k * grid.len() + i]), centre);
+            compare(std::array::from_fn(|c| on_grid[c][k * grid.len() + i]), centre, Some(i));
         }
     }
-    at_points.into_iter().zip(&points).for_each(|(found, place)| compare(found, *place));
-    failures
+    for (found, place) in at_points.into_iter().zip(&points) {
+        let [ix, iy] = [place[0] / grid.dx, place[1] / grid.dy].map(|value| value.floor());
+        let is_within = ix >= 0.0 && iy >= 0.0 && ix < grid.mx as f64 && iy < grid.my as f64;
+        compare(found, *place, is_within.then(|| iy as usize * grid.mx + ix as usize));
+    }
+    verdict
 }
 
 #[cfg(test)]
@@ -200,9 +245,10 @@ mod tests {
             }
         }
         let grid = Grid { mx: 1, my: 1, dx: 2.0, dy: 2.0 };
-        let loaded = Loaded { grid, nu: 0.3, loads: [Some(vec![1.0]), None, None] };
+        let loads = [Some(vec![1.0]), None, None];
+        let loaded = Loaded { grid, nu: 0.3, loads, effects: Effects::default(), waves: None };
         let (z, r) = (0.8f64, (2.0f64 + 0.64).sqrt());
         let exact = -2.0 / PI * ((1.0 / (z * r)).atan() + 2.0 * z / (r * (1.0 + z * z)));
-        assert!((loaded.at([1.0, 1.0, z])[2] - exact).abs() <= 1e-9);
+        assert!((loaded.at([1.0, 1.0, z], None)[2] - exact).abs() <= 1e-9);
     }
 }

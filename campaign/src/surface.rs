@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::grid::Grid;
 use crate::random::Random;
 
 /// What the elements' centres look like: offsets from the middle of the grid, over its half width.
@@ -11,7 +12,8 @@ fn centres(mx: usize, my: usize) -> impl Iterator<Item = (f64, f64)> {
 }
 
 /// A name and h, of size about 1.
-pub fn any(random: &mut Random, mx: usize, my: usize) -> (&'static str, Vec<f64>) {
+pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
+    let Grid { mx, my, .. } = *grid;
     // On fine grids mostly noise: their coarser grids do not see its peaks.
     let kind = if mx * my > 3000 && random.chance(0.5) { 3 } else { random.integer(0, 8) };
     let (name, mut h) = match kind {
@@ -26,7 +28,7 @@ pub fn any(random: &mut Random, mx: usize, my: usize) -> (&'static str, Vec<f64>
     if random.chance(0.15) {
         make_holes(random, mx, my, &mut h);
     }
-    (name, h)
+    (name.into(), h)
 }
 
 fn paraboloid(random: &mut Random, mx: usize, my: usize) -> Vec<f64> {

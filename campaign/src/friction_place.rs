@@ -1,0 +1,196 @@
+//! Where bodies with friction touch: grid, bodies, surface, load, a layer, a limit of the pressures.
+
+use contact_normal::ffi::CONTACT_NORMAL_CRITERION_RESIDUAL;
+
+use crate::case::{self, Case, How};
+use crate::effects::{self, Effects, Values};
+use crate::grid::{Grid, Load};
+use crate::half_space::{compliance, free};
+use crate::measured;
+use crate::random::Random;
+use crate::scales::{self, Scales};
+use crate::surface;
+
+/// The bodies and what presses them together.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub grid: Grid,
+    pub shear_modulus: [f64; 2],
+    pub poisson_ratio: [f64; 2],
+    pub surface: String,
+    pub h: Vec<f64>,
+    pub load: Load,
+    /// A layer and a limit at most.
+    pub effects: Effects,
+}
+
+/// Like bodies in most cases, of nu = 0 now and then: without nu shifts start from a smaller load.
+fn bodies(random: &mut Random) -> ([f64; 2], [f64; 2]) {
+    let modulus = if random.chance(0.3) { random.decades(1e-6, 1e9) } else { 1.0 };
+    let nu = random.between(-0.5, 0.5);
+    match random.uniform() {
+        u if u < 0.2 => ([modulus; 2], [0.0; 2]),
+        u if u < 0.6 => ([modulus; 2], [nu; 2]),
+        u if u < 0.75 => ([modulus, f64::INFINITY], [nu, 0.3]),
+        _ => ([modulus, modulus * random.decades(0.1, 10.0)], [nu, random.between(0.0, 0.5)]),
+    }
+}
+
+fn elements(random: &mut Random, unit: f64) -> Grid {
+    let (mx, my) = match random.uniform() {
+        u if u < 0.04 => (1, 1),
+        u if u < 0.12 => (random.integer(2, 24), 1),
+        u if u < 0.20 => (1, random.integer(2, 24)),
+        _ => (random.integer(2, 24), random.integer(2, 24)),
+    };
+    let dy = match random.uniform() {
+        u if u < 0.5 => unit,
+        u if u < 0.9 => unit * random.decades(0.25, 4.0),
+        _ => unit * random.decades(0.02, 50.0),
+    };
+    Grid { mx, my, dx: unit, dy }
+}
+
+/// Larger than those: squares, lines and strips.
+fn large(random: &mut Random, unit: f64) -> Grid {
+    let (mx, my) = match random.uniform() {
+        u if u < 0.2 => (random.integer(24, 600), 1),
+        u if u < 0.3 => (random.integer(50, 400), random.integer(2, 8)),
+        u if u < 0.9 => (random.integer(10, 50), random.integer(10, 50)),
+        _ => (random.integer(50, 100), random.integer(50, 100)),
+    };
+    // Rollers: elements as long as the contact is wide, and longer.
+    if my == 1 && random.chance(0.4) {
+        return Grid { mx, my, dx: unit, dy: unit * random.decades(1.0, 5.0 * mx as f64) };
+    }
+    let (mx, my) = if random.chance(0.5) { (mx, my) } else { (my, mx) };
+    let dy = unit * if random.chance(0.6) { 1.0 } else { random.decades(0.25, 4.0) };
+    Grid { mx, my, dx: unit, dy }
+}
+
+impl Place {
+    /// A flat surface that nothing presses.
+    pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
+        let (surface, h) = ("flat".into(), vec![0.0; grid.len()]);
+        Place { grid, shear_modulus, poisson_ratio, surface, h, load: Load::Force(0.0), effects: Effects::default() }
+    }
+
+    /// A small one, or one of what people bring.
+    pub fn random(random: &mut Random, is_measured: bool) -> Place {
+        let unit = if random.chance(0.3) { random.decades(1e-6, 1e6) } else { 1.0 };
+        let grid = if is_measured { large(random, unit) } else { elements(random, unit) };
+        let (shear_modulus, poisson_ratio) = bodies(random);
+        let mut place = Place::new(grid, shear_modulus, poisson_ratio);
+        if random.chance(0.08) {
+            place.become_roller(random, unit);
+            return place;
+        }
+        let surfaces = if is_measured { measured::surface } else { surface::any };
+        let (surface, h) = surfaces(random, &grid);
+        let height = unit * random.decades(1e-4, 1.0);
+        (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
+        place.press(random, is_measured);
+        if random.chance(0.1) {
+            let c = compliance(shear_modulus, poisson_ratio);
+            place.effects.layer = Some(effects::layer(random, &grid, free(1, 1, grid.dx, grid.dy, c).at(0, 0)));
+        }
+        if random.chance(0.15) {
+            place.effects.limit = place.limit(random);
+        }
+        place
+    }
+
+    /// A limit for the load.
+    pub fn limit(&self, random: &mut Random) -> Option<Values> {
+        Some(scales::limit(random, &self.scales(), self.load, &self.h, &self.grid))
+    }
+
+    /// A smooth cylinder on a line of elements that are long across: plane strain, or nearly; the load is a part of the line's.
+    fn become_roller(&mut self, random: &mut Random, unit: f64) {
+        let (n, length) = (random.integer(3, 300), random.decades(10.0, 1e6));
+        self.grid = Grid { mx: n, my: 1, dx: unit, dy: unit * length };
+        let radius = unit * n as f64 * random.decades(1.0, 1e4);
+        let x = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * unit;
+        self.surface = "roller".into();
+        self.h = (0..n).map(|i| x(i).powi(2) / (2.0 * radius)).collect();
+        // Hertz: a line of half width a carries pi E* a^2/(4 R) on each length.
+        let e_star = 1.0 / (std::f64::consts::PI * compliance(self.shear_modulus, self.poisson_ratio));
+        let a = random.between(0.1, 0.45) * n as f64 * unit;
+        self.load = Load::Force(0.25 * std::f64::consts::PI * e_star * a * a / radius * self.grid.dy);
+    }
+
+    fn scales(&self) -> Scales {
+        Scales::of(&self.h, &Effects::default(), &self.grid, compliance(self.shear_modulus, self.poisson_ratio))
+    }
+
+    /// Another load.
+    pub fn press(&mut self, random: &mut Random, is_measured: bool) {
+        let c = compliance(self.shear_modulus, self.poisson_ratio);
+        self.load = match is_measured {
+            true => measured::load(random, &self.grid, &self.h, c, None),
+            false => case::load(random, &self.scales(), &self.grid),
+        };
+    }
+
+    /// Whether pressures and tractions know nothing of each other.
+    pub fn is_alike(&self) -> bool {
+        self.shear_modulus[0] == self.shear_modulus[1] && self.poisson_ratio[0] == self.poisson_ratio[1]
+    }
+
+    /// The normal problem, with what tractions displace along the normal and what rounding may do to that.
+    pub fn normal(&self, stop: &Stop, along: &[f64], rounding: f64) -> Case {
+        let Place { grid, shear_modulus, poisson_ratio, load, effects, .. } = self.clone();
+        let how = How {
+            method: 0,
+            smoother: 0,
+            criterion: CONTACT_NORMAL_CRITERION_RESIDUAL,
+            tolerance: stop.tolerance,
+            precision: stop.precision,
+            threads: stop.threads,
+            coarsest: 4,
+            max_cycles: stop.max_cycles,
+            cancel_at: stop.cancel_at,
+            fixed: None,
+            given: None,
+        };
+        let h = self.h.iter().zip(along).map(|(h, u)| h + u).collect();
+        let (surface, surfaces) = (self.surface.clone(), surface::any as case::Surfaces);
+        Case {
+            seed: 0,
+            grid,
+            shear_modulus,
+            poisson_ratio,
+            surface,
+            surfaces,
+            h,
+            h_rounding: rounding,
+            load,
+            effects,
+            how,
+            through_handle: false,
+            is_measured: false,
+        }
+    }
+}
+
+/// When the solve stops.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    pub tolerance: f64,
+    pub precision: i32,
+    pub threads: i32,
+    pub max_cycles: i32,
+    pub cancel_at: Option<u32>,
+}
+
+impl Stop {
+    pub fn unhindered(random: &mut Random) -> Stop {
+        let tolerance = 10f64.powi(-(random.integer(3, 8) as i32));
+        let (precision, threads) = (random.integer(0, 2) as i32, if random.chance(0.05) { 2 } else { 1 });
+        Stop { tolerance, precision, threads, max_cycles: 1000, cancel_at: None }
+    }
+
+    pub fn is_unhindered(&self) -> bool {
+        self.max_cycles == 1000 && self.cancel_at.is_none()
+    }
+}

@@ -1,0 +1,203 @@
+//! What holds for every answer with friction, of like and of unlike bodies, and what is excused.
+
+use contact_normal::ffi::*;
+
+use crate::call::Outputs;
+use crate::friction_case::Case;
+use crate::friction_conditions::{conditions, is_monotone, length, Conditions, ON_THE_CIRCLE};
+use crate::friction_found::{Before, Found};
+use crate::friction_place::Place;
+use crate::grid::Grid;
+use crate::rules;
+use crate::tangential::Operator;
+use crate::verdict::Verdict;
+
+/// Up to this mu the turns between the problems of unlike bodies settle, by the library's documents.
+const MUCH_FRICTION: f64 = 1.0;
+
+/// A verdict whose failures say which case it is.
+struct Broken<'a> {
+    case: &'a Case,
+    verdict: Verdict,
+}
+
+impl Broken<'_> {
+    fn unless(&mut self, kept: bool, promise: &'static str, details: impl FnOnce() -> String) {
+        let case = self.case;
+        self.verdict.unless(kept, promise, || format!("{}: {}", case.describe(), details()));
+    }
+}
+
+/// One answer from what the bodies carried before.
+pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
+    let mut broken = Broken { case, verdict: Verdict::default() };
+    let status = found.status;
+    if status < 0 {
+        broken.unless(!found.written, "friction refused leaves outputs alone", || format!("status {status}"));
+        broken.unless(!found.message.is_empty(), "friction refused says why", || format!("status {status}"));
+        let told = || format!("status {status}, {}", found.message);
+        match (reason(case, status), case.normal_reason(status)) {
+            (Some(why), _) | (_, Some(why)) => broken.verdict.excuse(why),
+            _ => broken.unless(false, "friction is refused for a reason", told),
+        }
+        return broken.verdict;
+    }
+    check_bounds(case, found, &mut broken);
+    let conditions = conditions(case, found, before);
+    check_slip(found, &conditions, &mut broken);
+    check_contact(found, &conditions, &mut broken);
+    if status > 0 && broken.verdict.failures.is_empty() {
+        check_stop(found, &conditions, &mut broken);
+    }
+    broken.verdict
+}
+
+/// Why friction may be refused with this status.
+fn reason(case: &Case, status: i32) -> Option<&'static str> {
+    if status == CONTACT_NORMAL_INFEASIBLE {
+        return case.may_be_infeasible();
+    }
+    None
+}
+
+/// What does not hold of an answer with status >= 0 that others certify along the normal. `certified`: the coefficients and the slip are
+/// those that this module knows.
+pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
+    let mut broken = Broken { case, verdict: Verdict::default() };
+    let carried = check_bounds(case, found, &mut broken);
+    if certified && carried > 0.0 {
+        let conditions = conditions(case, found, &case.before(&found.p));
+        check_slip(found, &conditions, &mut broken);
+    }
+    broken.verdict
+}
+
+/// Numbers, tractions within their bounds, stick and slip, and the forces; returns mu N.
+fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
+    let (status, slide) = (found.status, &case.slide);
+    let report = &found.report;
+    let of_report = report.tangential_force.iter().chain(&report.creepage).chain(&report.sensitivities);
+    let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
+    let numbers = numbers.chain(of_report).chain([&report.tangential_moment, &report.tangential_residual]);
+    broken.unless(numbers.copied().all(f64::is_finite), "friction returns numbers", || format!("status {status}"));
+    let area = case.place.grid.element_area();
+    let (mut carried, mut sum) = (0.0, [0.0; 2]);
+    for i in 0..found.q.len() {
+        // Within an area that is fixed some elements may pull.
+        let (q, bound) = (found.q[i], slide.mu[i] * found.p[i].max(0.0));
+        // mu p of 0 and of numbers below the smallest have tractions of 0.
+        broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
+            format!("element {i}: {q:?}, bound {bound:e}, status {status}")
+        });
+        let adhesion = found.adhesion[i];
+        let expected = match found.p[i] > 0.0 {
+            false => CONTACT_NORMAL_ADHESION_EXTERIOR,
+            true if length(q) >= bound * ON_THE_CIRCLE => CONTACT_NORMAL_ADHESION_SLIP,
+            true => CONTACT_NORMAL_ADHESION_STICK,
+        };
+        let at_edge = (length(q) - bound * ON_THE_CIRCLE).abs() <= 4.0 * f64::EPSILON * bound;
+        broken.unless(adhesion == expected || at_edge && adhesion > 0, "adhesion is that of the tractions", || {
+            format!("element {i}: {adhesion} for {expected}, {q:?}, bound {bound:e}, status {status}")
+        });
+        carried += bound * area;
+        sum = [0, 1].map(|k: usize| sum[k] + q[k] * area);
+    }
+    for (k, sum) in sum.into_iter().enumerate() {
+        let reported = found.report.tangential_force[k];
+        broken.unless((reported - sum).abs() <= 1e-12 * carried, "the force is the sum of tractions", || {
+            format!("{reported:e} for {sum:e}, status {status}")
+        });
+        if status == CONTACT_NORMAL_OK && slide.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE {
+            let given = slide.amount[k];
+            broken.unless((sum - given).abs() <= 1.001 * case.stop.tolerance * carried, "forces are met", || {
+                format!("{sum:e} for {given:e}, {carried:e} carried")
+            });
+        }
+    }
+    carried
+}
+
+/// Status OK: stick and slip.
+fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
+    let Conditions { left, scale, rounding, slip_error, .. } = *conditions;
+    if found.status != CONTACT_NORMAL_OK {
+        return;
+    }
+    let allowed = broken.case.stop.tolerance * scale;
+    broken.unless(
+        left <= 1.000001 * allowed + rounding,
+        "OK: what is left of the slip is within the tolerance",
+        || {
+            let reported = found.report.tangential_residual;
+            format!("{left:e} left of {scale:e}, rounding {rounding:e}, reported {reported:e}")
+        },
+    );
+    broken.unless(slip_error <= rounding, "the slip is w + A q - u'", || format!("{slip_error:e}, {rounding:e}"));
+}
+
+/// The conditions of contact, with what tractions displace along the normal.
+fn check_contact(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
+    let case = broken.case;
+    let normal = case.place.normal(&case.stop, &conditions.along_normal, conditions.normal_rounding);
+    let outputs = outputs(found);
+    // Turns that do not settle leave each problem with what the other one found a turn before.
+    let failures = match found.status == CONTACT_NORMAL_OK || case.place.is_alike() {
+        true => rules::is_true(&normal, &outputs),
+        false => rules::is_admissible(&normal, &outputs),
+    };
+    for failure in failures {
+        broken.unless(false, failure.promise, || failure.details);
+    }
+}
+
+/// What a call returned of the normal problem.
+fn outputs(found: &Found) -> Outputs {
+    let Found { status, message, p, u, e, contact, report, overrun, written, .. } = found;
+    Outputs {
+        status: *status,
+        message: message.clone(),
+        p: p.clone(),
+        u: u.clone(),
+        e: e.clone(),
+        contact: contact.clone(),
+        report: *report,
+        overrun: *overrun,
+        written: *written,
+    }
+}
+
+/// Status > 0: why that may be.
+fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
+    let (case, status) = (broken.case, found.status);
+    let Conditions { left, scale, rounding, ref along_normal, normal_rounding, .. } = *conditions;
+    let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+    let mu = case.slide.mu.iter().copied().fold(0.0, f64::max);
+    let normal = case.place.normal(&case.stop, along_normal, normal_rounding);
+    let why = match status {
+        CONTACT_NORMAL_CANCELLED => Some("friction: cancelled by the callback"),
+        _ if !case.stop.is_unhindered() => Some("friction: stopped within few cycles"),
+        _ if case.stop.tolerance * scale <= 10.0 * rounding => Some("friction: a tolerance below ten times round-off"),
+        _ if is_steady && !is_monotone(case, found) => Some("friction: steady rolling that is not monotone"),
+        _ if !case.place.is_alike() && mu > MUCH_FRICTION => Some("friction: unlike bodies, mu > 1"),
+        _ if rules::is_at_rounding(&normal, &outputs(found)) => {
+            Some("friction: the normal problem is left to round-off")
+        }
+        _ => None,
+    };
+    match why {
+        Some(why) => broken.verdict.excuse(why),
+        None => broken.unless(false, "friction is solved", || {
+            let message = &found.message;
+            format!("status {status}, {left:e} left of {scale:e}, rounding {rounding:e}: {message}")
+        }),
+    }
+}
+
+/// Own tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.
+pub fn tables(place: &Place) -> Vec<Vec<f64>> {
+    let Grid { mx, my, .. } = place.grid;
+    let wider = Grid { mx: mx + 1, my: my + 1, ..place.grid };
+    let operator = Operator::new(&Place::new(wider, place.shear_modulus, place.poisson_ratio), [0.0; 2]);
+    let offsets = || (0..2 * my).flat_map(|y| (0..2 * mx).map(move |x| y * (2 * mx + 1) + x));
+    (0..3).map(|k| offsets().map(|at| operator.table[at][k]).collect()).collect()
+}

@@ -1,0 +1,160 @@
+//! What an instrument, wear and a mounting do to a map of heights.
+
+use crate::grid::Grid;
+use crate::random::Random;
+
+/// Spoils h in up to three ways, and says how. At least one element keeps a surface.
+pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    let count = random.pick(&[0, 0, 1, 1, 1, 2, 2, 3]);
+    for _ in 0..count {
+        names.push(match random.integer(0, 11) {
+            0 => tilt(random, grid, h),
+            1 => quantise(random, h),
+            2 => plateau(random, h),
+            3..=5 => spikes(random, h),
+            6 => pits(random, h),
+            7 => step(random, grid, h),
+            8 => stripes(random, grid, h),
+            9 | 10 => holes(random, grid, h),
+            _ => offset(random, h),
+        });
+    }
+    if h.iter().all(|h| h.is_infinite()) {
+        h[grid.len() / 2] = 0.0;
+    }
+    names
+}
+
+/// The heights that there are, sorted.
+pub fn sorted(h: &[f64]) -> Vec<f64> {
+    let mut finite: Vec<f64> = h.iter().copied().filter(|h| h.is_finite()).collect();
+    finite.sort_by(f64::total_cmp);
+    finite
+}
+
+/// The root of the mean square about the mean, or 1 where that is 0.
+fn rms(h: &[f64]) -> f64 {
+    let finite = || h.iter().filter(|h| h.is_finite());
+    let n = finite().count().max(1) as f64;
+    let mean = finite().sum::<f64>() / n;
+    let rms = (finite().map(|h| (h - mean).powi(2)).sum::<f64>() / n).sqrt();
+    if rms > 0.0 {
+        rms
+    } else {
+        1.0
+    }
+}
+
+fn tilt(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
+    let size = rms(h) * random.decades(0.1, 1e3);
+    let slopes = [random.between(-size, size) / grid.mx as f64, random.between(-size, size) / grid.my as f64];
+    let along = |i: usize| slopes[0] * (i % grid.mx) as f64 + slopes[1] * (i / grid.mx) as f64;
+    h.iter_mut().enumerate().for_each(|(i, h)| *h += along(i));
+    "tilt"
+}
+
+/// Heights of a converter with few bits.
+fn quantise(random: &mut Random, h: &mut [f64]) -> &'static str {
+    let quantum = rms(h) * random.decades(1e-3, 1.0);
+    h.iter_mut().for_each(|h| *h = (*h / quantum).round() * quantum);
+    "quantised"
+}
+
+/// Worn tops, or a range of the instrument that ends above the valleys.
+fn plateau(random: &mut Random, h: &mut [f64]) -> &'static str {
+    let finite = sorted(h);
+    let Some(last) = finite.len().checked_sub(1) else { return "plateau" };
+    let level = finite[(random.between(0.01, 0.6) * last as f64) as usize];
+    let tops = random.chance(0.7);
+    h.iter_mut().filter(|h| h.is_finite()).for_each(|h| *h = if tops { h.max(level) } else { h.min(level) });
+    if tops {
+        "plateau"
+    } else {
+        "cut valleys"
+    }
+}
+
+/// Points above all others, one or many: dust, or what an interferometer makes of a slope.
+fn spikes(random: &mut Random, h: &mut [f64]) -> &'static str {
+    let (count, height) = (points(random, h.len()), rms(h) * random.decades(1.0, 1e4));
+    let alike = random.chance(0.3);
+    let finite = sorted(h);
+    let top = finite.first().copied().unwrap_or(0.0);
+    for _ in 0..count {
+        let at = random.integer(0, h.len() - 1);
+        h[at] = top - height * if alike { 1.0 } else { random.uniform() };
+    }
+    "spikes"
+}
+
+/// Points below all others.
+fn pits(random: &mut Random, h: &mut [f64]) -> &'static str {
+    let (count, depth) = (points(random, h.len()), rms(h) * random.decades(1.0, 1e4));
+    for _ in 0..count {
+        let at = random.integer(0, h.len() - 1);
+        h[at] += depth * random.uniform();
+    }
+    "pits"
+}
+
+/// One, some, or a part of all.
+fn points(random: &mut Random, n: usize) -> usize {
+    match random.uniform() {
+        u if u < 0.4 => 1,
+        u if u < 0.8 => random.integer(2, 20),
+        _ => (random.decades(1e-3, 0.1) * n as f64) as usize + 1,
+    }
+}
+
+/// An edge between two levels, in any direction.
+fn step(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
+    let size = rms(h) * random.decades(0.1, 1e3);
+    let angle: f64 = random.pick(&[0.0, 0.25, 0.5, 0.1]) * std::f64::consts::PI;
+    let place = random.between(0.1, 0.9) * (angle.cos() * grid.mx as f64 + angle.sin() * grid.my as f64);
+    for (i, h) in h.iter_mut().enumerate() {
+        let along = angle.cos() * (i % grid.mx) as f64 + angle.sin() * (i / grid.mx) as f64;
+        *h += if along > place { size } else { 0.0 };
+    }
+    "step"
+}
+
+/// Rows of a scan, each with a zero of its own.
+fn stripes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
+    let size = rms(h) * random.decades(0.01, 1.0);
+    let zeros: Vec<f64> = (0..grid.my).map(|_| random.between(-size, size)).collect();
+    h.iter_mut().enumerate().for_each(|(i, h)| *h += zeros[i / grid.mx]);
+    "stripes"
+}
+
+/// Elements without a surface: scattered, spots, a border, every so many columns, or the deepest.
+fn holes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
+    let Grid { mx, my, .. } = *grid;
+    let (kind, part, every) = (random.integer(0, 4), random.decades(1e-3, 0.9), random.integer(2, 5));
+    let spot = |random: &mut Random| {
+        [random.between(0.0, mx as f64), random.between(0.0, my as f64), random.between(0.05, 0.3) * mx.max(my) as f64]
+    };
+    let spots: Vec<[f64; 3]> = (0..random.integer(1, 6)).map(|_| spot(random)).collect();
+    let finite = sorted(h);
+    let level = finite.get((part * finite.len() as f64) as usize).copied().unwrap_or(f64::INFINITY);
+    for (i, h) in h.iter_mut().enumerate() {
+        let (ix, iy) = (i % mx, i / mx);
+        let hole = match kind {
+            0 => random.chance(part),
+            1 => spots.iter().any(|[x, y, r]| (ix as f64 - x).hypot(iy as f64 - y) < *r),
+            2 => ix == 0 || iy == 0 || ix == mx - 1 || iy == my - 1,
+            3 => ix % every == 0,
+            _ => *h > level,
+        };
+        if hole {
+            *h = f64::INFINITY;
+        }
+    }
+    "holes"
+}
+
+fn offset(random: &mut Random, h: &mut [f64]) -> &'static str {
+    let by = rms(h) * random.decades(1.0, 1e6) * random.pick(&[1.0, -1.0]);
+    h.iter_mut().for_each(|h| *h += by);
+    "offset"
+}

@@ -1,0 +1,110 @@
+//! Cases of what people bring: measured maps with their faults, line scans, strips, punches, gratings; on grids of 1 to 60000 elements.
+
+mod faults;
+mod grids;
+mod heights;
+mod loads;
+
+pub use loads::any as load;
+
+use crate::case::{Case, How};
+use crate::coating;
+use crate::effects::{self, Effects, Kinds};
+use crate::grid::Grid;
+use crate::half_space::compliance;
+use crate::random::Random;
+use crate::scales::{self, Scales};
+
+/// Undeformed distances of a grid, of any unit, and what they are called.
+pub fn surface(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
+    let (mut name, mut h) = heights::any(random, grid);
+    for fault in faults::any(random, grid, &mut h) {
+        name = format!("{name} + {fault}");
+    }
+    (name, h)
+}
+
+/// The case of a seed.
+pub fn case(seed: u64) -> Case {
+    let mut random = Random::new(seed ^ 0x0006_3ea5_04ed);
+    let random = &mut random;
+    let grid = grids::any(random);
+    let kinds = kinds(random, &grid);
+    let modulus = if random.chance(0.2) { 10f64.powi(random.integer(0, 16) as i32 - 6) } else { 1.0 };
+    let second = if random.chance(0.5) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) };
+    let (shear_modulus, poisson_ratio) = ([modulus, second], [random.between(0.0, 0.5), 0.3]);
+    let (name, mut h) = surface(random, &grid);
+    let height = grid.dx * random.decades(1e-4, 1.0);
+    h.iter_mut().for_each(|h| *h *= height);
+    let c = compliance(shear_modulus, poisson_ratio);
+    let mut effects = effects::make(random, &kinds, &grid, c);
+    if is_coated(random, &grid, &effects) {
+        effects.coating = Some(coating::random(random, &grid, (shear_modulus, poisson_ratio), effects.period));
+    }
+    let load = load(random, &grid, &h, c, effects.period);
+    if kinds.limit {
+        let scales = Scales::of(&h, &effects, &grid, c);
+        effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
+    }
+    let how = how(random, &Scales::of(&h, &effects, &grid, c), &h, load, (kinds.limit, &grid));
+    let through_handle = grid.len() < 5000 && random.chance(0.15);
+    Case {
+        seed,
+        grid,
+        shear_modulus,
+        poisson_ratio,
+        surface: name,
+        surfaces: surface,
+        h,
+        h_rounding: 0.0,
+        load,
+        effects,
+        how,
+        through_handle,
+        is_measured: true,
+    }
+}
+
+/// The effects that a scene names. Tables per row are dear, and so are others on large grids.
+fn kinds(random: &mut Random, grid: &Grid) -> Kinds {
+    let mut kinds = Kinds::default();
+    // The sums of a period take time where elements are slender.
+    let slender = grid.dx.max(grid.dy) > 8.0 * grid.dx.min(grid.dy);
+    if !slender && random.chance(0.45) {
+        kinds.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
+    }
+    kinds.layer = random.chance(0.12);
+    kinds.limit = random.chance(0.2);
+    if kinds.period.is_none() {
+        kinds.patches = random.chance(0.06);
+        kinds.influence = random.chance(0.06);
+        kinds.row_tables = !kinds.influence && grid.my <= 40 && grid.len() <= 2000 && random.chance(0.06);
+    }
+    kinds
+}
+
+/// Coatings of not too large grids, whose elements are not slender: the oracle integrates by quadrature.
+fn is_coated(random: &mut Random, grid: &Grid, effects: &Effects) -> bool {
+    let own = effects.influence.is_some() || effects.row_tables.is_some();
+    let one_period = matches!(effects.period, Some((true, false) | (false, true)));
+    let square = (0.1..=10.0).contains(&(grid.dx / grid.dy));
+    !own && !one_period && square && grid.mx.max(grid.my) <= 130 && random.chance(0.1)
+}
+
+/// Mostly AUTO; on large grids no method that may take thousands of cycles.
+fn how(
+    random: &mut Random,
+    scales: &Scales,
+    h: &[f64],
+    load: crate::grid::Load,
+    (limited, grid): (bool, &Grid),
+) -> How {
+    let mut how = How::any(random, scales, h, load, limited);
+    if random.chance(0.6) || grid.len() > 12000 {
+        how.method = 0;
+    }
+    if random.chance(0.6) {
+        (how.given, how.fixed, how.cancel_at, how.max_cycles) = (None, None, None, 1000);
+    }
+    how
+}

@@ -1,0 +1,108 @@
+//! A case from its seed to its verdict.
+
+use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::time::Instant;
+
+use crate::case::Case;
+use crate::random::Random;
+use crate::verdict::Verdict;
+use crate::{accuracy, batch, call, friction, measured, rules, sequence, set_influence, stress};
+
+/// What came of one case.
+pub struct Run {
+    pub case: Case,
+    pub statuses: Vec<i32>,
+    /// What was asked beside the case, and the statuses of that.
+    pub beside: Option<(String, Vec<i32>)>,
+    pub verdict: Verdict,
+    /// Products of AUTO from nothing, of a case that it may take its time for: on all grids, in products on the finest.
+    pub products: Option<f64>,
+    pub seconds: f64,
+}
+
+/// Before the details of a failure that is none of the case's own.
+pub const BESIDE: &str = "beside: ";
+/// AUTO that takes more products than this is counted, where it ends OK, too.
+const MANY_PRODUCTS: f64 = 200.0;
+
+/// A case of the campaign's sizes that takes longer hangs. (The largest take some seconds, with all cores busy.)
+const TOO_LONG: f64 = 60.0;
+
+/// Runs the case of a seed: one in twenty-five is of what people bring.
+pub fn ordinary(seed: u64) -> Run {
+    if Random::new(seed ^ 0x0b12_76ed).chance(0.04) {
+        return measured(seed);
+    }
+    run(Case::new(seed))
+}
+
+/// Runs the case of what people bring.
+pub fn measured(seed: u64) -> Run {
+    run(measured::case(seed))
+}
+
+fn run(case: Case) -> Run {
+    let began = Instant::now();
+    let mut run =
+        Run { case, statuses: Vec::new(), beside: None, verdict: Verdict::default(), products: None, seconds: 0.0 };
+    if let Err(panic) = catch_unwind(AssertUnwindSafe(|| ask(&mut run))) {
+        let details = panic.downcast_ref::<String>().cloned().unwrap_or_default();
+        run.verdict.fail("no panic", details);
+    }
+    run.seconds = began.elapsed().as_secs_f64();
+    if run.seconds > TOO_LONG {
+        run.verdict.fail("bounded time", format!("{:.1} s", run.seconds));
+    }
+    run
+}
+
+fn ask(run: &mut Run) {
+    if run.case.through_handle {
+        let found = sequence::run(&run.case);
+        run.statuses = found.statuses;
+        run.verdict.add(found.verdict);
+    } else {
+        single(run);
+    }
+    beside(run);
+}
+
+/// One call, and the same again.
+fn single(run: &mut Run) {
+    let case = &run.case;
+    let found = call::solve(case);
+    run.statuses.push(found.status);
+    run.verdict.add(rules::check(case, &found));
+    let how = &case.how;
+    if found.status >= 0 && how.method == 0 && how.given.is_none() && how.fixed.is_none() && how.is_unhindered() {
+        run.products = Some(found.report.work_units);
+        if found.status == 0 && found.report.work_units > MANY_PRODUCTS {
+            run.verdict.excuse("AUTO took more than 200 products");
+        }
+    }
+    // Large ones now and then.
+    if case.grid.len() < 5000 || case.seed % 4 == 0 {
+        let same = call::solve(case).bits() == found.bits();
+        run.verdict.unless(same, "the same call twice has the same bits", String::new);
+    }
+}
+
+/// What some seeds are asked beside their case.
+fn beside(run: &mut Run) {
+    let case = &run.case;
+    // By numbers of their own: those of the case stay what they were.
+    let random = &mut Random::new(case.seed ^ 0x00be_51de);
+    let verdict = match random.uniform() {
+        u if u < 0.04 => stress::check(random),
+        u if u < 0.05 => accuracy::check(random).into(),
+        u if u < 0.10 && case.grid.len() < 15000 => batch::run(case, random),
+        u if u < 0.15 && case.grid.len() < 15000 => set_influence::run(case, random),
+        u if u < 0.25 => {
+            let asked = friction::run(random, case.is_measured);
+            run.beside = Some((asked.case.kind(), asked.statuses));
+            asked.verdict
+        }
+        _ => return,
+    };
+    run.verdict.add(verdict.within(BESIDE));
+}

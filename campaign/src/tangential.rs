@@ -1,0 +1,178 @@
+//! Displacements by tractions and by pressures, of like and of unlike bodies, by coefficients of the campaign's own
+//! (`tangential_coefficients`). Tractions displace along the normal by `-(Axz qx + Ayz qy)`.
+
+use std::cell::OnceCell;
+use std::f64::consts::PI;
+
+use crate::fft::Convolution;
+use crate::friction_place::Place;
+use crate::grid::Grid;
+pub use crate::tangential_coefficients::Vector;
+use crate::tangential_coefficients::{Compliance, Element, Entry};
+
+/// Products of more terms are done by the transform.
+const LONG: usize = 300_000;
+
+/// Coefficients between the elements of a grid, displaced by so many lengths.
+pub struct Operator {
+    grid: Grid,
+    /// Of offsets `-(m - 1)..m`.
+    pub table: Vec<Entry>,
+    couples: bool,
+    /// What rounding may do to a displacement by loads whose sizes add up to 1, and by loads whose 2-norm is 1.
+    rounding: [f64; 2],
+    transforms: OnceCell<[Convolution; 5]>,
+}
+
+impl Operator {
+    pub fn new(place: &Place, by: Vector) -> Operator {
+        let Grid { mx, my, dx, dy } = place.grid;
+        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / place.shear_modulus[b]);
+        let [shear, poisson] = [each([1.0; 2]), each(place.poisson_ratio)].map(|[a, b]| 0.5 * (a + b));
+        let [one, other] = each(place.poisson_ratio.map(|nu| 1.0 - 2.0 * nu));
+        let unlike = if place.is_alike() { 0.0 } else { 0.25 * (one - other) };
+        let element = Element::new(Compliance { shear, poisson, unlike }, [dx, dy]);
+        let mut largest: f64 = 0.0;
+        let mut entry = |kx: i64, ky: i64| {
+            let (entry, terms) = element.at([kx as f64 * dx + by[0], ky as f64 * dy + by[1]]);
+            largest = largest.max(terms);
+            entry
+        };
+        let reach = |m: usize| 1 - m as i64..m as i64;
+        let table: Vec<Entry> =
+            reach(my).flat_map(|ky| reach(mx).map(move |kx| (kx, ky))).map(|(kx, ky)| entry(kx, ky)).collect();
+        let greatest = table.iter().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
+        let norm = table.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
+        // Eight terms, each to some units of round-off of the largest; and the transforms, here and there.
+        let terms = (shear + poisson.abs() + unlike.abs()) * largest / PI + greatest;
+        let steps = 4.0 + (16.0 * table.len() as f64).log2();
+        let rounding = [64.0 * f64::EPSILON * terms, 8.0 * steps * f64::EPSILON * norm];
+        Operator { grid: place.grid, table, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
+    }
+
+    /// Whether pressures displace sideways and tractions along the normal.
+    pub fn couples(&self) -> bool {
+        self.couples
+    }
+
+    /// What rounding may do to a displacement by these loads.
+    pub fn rounding(&self, loads: impl Iterator<Item = f64>) -> f64 {
+        let (sum, squares) =
+            loads.fold((0.0, 0.0f64), |(sum, squares), load| (sum + load.abs(), squares + load * load));
+        self.rounding[0] * sum + self.rounding[1] * squares.sqrt()
+    }
+
+    /// The coefficients of element i by a load of 1 on element j.
+    pub fn between(&self, i: usize, j: usize) -> Entry {
+        let (mx, my) = (self.grid.mx, self.grid.my);
+        let (kx, ky) = (i % mx + mx - 1 - j % mx, i / mx + my - 1 - j / mx);
+        self.table[ky * (2 * mx - 1) + kx]
+    }
+
+    fn transforms(&self) -> &[Convolution; 5] {
+        let (mx, my) = (self.grid.mx as i64, self.grid.my as i64);
+        let at = |kx: i64, ky: i64| ((ky + my - 1) * (2 * mx - 1) + kx + mx - 1) as usize;
+        self.transforms.get_or_init(|| {
+            [0, 1, 2, 3, 4]
+                .map(|k: usize| Convolution::new(self.grid.mx, self.grid.my, |kx, ky| self.table[at(kx, ky)][k]))
+        })
+    }
+
+    /// Displacements x, y and along the normal by tractions.
+    pub fn by_tractions(&self, q: &[Vector]) -> Vec<[f64; 3]> {
+        let loaded: Vec<usize> = (0..q.len()).filter(|&j| q[j] != [0.0; 2]).collect();
+        if loaded.len() * q.len() <= LONG {
+            let add = |i: usize, u: [f64; 3], j: usize| {
+                let ([xx, yy, xy, xz, yz], [qx, qy]) = (self.between(i, j), q[j]);
+                [u[0] + xx * qx + xy * qy, u[1] + xy * qx + yy * qy, u[2] - xz * qx - yz * qy]
+            };
+            return (0..q.len()).map(|i| loaded.iter().fold([0.0; 3], |u, &j| add(i, u, j))).collect();
+        }
+        let [x, y] = [0, 1].map(|k: usize| q.iter().map(|q| q[k]).collect::<Vec<f64>>());
+        let [xx, yy, xy, xz, yz] = self.transforms();
+        let [of_x, of_y] = xy.apply([&x, &y]);
+        let mut u: Vec<[f64; 3]> = (0..q.len()).map(|i| [of_y[i], of_x[i], 0.0]).collect();
+        for (k, sign, sum) in [(0, 1.0, xx.of(&x)), (1, 1.0, yy.of(&y))] {
+            u.iter_mut().zip(sum).for_each(|(u, value)| u[k] += sign * value);
+        }
+        if self.couples {
+            for sum in [xz.of(&x), yz.of(&y)] {
+                u.iter_mut().zip(sum).for_each(|(u, value)| u[2] -= value);
+            }
+        }
+        u
+    }
+
+    /// Displacements in x and y by pressures.
+    pub fn by_pressures(&self, p: &[f64]) -> Vec<Vector> {
+        if !self.couples {
+            return vec![[0.0; 2]; p.len()];
+        }
+        let loaded: Vec<usize> = (0..p.len()).filter(|&j| p[j] != 0.0).collect();
+        if loaded.len() * p.len() <= LONG {
+            let add = |i: usize, u: Vector, j: usize| {
+                let [_, _, _, xz, yz] = self.between(i, j);
+                [u[0] + xz * p[j], u[1] + yz * p[j]]
+            };
+            return (0..p.len()).map(|i| loaded.iter().fold([0.0; 2], |u, &j| add(i, u, j))).collect();
+        }
+        let [_, _, _, xz, yz] = self.transforms();
+        xz.of(p).into_iter().zip(yz.of(p)).map(|(x, y)| [x, y]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(mx: usize, my: usize) -> Place {
+        Place::new(Grid { mx, my, dx: 0.7, dy: 0.4 }, [2.0, 5.0], [0.3, 0.1])
+    }
+
+    /// By midpoints of the kernels `((1 - nu)/r + nu x^2/r^3)/(2 pi G)` of both bodies, and `-K x/r^2/(pi G)`.
+    #[test]
+    fn closed_forms_are_integrals() {
+        let (place, m) = (place(4, 3), 200);
+        let operator = Operator::new(&place, [0.2, -0.1]);
+        let (x, y) = (3.0 * 0.7 + 0.2, 2.0 * 0.4 - 0.1);
+        let mut sums = [0.0; 5];
+        for i in 0..m * m {
+            let at = |i: usize, d: f64| ((i as f64 + 0.5) / m as f64 - 0.5) * d;
+            let (x, y) = (x - at(i % m, 0.7), y - at(i / m, 0.4));
+            let r = x.hypot(y);
+            let body = |nu: f64, g: f64| {
+                let of = [(1.0 - nu) / r + nu * x * x / r.powi(3), (1.0 - nu) / r + nu * y * y / r.powi(3)];
+                [of[0], of[1], nu * x * y / r.powi(3)].map(|value| value / (2.0 * PI * g))
+            };
+            let (one, other) = (body(0.3, 2.0), body(0.1, 5.0));
+            let unlike = 0.25 * (0.4 / 2.0 - 0.8 / 5.0) / PI;
+            let [xx, yy, xy] = [0, 1, 2].map(|k: usize| one[k] + other[k]);
+            let kernel = [xx, yy, xy, -unlike * x / (r * r), -unlike * y / (r * r)];
+            (0..5).for_each(|k| sums[k] += kernel[k] * 0.28 / (m * m) as f64);
+        }
+        let found = operator.table[4 * 7 + 6];
+        for k in 0..5 {
+            let size = if k < 3 { sums[0] } else { sums[3].abs() };
+            assert!((found[k] - sums[k]).abs() <= 1e-5 * size, "{k}: {} for {}", found[k], sums[k]);
+        }
+    }
+
+    /// The transform does the sums, of tractions and of pressures.
+    #[test]
+    fn transforms_do_the_sums() {
+        let operator = Operator::new(&place(40, 31), [0.2, 0.0]);
+        let q: Vec<Vector> = (0..1240).map(|i| [f64::from(i % 7) - 3.0, f64::from(i % 5)]).collect();
+        let p: Vec<f64> = (0..1240).map(|i| f64::from(i % 11)).collect();
+        let (by_q, by_p) = (operator.by_tractions(&q), operator.by_pressures(&p));
+        for i in [0, 77, 620, 1239] {
+            let mut sums = [0.0; 5];
+            for j in 0..1240 {
+                let ([xx, yy, xy, xz, yz], [qx, qy]) = (operator.between(i, j), q[j]);
+                let terms = [xx * qx + xy * qy, xy * qx + yy * qy, -xz * qx - yz * qy, xz * p[j], yz * p[j]];
+                (0..5).for_each(|k| sums[k] += terms[k]);
+            }
+            let found = [by_q[i][0], by_q[i][1], by_q[i][2], by_p[i][0], by_p[i][1]];
+            assert!((0..5).all(|k| (found[k] - sums[k]).abs() <= 1e-11 * sums[0].abs()), "{found:?} {sums:?}");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Answers that were spoiled: the oracle finds each.
+
+use campaign::call::{self, Outputs};
+use campaign::case::Case;
+use campaign::friction_call::call;
+use campaign::friction_case::Case as Sliding;
+use campaign::friction_found::Found;
+use campaign::measured;
+use campaign::random::Random;
+use campaign::rules;
+
+/// Spoils an answer of a case.
+type Spoil<T, C> = fn(&mut T, &C);
+
+/// What is broken, and how.
+const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
+    ("a pressure", |found, _| {
+        let greatest = greatest(&found.p);
+        found.p[greatest] *= 1.0 + 1e-3;
+    }),
+    ("a displacement", |found, _| found.u[0] += 1e-3 * found.report.max_pressure),
+    ("a distance", |found, _| {
+        let greatest = greatest(&found.p);
+        found.e[greatest] += 1e-3 * found.u[greatest];
+    }),
+    ("the residual", |found, _| found.report.residual += 1e-2),
+    ("the contact", |found, _| {
+        let greatest = greatest(&found.p);
+        found.contact[greatest] = 0;
+    }),
+    ("tension", |found, _| {
+        let greatest = greatest(&found.p);
+        found.p[greatest] *= -1.0;
+    }),
+    ("the status", |found, case| {
+        // Nothing of the displacements that belong to them.
+        found.p.iter_mut().for_each(|p| *p *= 1.1);
+        found.u = case.operator().displace(&found.p);
+        let e = |i: usize| case.h[i] - found.report.approach + found.u[i];
+        found.e = (0..found.p.len()).map(e).collect();
+    }),
+];
+
+fn greatest(p: &[f64]) -> usize {
+    (0..p.len()).fold(0, |best, i| if p[i] > p[best] { i } else { best })
+}
+
+#[test]
+fn spoiled_answers_without_friction_are_found() {
+    let mut spoiled = 0;
+    for seed in 0..60 {
+        let case = measured::case(seed);
+        let is_usual = case.how.criterion == 0 && case.how.fixed.is_none() && case.grid.len() < 4000;
+        if !is_usual || case.effects.coating.is_some() || case.how.tolerance > 1e-3 {
+            continue;
+        }
+        let found = call::solve(&case);
+        if found.status != 0 || !(found.report.force > 0.0) || !rules::check(&case, &found).failures.is_empty() {
+            continue;
+        }
+        for (what, spoil) in NORMAL {
+            let mut bad = call::solve(&case);
+            spoil(&mut bad, &case);
+            let verdict = rules::check(&case, &bad);
+            assert!(!verdict.failures.is_empty(), "seed {seed}: {what} was spoiled: {}", case.describe());
+            spoiled += 1;
+        }
+    }
+    assert!(spoiled >= 70, "only {spoiled}");
+}
+
+/// The same with friction; more than one element has to be in contact for their coupling to be seen.
+const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
+    ("a traction", |found, case| {
+        let greatest = greatest(&found.p);
+        found.q[greatest][0] = (1.0 + 2.0 * case.slide.mu[greatest]) * found.p[greatest];
+    }),
+    ("slip", |found, _| {
+        let (greatest, u) = (greatest(&found.p), found.u.iter().copied().fold(0.0, f64::max));
+        found.slip[greatest][1] += 1e-3 * u;
+    }),
+    ("adhesion", |found, _| {
+        let greatest = greatest(&found.p);
+        found.adhesion[greatest] = 0;
+    }),
+    ("the reported force", |found, _| found.report.tangential_force[0] += 0.1 * found.report.force),
+    ("a distance beside the contact", |found, _| {
+        let u = found.u.iter().copied().fold(0.0, f64::max);
+        found.e.iter_mut().filter(|e| e.is_finite()).for_each(|e| *e += 1e-3 * u);
+    }),
+];
+
+#[test]
+fn spoiled_answers_with_friction_are_found() {
+    let mut spoiled = [0, 0];
+    for seed in 0..200 {
+        let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
+        let found = call(&case.place, &case.slide, &case.stop);
+        // Tractions before of 1e9 times the bounds leave no digits of the slip.
+        let is_usual = found.status == 0 && found.report.contact_count > 3 && case.slide.previous.is_none();
+        if !is_usual || !campaign::friction_rules::check(&case, &found, &case.before(&found.p)).failures.is_empty() {
+            continue;
+        }
+        for (what, spoil) in SLIDING {
+            let mut bad = call(&case.place, &case.slide, &case.stop);
+            spoil(&mut bad, &case);
+            let verdict = campaign::friction_rules::check(&case, &bad, &case.before(&bad.p));
+            assert!(!verdict.failures.is_empty(), "seed {seed}: {what} was spoiled: {}", case.describe());
+            spoiled[usize::from(!case.place.is_alike())] += 1;
+        }
+    }
+    assert!(spoiled.iter().all(|count| *count >= 50), "{spoiled:?}");
+}
