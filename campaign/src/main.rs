@@ -35,7 +35,10 @@ fn main() -> ExitCode {
     }
     let mut account = Account::default();
     for seed in first..first + count {
-        account.add(&run(seed));
+        let run = run(seed);
+        // At once, for whoever stops a long campaign.
+        run.verdict.failures.iter().for_each(|failure| eprintln!("seed {seed}: {}", failure.promise));
+        account.add(&run);
     }
     println!("{account}");
     print!("{}", account.failures(usize::MAX));
