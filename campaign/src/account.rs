@@ -145,6 +145,10 @@ impl Display for Account {
             writeln!(f, "| {why} | {calls} | {seed} |")?;
         }
         let (seconds, seed) = self.longest;
-        writeln!(f, "\n{} cases in {:.1} s; the longest took {seconds:.2} s (seed {seed})", self.cases, self.seconds)
+        writeln!(
+            f,
+            "\n{} cases in {:.1} s of the processor; the longest took {seconds:.2} s (seed {seed})",
+            self.cases, self.seconds
+        )
     }
 }
