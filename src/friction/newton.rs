@@ -13,14 +13,15 @@
 //! The certificate takes a fresh product. It is taken at what a step starts with, x0 and a part of the preconditioned residual: where little is missing, that
 //! is enough.
 
+use super::balance::balance;
+use super::best::Best;
 use super::forces::Forces;
 use super::problem::{square, Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
 use super::tangent::{rho_of, Sight, Tangent};
 use super::vectors::Fields;
-use super::Vector;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::progress::Outcome;
 
 /// The inner residual relative to that of the step.
@@ -46,18 +47,30 @@ const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
 /// Coarser grids are left where q exceeds its bounds by so many times the tolerance: the next one cuts it off.
 const COARSE_EXCESS: f64 = 10.0;
+/// Steps at most where nothing is certified.
+const MOST_STEPS: u64 = 60;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
-/// Whatever the spin, a creepage far above it carries the force to mu N. Creepages of more than so many times that at which all slips,
-/// and the spin's slip, run away: the force differs from mu N by less than a tolerance.
+/// Creepages of more than so many times that at which all slips, and the slip that is given, run away: the system has nothing that holds them.
 const RUNAWAY: f64 = 1e4;
+
+/// How it finds what slips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// By the natural map in which the slip moves tractions as far as their bounds.
+    Plain,
+    /// In which it moves them as far as they displace: what slips much is seen to slip, whatever its bound.
+    Bold,
+    /// The same with creepages by which the natural map carries the forces.
+    Balanced,
+}
 
 /// Iterates from what the state and the offset hold.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
-    (tangent, fields): (&mut Tangent, &mut Fields),
-    forces: Forces,
+    (tangent, fields, best): (&mut Tangent, &mut Fields, &mut Best),
+    (forces, manner): (Forces, Manner),
     goal: Goal<'_>,
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
@@ -65,15 +78,26 @@ pub fn solve(
     problem.continue_residuals()?;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
-    let spinning = problem.rms(|i| problem.rigid[i]);
+    let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
+    let made = problem.operators.products;
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
-        let rho = factor * rho_of((problem.rms_bound(), problem.rms_slip()), cap);
+        let rho = factor
+            * match manner {
+                Manner::Plain => rho_of((problem.rms_bound(), problem.rms_slip()), cap),
+                Manner::Bold | Manner::Balanced => cap,
+            };
+        if manner == Manner::Balanced {
+            balance(problem, state, rho, forces);
+        }
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst =
             largest([sight.residual, if certified { sight.excess } else { sight.excess / COARSE_EXCESS }, missing]);
+        if std::env::var("FDEBUG").is_ok() {
+            eprintln!("newton {manner:?} n {} rho {rho:e} residual {:e} excess {:e} missing {missing:e} slip {} of {} exact {} offset {:?} factor {factor} products {}", problem.grid.len(), sight.residual, sight.excess, tangent.slip_count, problem.count(), state.is_exact, problem.offset, problem.operators.products);
+        }
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
             state.unload(problem.threads());
@@ -82,12 +106,13 @@ pub fn solve(
         if worst < tolerance && (state.is_exact || !certified) {
             return Ok(Outcome::Converged);
         }
+        best.see(problem, state, worst, fields)?;
         if certified && !state.is_exact && is_near(sight, missing, tolerance) {
             polish(problem, state, tangent, forces, fields)?;
             continue;
         }
-        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
-            return Err(ran_away(problem.offset));
+        if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
+            return Ok(Outcome::Stagnated);
         }
         since += 1;
         if worst < PROGRESS * least {
@@ -99,12 +124,13 @@ pub fn solve(
         if cuts > MOST_CUTS {
             return Ok(Outcome::Stagnated);
         }
-        if iterations >= limit {
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 || iterations >= MOST_STEPS && !certified {
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
-        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS };
+        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort =
             Effort { inner: enough, most, left: sight.residual, length: if cuts % 2 == 1 { PART } else { 1.0 } };
         step(problem, state, tangent, (forces, effort), fields)?;
@@ -112,13 +138,6 @@ pub fn solve(
             return Ok(Outcome::Cancelled);
         }
     }
-}
-
-/// The creepages of forces that nothing reaches.
-fn ran_away(creepages: Vector) -> Error {
-    Error::Infeasible(format!(
-        "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {creepages:?}"
-    ))
 }
 
 /// The largest of these, which are not negative; NaN if there is one.

@@ -46,7 +46,7 @@ pub struct Memory {
 pub struct Goal<'a> {
     /// The residual.
     pub tolerance: f64,
-    /// Iterations at most.
+    /// Iterations at most; of Newton's method products.
     pub limit: u64,
     /// Whether it has to hold by a fresh product.
     pub certified: bool,

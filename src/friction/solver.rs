@@ -194,9 +194,8 @@ impl Solver {
         let scales = self.scales;
         let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
-        let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
-        let goal = (request.tolerance, request.limit);
-        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
+        let mut work = Work { products: 0.0, limit: request.limit, coarse: if compared { COUNTS } else { COARSE }, watch };
+        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
         report.products += work.products;
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
         report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
