@@ -75,14 +75,14 @@ pub fn solve(
 }
 
 /// The ways to solve a grid, in turns.
-fn ways(forces: Forces, newton_first: bool, is_rolling: bool) -> [Way; 3] {
+fn ways(forces: Forces, newton_first: bool, is_rolling: bool) -> Vec<Way> {
     use Way::{Gradients, Newton};
     if forces.any() {
-        [Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Balanced)]
+        vec![Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns)]
     } else if is_rolling {
-        [Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
+        vec![Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
     } else {
-        [if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Gradients]
+        vec![if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Gradients]
     }
 }
 
@@ -101,11 +101,12 @@ fn one(
         state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }
+    problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
     let certified = part == 1.0;
     let (mut end, mut best) = (Outcome::Stagnated, Best::none());
     let all = work.limit as f64 * if certified { 1.0 } else { COARSE_SHARE };
     let ways = ways(forces, newton_first, problem.operators.rolling.is_some());
-    for (k, way) in ways.into_iter().enumerate() {
+    for (k, &way) in ways.iter().enumerate() {
         let left = ((all - work.products) / part).max(0.0);
         let another = way != Way::Gradients && k + 1 < ways.len();
         let limit = if another { SHARE * left } else { left }.ceil() as u64;

@@ -63,6 +63,8 @@ pub enum Manner {
     Bold,
     /// The same with creepages by which the natural map carries the forces.
     Balanced,
+    /// The same in turns: creepages that carry the forces while displacements stand still, and a step in which these creepages are given.
+    InTurns,
 }
 
 /// Iterates from what the state and the offset hold.
@@ -80,15 +82,16 @@ pub fn solve(
     let saturating = problem.rms_bound() / cap;
     let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
     let made = problem.operators.products;
+    let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
     loop {
         let rho = factor
             * match manner {
                 Manner::Plain => rho_of((problem.rms_bound(), problem.rms_slip()), cap),
-                Manner::Bold | Manner::Balanced => cap,
+                Manner::Bold | Manner::Balanced | Manner::InTurns => cap,
             };
-        if manner == Manner::Balanced {
+        if matches!(manner, Manner::Balanced | Manner::InTurns) {
             balance(problem, state, rho, forces);
         }
         let sight = tangent.predict(problem, state, rho);
@@ -108,7 +111,7 @@ pub fn solve(
         }
         best.see(problem, state, worst, fields)?;
         if certified && !state.is_exact && is_near(sight, missing, tolerance) {
-            polish(problem, state, tangent, forces, fields)?;
+            polish(problem, state, tangent, of_step, fields)?;
             continue;
         }
         if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
@@ -133,7 +136,7 @@ pub fn solve(
         let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort =
             Effort { inner: enough, most, left: sight.residual, length: if cuts % 2 == 1 { PART } else { 1.0 } };
-        step(problem, state, tangent, (forces, effort), fields)?;
+        step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
         }

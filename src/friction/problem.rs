@@ -74,6 +74,8 @@ pub struct Problem {
     pub extension: Option<Extension<f64>>,
     /// The elements of C.
     pub places: Places,
+    /// Where forces are given: rms over C of the rigid slip without what is found, whose round-off is left of it.
+    pub given: f64,
     /// rms over C of g.
     rms_bound: f64,
 }
@@ -135,6 +137,7 @@ impl Problem {
             extension: None,
             operators,
             places: Places::new(&grid)?,
+            given: 0.0,
             rms_bound: 0.0,
         })
     }
@@ -197,6 +200,11 @@ impl Problem {
     pub fn slip_at(&self, i: usize, u: &[Vector]) -> Vector {
         let (w, u) = (self.slip[i], u[i]);
         [w[0] + self.offset[0] + u[0], w[1] + self.offset[1] + u[1]]
+    }
+
+    /// What residuals are compared with, of the rms of the rigid slip and of the displacements.
+    pub fn compared(&self, rigid: f64, displacement: f64) -> f64 {
+        self.scale.of(rigid, displacement).max(ROUND_OFF * self.given)
     }
 
     /// rms over C of a field.

@@ -125,7 +125,7 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
 /// The residual of the certificate.
 fn residual(problem: &Problem, rigid: f64, sums: Sums) -> f64 {
     let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| (sum / problem.count().max(1) as f64).sqrt());
-    relative(rest, problem.scale.of(rigid, displaced))
+    relative(rest, problem.compared(rigid, displaced))
 }
 
 /// One iteration; the sums of where it leads to.
