@@ -13,7 +13,7 @@ use super::take_over::before;
 use super::vectors;
 use super::window::{Displaced, Window};
 use super::{Tangential, Vector};
-use crate::effects::{Motion, Previous};
+use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
@@ -173,6 +173,7 @@ impl Solver {
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
         self.write(friction, pressure, window, &mut report);
+        report.missing = missing(friction, &report);
         if friction.sensitivities {
             report.sensitivities = Some(self.sensitivities(friction, window)?);
             report.products += self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64;
@@ -239,5 +240,18 @@ impl Solver {
             is_worth_something: below(WORTHLESS),
             products: problem.take_products() as f64,
         }
+    }
+}
+
+/// See [`Report::missing`].
+fn missing(friction: &Friction<'_>, report: &Report) -> f64 {
+    let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
+        Prescribed::Force(force) => report.force[k] - force,
+        Prescribed::Creepage(_) => 0.0,
+    });
+    if report.carried > 0.0 {
+        x.hypot(y) / report.carried
+    } else {
+        0.0
     }
 }
