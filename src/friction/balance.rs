@@ -42,8 +42,8 @@ fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, 
     ([x, y], [[xx, xy], [xy, yy]])
 }
 
-/// Moves the offset of the problem to these creepages.
-pub fn balance(problem: &mut Problem, state: &State, rho: f64, forces: Forces) {
+/// These creepages, in the place of the offset of the problem.
+pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> Vector {
     let bounds = sum_of_bounds(problem);
     let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
     // Where dc is larger than that all slip against it, more than F.
@@ -75,7 +75,7 @@ pub fn balance(problem: &mut Problem, state: &State, rho: f64, forces: Forces) {
         }
         dc = next;
     }
-    problem.offset = add(problem.offset, least.1);
+    add(problem.offset, least.1)
 }
 
 /// Rows and columns of the directions in which forces are given.

@@ -68,22 +68,6 @@ impl Corral {
         c.iter().all(|value| value.is_finite()) && sides.into_iter().all(|side| side >= 0.0)
     }
 
-    /// The longest way across in the directions in which forces are given.
-    pub fn width(&self) -> f64 {
-        let across = |k: usize| {
-            let (low, high) = self
-                .corners
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(c[k]), high.max(c[k])));
-            if self.given[k] {
-                high - low
-            } else {
-                0.0
-            }
-        };
-        across(0).max(across(1))
-    }
-
     fn only_given(&self, c: Vector) -> Vector {
         [0, 1].map(|k| if self.given[k] { c[k] } else { 0.0 })
     }

@@ -10,13 +10,14 @@
 //! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `fgmres`, `march`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
-//! | `balance`, `corral` | creepages of forces that are given, where Newton's method stalls |
+//! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
 //! | `levels`, `nested`, `request`, `scales`, `take_over`, `solver`, `result` | coarser grids, nested iteration, units, and the whole solve |
 
 mod balance;
 mod best;
+mod bracket;
 mod certificate;
 pub mod coefficients;
 mod component;

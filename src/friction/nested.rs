@@ -4,6 +4,7 @@
 //! where forces are given by Newton's method.
 
 use super::best::Best;
+use super::bracket;
 use super::forces::Forces;
 use super::levels::{interpolate, restrict, Level};
 use super::newton::{self, Manner};
@@ -21,7 +22,10 @@ const COARSE_LIMIT: u64 = 60;
 /// All of them together make this part of the products at most.
 const COARSE_SHARE: f64 = 0.5;
 /// Of what is left a way makes this part at most, if another can follow.
-const SHARE: f64 = 0.5;
+const SHARE: f64 = 0.4;
+
+/// Products that certificates take at the end of a solve that is not done: they are kept back.
+const KEPT_BACK: u64 = 5;
 
 /// What is counted, and who is told.
 pub struct Work<'a> {
@@ -38,6 +42,7 @@ pub struct Work<'a> {
 enum Way {
     Gradients,
     Newton(Manner),
+    Bracket,
 }
 
 /// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: of the step before.
@@ -78,7 +83,7 @@ pub fn solve(
 fn ways(forces: Forces, newton_first: bool, is_rolling: bool) -> Vec<Way> {
     use Way::{Gradients, Newton};
     if forces.any() {
-        vec![Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns)]
+        vec![Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket]
     } else if is_rolling {
         vec![Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
     } else {
@@ -104,7 +109,11 @@ fn one(
     problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
     let certified = part == 1.0;
     let (mut end, mut best) = (Outcome::Stagnated, Best::none());
-    let all = work.limit as f64 * if certified { 1.0 } else { COARSE_SHARE };
+    let all = if certified {
+        work.limit.saturating_sub(KEPT_BACK).max(work.limit / 2) as f64
+    } else {
+        COARSE_SHARE * work.limit as f64
+    };
     let ways = ways(forces, newton_first, problem.operators.rolling.is_some());
     for (k, &way) in ways.iter().enumerate() {
         let left = ((all - work.products) / part).max(0.0);
@@ -125,6 +134,7 @@ fn one(
                 let memory = (&mut memory.tangent, &mut memory.fields, &mut best);
                 newton::solve(problem, state, memory, (forces, manner), goal)?
             }
+            Way::Bracket => bracket::solve(problem, state, (memory, &mut best), forces, goal)?,
             Way::Gradients => {
                 let limit = if certified { limit } else { limit.min(COARSE_LIMIT) };
                 shift::solve(problem, state, memory, Goal { limit, ..goal })?

@@ -13,7 +13,7 @@
 //! The certificate takes a fresh product. It is taken at what a step starts with, x0 and a part of the preconditioned residual: where little is missing, that
 //! is enough.
 
-use super::balance::balance;
+use super::balance::balanced;
 use super::best::Best;
 use super::forces::Forces;
 use super::problem::{square, Problem, State};
@@ -85,6 +85,7 @@ pub fn solve(
     let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
+    let (mut last, mut still) = (f64::INFINITY, 0);
     loop {
         let rho = factor
             * match manner {
@@ -92,15 +93,12 @@ pub fn solve(
                 Manner::Bold | Manner::Balanced | Manner::InTurns => cap,
             };
         if matches!(manner, Manner::Balanced | Manner::InTurns) {
-            balance(problem, state, rho, forces);
+            problem.offset = balanced(problem, state, rho, forces);
         }
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst =
             largest([sight.residual, if certified { sight.excess } else { sight.excess / COARSE_EXCESS }, missing]);
-        if std::env::var("FDEBUG").is_ok() {
-            eprintln!("newton {manner:?} n {} rho {rho:e} residual {:e} excess {:e} missing {missing:e} slip {} of {} exact {} offset {:?} factor {factor} products {}", problem.grid.len(), sight.residual, sight.excess, tangent.slip_count, problem.count(), state.is_exact, problem.offset, problem.operators.products);
-        }
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
             state.unload(problem.threads());
@@ -115,6 +113,12 @@ pub fn solve(
             continue;
         }
         if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
+            return Ok(Outcome::Stagnated);
+        }
+        // Nothing moves any more: the system holds no creepages, whatever rho is.
+        still = if worst == last { still + 1 } else { 0 };
+        last = worst;
+        if forces.any() && still > PATIENCE {
             return Ok(Outcome::Stagnated);
         }
         since += 1;

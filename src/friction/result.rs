@@ -37,7 +37,13 @@ impl Solver {
     }
 
     /// The result on the whole grid, and what is to be said of it.
-    pub(super) fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], window: Option<Window>, report: &mut Report) {
+    pub(super) fn write(
+        &mut self,
+        friction: &Friction<'_>,
+        pressure: &[f64],
+        window: Option<Window>,
+        report: &mut Report,
+    ) {
         let Solution { traction, slip, adhesion } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);

@@ -96,7 +96,9 @@ impl Solver {
         });
         if !from_rest {
             threads.for_each_plain_row(&mut state.q, width, |iy, row| {
-                row.iter_mut().zip(window.row(grid, iy)).for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
+                row.iter_mut()
+                    .zip(window.row(grid, iy))
+                    .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
         // A warm start of steady rolling starts from the last creepages, too.
@@ -148,7 +150,9 @@ impl Solver {
                 problem.offset = scales.displacement(offset);
             }
             Start::Again => {
-                window.elements(&self.grid).for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
+                window
+                    .elements(&self.grid)
+                    .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
                 problem.offset = scales.displacement(self.offset);
             }
         }
@@ -177,7 +181,9 @@ impl Solver {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
-        if displaced > 0.0 && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO)) {
+        if displaced > 0.0
+            && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
+        {
             let [slip, displaced] = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);
             let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
             return invalid(format!(
