@@ -2,18 +2,20 @@
 //! carry too much and too little.
 //!
 //! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those by which the natural map
-//! carries the forces ([`balanced`]), best where nearly all slips, or those of the linear system, the border's inverse with Broyden's
-//! updates, best where much sticks; where neither halves what is missing, those in the middle. That ends.
+//! carries the forces ([`balanced`]), best where nearly all slips, or those of the linear system,
+//! best where much sticks; where neither halves what is missing, those in the middle. That ends.
 
 use super::balance::balanced;
 use super::best::Best;
+use super::certificate::Certificate;
 use super::corral::Corral;
 use super::forces::{sum_of, sum_of_bounds, Forces};
 use super::newton::{self, Manner};
 use super::problem::{dot, plus, square, Problem, State};
+use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
-use super::system::TangentSystem;
+use super::system::pseudo_inverse;
 use super::vectors;
 use super::Vector;
 use crate::error::Result;
@@ -23,6 +25,15 @@ use crate::progress::Outcome;
 const MOSTLY_SLIP: f64 = 0.8;
 /// A trial is good if it leaves at most this part of what was missing.
 const PROGRESS: f64 = 0.5;
+/// Where trials miss this part of what they missed before, Newton's method with balanced creepages tries to finish, by so many products.
+const CLOSE: f64 = 0.1;
+const FINISH: u64 = 30;
+/// Where other creepages leave the forces as they are, solves go on to this part of their residual, down to the least.
+const TIGHTER: f64 = 0.03;
+const LEAST_INNER: f64 = 1e-14;
+/// Derivatives of forces are known to this part; a matrix of them with a smaller determinant than that, relative, is singular.
+const SLOPE: f64 = 1e-2;
+const SINGULAR: f64 = 1e-8;
 /// Trials at most.
 const MOST_TRIALS: u32 = 400;
 
@@ -32,10 +43,8 @@ struct Trials {
     by_map: bool,
     /// Trials in succession that were not good.
     bad: u32,
-    /// Creepages by what forces exceed, as far as that is known.
-    slope: Option<[Vector; 2]>,
-    /// The last creepages, what forces exceeded there, and what was missing.
-    last: Option<(Vector, Vector, f64)>,
+    /// What was missing last.
+    last: Option<f64>,
 }
 
 /// Solves from what the state and the offset hold.
@@ -53,22 +62,47 @@ pub fn solve(
     problem.refresh(state);
     let bounds = sum_of_bounds(problem);
     let mut trials = Trials::new(problem, forces, bounds);
+    let (mut tried, mut inner, mut before) = (1.0, tolerance, [f64::NAN; 2]);
     for _ in 0..MOST_TRIALS {
-        let limit = limit.saturating_sub(problem.operators.products - made);
-        if limit == 0 {
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 {
             return Ok(Outcome::IterationLimit);
         }
-        let end = by_creepages(problem, state, memory, Goal { tolerance, limit, certified, watch: &mut *watch })?;
+        let end = by_creepages(
+            problem,
+            state,
+            memory,
+            Goal { tolerance: inner, limit: left, certified, watch: &mut *watch },
+        )?;
+        let residual = Certificate::of(problem, state).residual;
+        if end != Outcome::Converged && !(end == Outcome::Stagnated && residual < tolerance) {
+            return Ok(end);
+        }
         let sum = sum_of(problem, &state.q);
         let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
         let missing = square(excess).sqrt() / bounds;
-        if end != Outcome::Converged {
-            return Ok(end);
+        if std::env::var("FDEBUG").is_ok() {
+            eprintln!("   trial offset {:?} excess {excess:?} missing {missing:e} inner {inner:e} {end:?} residual {residual:e} products {}", problem.offset, problem.operators.products);
         }
         best.see(problem, state, missing.max(tolerance), &mut memory.fields)?;
         if missing < tolerance {
             return Ok(Outcome::Converged);
         }
+        if missing < CLOSE * tried {
+            tried = missing;
+            let left = limit.saturating_sub(problem.operators.products - made).min(FINISH);
+            let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
+            let end = finish(problem, state, memory, forces, goal)?;
+            if end == Outcome::Converged || end == Outcome::Cancelled {
+                return Ok(end);
+            }
+        }
+        // The residual hides what forces change by.
+        if excess == before && inner > LEAST_INNER {
+            inner *= TIGHTER;
+            continue;
+        }
+        before = excess;
         let next = trials.next(problem, state, memory, (forces, excess, missing))?;
         if next == problem.offset {
             break;
@@ -76,6 +110,26 @@ pub fn solve(
         problem.offset = next;
     }
     Ok(Outcome::Stagnated)
+}
+
+/// Newton's method with balanced creepages from here; where it does not converge everything is as before.
+fn finish(
+    problem: &mut Problem,
+    state: &mut State,
+    memory: &mut Memory,
+    forces: Forces,
+    goal: Goal<'_>,
+) -> Result<Outcome> {
+    let Memory { tangent, fields, .. } = memory;
+    let (mut here, mut best) = (Best::none(), Best::none());
+    here.see(problem, state, 0.0, fields)?;
+    let end = newton::solve(problem, state, (tangent, fields, &mut best), (forces, Manner::Balanced), goal)?;
+    if end != Outcome::Converged {
+        here.take_up(problem, state);
+    }
+    here.give(fields);
+    best.give(fields);
+    Ok(end)
 }
 
 /// Solves with the creepages that the offset holds.
@@ -125,7 +179,7 @@ impl Trials {
         });
         let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
         let half = 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
-        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, slope: None, last: None }
+        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, last: None }
     }
 
     /// The creepages to try next; those of now where there are no others.
@@ -141,47 +195,46 @@ impl Trials {
         let rho = 1.0 / compliance(problem);
         memory.tangent.predict(problem, state, rho);
         match self.last {
-            Some((_, _, before)) if missing > PROGRESS * before => {
-                (self.by_map, self.bad, self.slope) = (!self.by_map, self.bad + 1, None);
-            }
-            Some((from, exceeded, _)) => {
-                self.bad = 0;
-                let (dc, de) = (plus(at, -1.0, from), plus(excess, -1.0, exceeded));
-                self.slope = self.slope.map(|slope| updated(slope, dc, de));
-            }
+            Some(before) if missing > PROGRESS * before => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
+            Some(_) => self.bad = 0,
             None => self.by_map = memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64,
         }
-        self.last = Some((at, excess, missing));
-        let by_map = balanced(problem, state, rho, forces);
-        let slope = match self.slope {
-            Some(slope) => slope,
-            None => border_slope(problem, memory, forces)?,
-        };
-        self.slope = Some(slope);
-        let by_slope = plus(at, 1.0, forces.only_given(slope.map(|row| dot(row, excess))));
-        let ordered = if self.by_map { [by_map, by_slope] } else { [by_slope, by_map] };
-        let is_good = |trial: &Vector| *trial != at && self.corral.holds(*trial);
-        let trial = if self.bad % 3 == 2 { None } else { ordered.into_iter().find(is_good) };
-        Ok(trial.unwrap_or_else(|| self.corral.centre()))
+        self.last = Some(missing);
+        if self.bad % 3 == 2 {
+            return Ok(self.corral.centre());
+        }
+        for by_map in [self.by_map, !self.by_map] {
+            let trial = if by_map {
+                balanced(problem, state, rho, forces)
+            } else {
+                let slope = slope(problem, memory, forces)?;
+                plus(at, 1.0, forces.only_given(slope.map(|row| dot(row, excess))))
+            };
+            if trial != at && self.corral.holds(trial) {
+                return Ok(trial);
+            }
+        }
+        Ok(self.corral.centre())
     }
 }
 
-/// How creepages go with what forces exceed, by the preconditioner.
-fn border_slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
+/// How creepages go with what forces exceed: the inverse of minus the derivatives of the forces, while the same elements slip.
+fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
     let Memory { tangent, fields, .. } = memory;
-    let system = TangentSystem::new(problem, tangent, forces, fields)?;
-    let (x, y) = (system.creepages([1.0, 0.0]), system.creepages([0.0, 1.0]));
-    system.give(fields);
-    Ok([[x[0], y[0]], [x[1], y[1]]])
-}
-
-/// Broyden's update of a slope, by which creepages went by dc as what forces exceed went by de: forces fall as creepages grow.
-fn updated(slope: [Vector; 2], dc: Vector, de: Vector) -> [Vector; 2] {
-    let predicted = slope.map(|row| -dot(row, de));
-    let left = [0, 1].map(|k| slope[0][k] * dc[0] + slope[1][k] * dc[1]);
-    let along = dot(dc, predicted);
-    if !(along.abs() > 0.0) {
-        return slope;
+    let mut falls = [[0.0; 2]; 2];
+    for k in (0..2).filter(|&k| forces.given[k]) {
+        let mut change = fields.take(problem.grid.len())?;
+        let unit = [[1.0, 0.0], [0.0, 1.0]][k];
+        vectors::fill(problem.threads(), &mut change, |_| unit);
+        sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE)?;
+        let by = forces.only_given(sum_of(problem, &change));
+        (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
+        fields.give(change);
     }
-    [0, 1].map(|i| plus(slope[i], (dc[i] - predicted[i]) / along, left))
+    let [[a, b], [c, d]] = falls;
+    let determinant = a * d - b * c;
+    if forces.given == [true; 2] && determinant.abs() > SINGULAR * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2) {
+        return Ok([[d / determinant, -b / determinant], [-c / determinant, a / determinant]]);
+    }
+    Ok(pseudo_inverse(falls))
 }

@@ -24,6 +24,8 @@ const COARSE_SHARE: f64 = 0.5;
 /// Of what is left a way makes this part at most, if another can follow.
 const SHARE: f64 = 0.4;
 
+/// Creepages and tractions follow each other where more than this part of C slips.
+const MOSTLY_SLIP: f64 = 0.8;
 /// Products that certificates take at the end of a solve that is not done: they are kept back.
 const KEPT_BACK: u64 = 5;
 
@@ -80,9 +82,12 @@ pub fn solve(
 }
 
 /// The ways to solve a grid, in turns.
-fn ways(forces: Forces, newton_first: bool, is_rolling: bool) -> Vec<Way> {
+fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool)) -> Vec<Way> {
     use Way::{Gradients, Newton};
-    if forces.any() {
+    if forces.any() && !certified {
+        // The next grid starts from what they leave.
+        vec![Newton(Manner::Plain), Newton(Manner::Balanced)]
+    } else if forces.any() {
         vec![Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket]
     } else if is_rolling {
         vec![Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
@@ -114,9 +119,14 @@ fn one(
     } else {
         COARSE_SHARE * work.limit as f64
     };
-    let ways = ways(forces, newton_first, problem.operators.rolling.is_some());
+    let ways = ways(forces, newton_first, (problem.operators.rolling.is_some(), certified));
     for (k, &way) in ways.iter().enumerate() {
         let left = ((all - work.products) / part).max(0.0);
+        // In turns where nearly all slips.
+        let slipping = memory.tangent.slip_count as f64;
+        if way == Way::Newton(Manner::InTurns) && slipping < MOSTLY_SLIP * problem.count() as f64 {
+            continue;
+        }
         let another = way != Way::Gradients && k + 1 < ways.len();
         let limit = if another { SHARE * left } else { left }.ceil() as u64;
         if limit == 0 {
@@ -140,6 +150,14 @@ fn one(
                 shift::solve(problem, state, memory, Goal { limit, ..goal })?
             }
         };
+        if std::env::var("FDEBUG").is_ok() {
+            eprintln!(
+                "{way:?} n {} {end:?} products {} limit {limit} offset {:?}",
+                problem.grid.len(),
+                problem.operators.products,
+                problem.offset
+            );
+        }
         work.products += part * problem.take_products() as f64;
         if end != Outcome::Stagnated && !(end == Outcome::IterationLimit && certified) {
             break;

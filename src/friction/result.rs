@@ -25,7 +25,7 @@ impl Solver {
                 change[k] = self.scales.change(friction.rigid_slip_by(&self.grid, i, by));
             }
             let Memory { tangent, fields, .. } = memory;
-            sensitivity::solve(problem, tangent, fields, &mut change)?;
+            sensitivity::solve(problem, tangent, (fields, &mut change), sensitivity::TOLERANCE)?;
             let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
             let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
             for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
