@@ -159,6 +159,9 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
     let mut message = format!("{} after {cycles} cycles; the residual is {residual:e}", why(stop));
     message += tangential.as_deref().unwrap_or_default();
+    if let Some(missing) = report.friction.map(|found| found.missing).filter(|missing| *missing > report.tolerance) {
+        message += &format!("; the tangential force is off by {missing:e} of mu N");
+    }
     if stop == Outcome::Stagnated {
         let (largest, round_off) = state.map_or((0.0, 0.0), round_off);
         // What the products and the distances lose together is some multiples of it.

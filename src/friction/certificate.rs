@@ -33,7 +33,7 @@ pub struct Certificate {
 
 /// What residuals are compared with.
 pub fn scale(problem: &Problem, state: &State) -> f64 {
-    problem.scale.of(problem.rms_rigid(), problem.rms(|i| state.u[i]))
+    problem.compared(problem.rms_rigid(), problem.rms(|i| state.u[i]))
 }
 
 /// A length relative to another one; nothing is nothing relative to nothing.

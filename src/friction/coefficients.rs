@@ -31,6 +31,7 @@ use std::sync::Arc;
 
 use super::series::{Series, Shape};
 use super::tables::Tables;
+use super::toeplitz::unit_of;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::influence::gauss;
@@ -128,6 +129,19 @@ impl Tangential {
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
         let own = self.own.as_ref().map(|own| own.coarsened(dx > self.dx, dy > self.dy)).transpose()?;
         Ok(Tangential { own, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
+    }
+
+    /// The same with lengths in units of `length`, and the unit of displacements by tractions of 1 that makes the coefficients of order 1.
+    pub fn in_units_of(&self, length: f64) -> (Tangential, f64) {
+        let Compliance { shear, poisson, unlike } = self.compliance;
+        let (stiff, unit) = match &self.own {
+            Some(own) => (1.0, unit_of(own.at(0, 0)[0])),
+            None => (unit_of(shear), length * unit_of(shear)),
+        };
+        let compliance = Compliance { shear: shear / stiff, poisson: poisson / stiff, unlike: unlike / stiff };
+        let own = self.own.as_ref().map(|own| own.in_units_of(unit));
+        let scaled = Tangential::of_shape(self.dx / length, self.dy / length, compliance, self.shape.clone());
+        (Tangential { own, ..scaled }, unit)
     }
 
     /// What the materials make of tractions.

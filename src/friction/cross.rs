@@ -15,6 +15,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::toeplitz::unit_of;
 use super::Vector;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
@@ -102,7 +103,12 @@ impl Kernel for Cross {
     fn at(&self, kx: i64, ky: i64) -> f64 {
         let (x, y) = (kx as f64 + self.by.0, ky as f64 + self.by.1);
         match &self.source {
-            Source::HalfSpace(unlike) => -unlike / PI * integrals(x, y, self.dx, self.dy)[self.component],
+            Source::HalfSpace(unlike) => {
+                // The integrals are lengths.
+                let unit = unit_of(self.dx);
+                let of_one = integrals(x, y, self.dx / unit, self.dy / unit)[self.component];
+                -unlike / PI * (unit * of_one)
+            }
             // Steps are whole elements.
             Source::Tables(tables) => tables.at(x.round() as i64, y.round() as i64)[self.component],
         }

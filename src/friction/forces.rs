@@ -1,6 +1,7 @@
 //! Tangential forces that are given.
 
 use super::problem::{add, square, Problem};
+use super::scales::Scales;
 use super::vectors;
 use super::Vector;
 use crate::effects::{Friction, Prescribed};
@@ -40,7 +41,7 @@ impl Forces {
         if greatest == 0.0 && forces.sum == [0.0; 2] {
             return Ok(Forces::NONE);
         }
-        if !(square(forces.sum).sqrt() < greatest * (1.0 - ROUND_OFF)) {
+        if !(forces.sum[0].hypot(forces.sum[1]) < greatest * (1.0 - ROUND_OFF)) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",
                 square(forces.sum).sqrt() * area,
@@ -48,6 +49,11 @@ impl Forces {
             )));
         }
         Ok(forces)
+    }
+
+    /// The same in other units of tractions.
+    pub fn in_units_of(&self, scales: &Scales) -> Forces {
+        Forces { sum: self.sum.map(|sum| scales.traction(sum)), ..*self }
     }
 
     /// Whether there are any.

@@ -72,7 +72,7 @@ impl Level {
         self.problem.prepare(quadrant, single)
     }
 
-    /// The force, and the creepages that were found, of a step of rolling.
+    /// The force, and the creepages that were found, of a step of rolling, in the units of the iterations.
     pub fn found(&self) -> (Vector, Vector) {
         let Problem { grid, offset, operators, .. } = &self.problem;
         let sum = super::forces::sum_of(&self.problem, &self.state.q);

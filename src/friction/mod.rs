@@ -5,18 +5,23 @@
 //! | [`coefficients`], `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
 //! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
-//! | `problem`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
+//! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
 //! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
-//! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
+//! | `newton`, `step`, `system`, `fgmres`, `march`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
+//! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `request`, `take_over`, `solver` | coarser grids, nested iteration, and the whole solve |
+//! | `levels`, `nested`, `request`, `scales`, `take_over`, `solver`, `result` | coarser grids, nested iteration, units, and the whole solve |
 
+mod balance;
+mod best;
+mod bracket;
 mod certificate;
 pub mod coefficients;
 mod component;
+mod corral;
 pub mod cross;
 pub mod dense;
 mod disc;
@@ -30,9 +35,12 @@ mod nested;
 mod newton;
 mod operators;
 mod places;
+mod plane;
 mod problem;
 mod quadrant;
 mod request;
+mod result;
+mod scales;
 mod sensitivity;
 mod series;
 mod shift;

@@ -1,8 +1,13 @@
 //! Nested iteration: the coarsest grid first, each from what the one before it found.
+//!
+//! One grid is solved in several ways, each from where the one before it stalled: by gradients, and where they stall, in steady rolling, or
+//! where forces are given by Newton's method.
 
+use super::best::Best;
+use super::bracket;
 use super::forces::Forces;
 use super::levels::{interpolate, restrict, Level};
-use super::newton;
+use super::newton::{self, Manner};
 use super::shift::{self, Goal};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -12,15 +17,34 @@ use crate::progress::Outcome;
 pub const COARSE: f64 = 1e-3;
 /// The one next to the finest to this one, where its forces count: they are then right to some 1e-5 of mu N.
 pub const COUNTS: f64 = 1e-4;
-/// Iterations at most on each of them.
+/// Gradients on each of them at most.
 const COARSE_LIMIT: u64 = 60;
+/// All of them together make this part of the products at most.
+const COARSE_SHARE: f64 = 0.5;
+/// Of what is left a way makes this part at most, if another can follow.
+const SHARE: f64 = 0.4;
+
+/// Creepages and tractions follow each other where more than this part of C slips.
+const MOSTLY_SLIP: f64 = 0.8;
+/// Products that certificates take at the end of a solve that is not done: they are kept back.
+const KEPT_BACK: u64 = 5;
 
 /// What is counted, and who is told.
 pub struct Work<'a> {
+    /// On all grids, in products on the finest; and at most so many.
     pub products: f64,
+    pub limit: u64,
     /// The residual that the grid next to the finest is solved to, at least.
     pub coarse: f64,
     pub watch: &'a mut dyn FnMut(&Grid, f64) -> bool,
+}
+
+/// One way to solve a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    Gradients,
+    Newton(Manner),
+    Bracket,
 }
 
 /// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: of the step before.
@@ -28,7 +52,7 @@ pub fn solve(
     levels: &mut [Level],
     forces: Forces,
     (nested, mostly_slips): (bool, bool),
-    (tolerance, limit): (f64, u64),
+    tolerance: f64,
     work: &mut Work<'_>,
 ) -> Result<Outcome> {
     let finest = levels[0].problem.grid.len() as f64;
@@ -44,7 +68,7 @@ pub fn solve(
             let area = level.problem.grid.element_area() / finest_area;
             let forces = forces.times(1.0 / area);
             let coarse = if l == 1 { work.coarse } else { COARSE };
-            let end = one(level, forces, forces.any(), (tolerance.max(coarse), COARSE_LIMIT), part, work)?;
+            let end = one(level, (forces, forces.any()), tolerance.max(coarse), part, work)?;
             if end == Outcome::Cancelled {
                 return Ok(end);
             }
@@ -54,45 +78,95 @@ pub fn solve(
             problem.refresh_to(state, tolerance);
         }
     }
-    let level = &mut levels[0];
-    one(level, forces, forces.any() || mostly_slips, (tolerance, limit), 1.0, work)
+    one(&mut levels[0], (forces, forces.any() || mostly_slips), tolerance, 1.0, work)
 }
 
-/// Solves one grid from what it holds: by gradients, and where they stall or forces are given by Newton's method.
+/// The ways to solve a grid, in turns.
+fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool)) -> Vec<Way> {
+    use Way::{Gradients, Newton};
+    if forces.any() && !certified {
+        // The next grid starts from what they leave.
+        vec![Newton(Manner::Plain), Newton(Manner::Balanced)]
+    } else if forces.any() {
+        vec![Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket]
+    } else if is_rolling {
+        vec![Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
+    } else {
+        vec![if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Gradients]
+    }
+}
+
+/// Solves one grid from what it holds; `part`: its products, in products on the finest.
 fn one(
     level: &mut Level,
-    forces: Forces,
-    newton_first: bool,
-    (tolerance, limit): (f64, u64),
+    (forces, newton_first): (Forces, bool),
+    tolerance: f64,
     part: f64,
     work: &mut Work<'_>,
 ) -> Result<Outcome> {
     let Level { problem, state, memory, .. } = level;
     let grid = problem.grid;
-    let mut end = Outcome::Stagnated;
     // Nothing moves, and nothing did.
     if problem.rms_slip() == 0.0 && !forces.any() {
         state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }
-    let only_newton = forces.any() || problem.operators.rolling.is_some();
-    for newton in [newton_first || only_newton, true, only_newton] {
-        let watch = &mut |residual: f64| (work.watch)(&grid, residual);
-        let certified = part == 1.0;
-        let goal = Goal { tolerance, limit, certified, watch };
-        end = if newton {
-            newton::solve(problem, state, (&mut memory.tangent, &mut memory.fields), forces, goal)?
-        } else {
-            shift::solve(problem, state, memory, goal)?
-        };
-        if end != Outcome::Stagnated {
+    problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
+    let certified = part == 1.0;
+    let (mut end, mut best) = (Outcome::Stagnated, Best::none());
+    let all = if certified {
+        work.limit.saturating_sub(KEPT_BACK).max(work.limit / 2) as f64
+    } else {
+        COARSE_SHARE * work.limit as f64
+    };
+    let ways = ways(forces, newton_first, (problem.operators.rolling.is_some(), certified));
+    for (k, &way) in ways.iter().enumerate() {
+        let left = ((all - work.products) / part).max(0.0);
+        // In turns where nearly all slips.
+        let slipping = memory.tangent.slip_count as f64;
+        if way == Way::Newton(Manner::InTurns) && slipping < MOSTLY_SLIP * problem.count() as f64 {
+            continue;
+        }
+        let another = way != Way::Gradients && k + 1 < ways.len();
+        let limit = if another { SHARE * left } else { left }.ceil() as u64;
+        if limit == 0 {
+            end = Outcome::IterationLimit;
             break;
         }
-        log::info!("tangential problem: no further progress, Newton's method goes on");
+        if k > 0 {
+            log::info!("tangential problem: no further progress, Newton's method goes on");
+            best.take_up(problem, state);
+        }
+        let watch = &mut |residual: f64| (work.watch)(&grid, residual);
+        let goal = Goal { tolerance, limit, certified, watch };
+        end = match way {
+            Way::Newton(manner) => {
+                let memory = (&mut memory.tangent, &mut memory.fields, &mut best);
+                newton::solve(problem, state, memory, (forces, manner), goal)?
+            }
+            Way::Bracket => bracket::solve(problem, state, (memory, &mut best), forces, goal)?,
+            Way::Gradients => {
+                let limit = if certified { limit } else { limit.min(COARSE_LIMIT) };
+                shift::solve(problem, state, memory, Goal { limit, ..goal })?
+            }
+        };
+        if std::env::var("FDEBUG").is_ok() {
+            eprintln!(
+                "{way:?} n {} {end:?} products {} limit {limit} offset {:?}",
+                problem.grid.len(),
+                problem.operators.products,
+                problem.offset
+            );
+        }
+        work.products += part * problem.take_products() as f64;
+        if end != Outcome::Stagnated && !(end == Outcome::IterationLimit && certified) {
+            break;
+        }
     }
-    if end != Outcome::Converged && !state.is_exact && part == 1.0 {
-        problem.refresh(state);
+    if end != Outcome::Converged && certified {
+        best.restore(problem, state, forces);
     }
+    best.give(&mut memory.fields);
     work.products += part * problem.take_products() as f64;
     Ok(end)
 }

@@ -13,14 +13,15 @@
 //! The certificate takes a fresh product. It is taken at what a step starts with, x0 and a part of the preconditioned residual: where little is missing, that
 //! is enough.
 
+use super::balance::balanced;
+use super::best::Best;
 use super::forces::Forces;
 use super::problem::{square, Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
 use super::tangent::{rho_of, Sight, Tangent};
 use super::vectors::Fields;
-use super::Vector;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::progress::Outcome;
 
 /// The inner residual relative to that of the step.
@@ -46,18 +47,32 @@ const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
 /// Coarser grids are left where q exceeds its bounds by so many times the tolerance: the next one cuts it off.
 const COARSE_EXCESS: f64 = 10.0;
+/// Steps at most where nothing is certified.
+const MOST_STEPS: u64 = 60;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
-/// Whatever the spin, a creepage far above it carries the force to mu N. Creepages of more than so many times that at which all slips,
-/// and the spin's slip, run away: the force differs from mu N by less than a tolerance.
+/// Creepages of more than so many times that at which all slips, and the slip that is given, run away: the system has nothing that holds them.
 const RUNAWAY: f64 = 1e4;
+
+/// How it finds what slips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// By the natural map in which the slip moves tractions as far as their bounds.
+    Plain,
+    /// In which it moves them as far as they displace: what slips much is seen to slip, whatever its bound.
+    Bold,
+    /// The same with creepages by which the natural map carries the forces.
+    Balanced,
+    /// The same in turns: creepages that carry the forces while displacements stand still, and a step in which these creepages are given.
+    InTurns,
+}
 
 /// Iterates from what the state and the offset hold.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
-    (tangent, fields): (&mut Tangent, &mut Fields),
-    forces: Forces,
+    (tangent, fields, best): (&mut Tangent, &mut Fields, &mut Best),
+    (forces, manner): (Forces, Manner),
     goal: Goal<'_>,
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
@@ -65,11 +80,21 @@ pub fn solve(
     problem.continue_residuals()?;
     let cap = 1.0 / compliance(problem);
     let saturating = problem.rms_bound() / cap;
-    let spinning = problem.rms(|i| problem.rigid[i]);
+    let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
+    let made = problem.operators.products;
+    let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
     let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
+    let (mut last, mut still) = (f64::INFINITY, 0);
     loop {
-        let rho = factor * rho_of((problem.rms_bound(), problem.rms_slip()), cap);
+        let rho = factor
+            * match manner {
+                Manner::Plain => rho_of((problem.rms_bound(), problem.rms_slip()), cap),
+                Manner::Bold | Manner::Balanced | Manner::InTurns => cap,
+            };
+        if matches!(manner, Manner::Balanced | Manner::InTurns) {
+            problem.offset = balanced(problem, state, rho, forces);
+        }
         let sight = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst =
@@ -82,12 +107,19 @@ pub fn solve(
         if worst < tolerance && (state.is_exact || !certified) {
             return Ok(Outcome::Converged);
         }
+        best.see(problem, state, worst, fields)?;
         if certified && !state.is_exact && is_near(sight, missing, tolerance) {
-            polish(problem, state, tangent, forces, fields)?;
+            polish(problem, state, tangent, of_step, fields)?;
             continue;
         }
-        if forces.any() && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
-            return Err(ran_away(problem.offset));
+        if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
+            return Ok(Outcome::Stagnated);
+        }
+        // Nothing moves any more: the system holds no creepages, whatever rho is.
+        still = if worst == last { still + 1 } else { 0 };
+        last = worst;
+        if forces.any() && still > PATIENCE {
+            return Ok(Outcome::Stagnated);
         }
         since += 1;
         if worst < PROGRESS * least {
@@ -99,26 +131,20 @@ pub fn solve(
         if cuts > MOST_CUTS {
             return Ok(Outcome::Stagnated);
         }
-        if iterations >= limit {
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 || iterations >= MOST_STEPS && !certified {
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
         let enough = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
-        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS };
+        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort =
             Effort { inner: enough, most, left: sight.residual, length: if cuts % 2 == 1 { PART } else { 1.0 } };
-        step(problem, state, tangent, (forces, effort), fields)?;
+        step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
         }
     }
-}
-
-/// The creepages of forces that nothing reaches.
-fn ran_away(creepages: Vector) -> Error {
-    Error::Infeasible(format!(
-        "the tangential forces are as good as mu N, which no creepages reach: they run away beyond {creepages:?}"
-    ))
 }
 
 /// The largest of these, which are not negative; NaN if there is one.

@@ -88,6 +88,11 @@ impl Operators {
         Ok(())
     }
 
+    /// The greatest coefficient of A.
+    pub fn greatest(&self) -> f64 {
+        self.a0
+    }
+
     /// The step of steady rolling.
     pub fn step(&self) -> Option<Rolling> {
         self.rolling.as_ref().map(|(rolling, _)| *rolling)

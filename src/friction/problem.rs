@@ -15,6 +15,8 @@ use super::extension::Extension;
 use super::march::Rolling;
 use super::operators::Operators;
 use super::places::Places;
+use super::plane::clip;
+pub use super::plane::{add, against, dot, onto_disc, plus, square};
 use super::quadrant::Quadrant;
 use super::vectors::{self, BLOCK};
 use super::Vector;
@@ -72,6 +74,8 @@ pub struct Problem {
     pub extension: Option<Extension<f64>>,
     /// The elements of C.
     pub places: Places,
+    /// Where forces are given: rms over C of the rigid slip without what is found, whose round-off is left of it.
+    pub given: f64,
     /// rms over C of g.
     rms_bound: f64,
 }
@@ -133,6 +137,7 @@ impl Problem {
             extension: None,
             operators,
             places: Places::new(&grid)?,
+            given: 0.0,
             rms_bound: 0.0,
         })
     }
@@ -197,6 +202,11 @@ impl Problem {
         [w[0] + self.offset[0] + u[0], w[1] + self.offset[1] + u[1]]
     }
 
+    /// What residuals are compared with, of the rms of the rigid slip and of the displacements.
+    pub fn compared(&self, rigid: f64, displacement: f64) -> f64 {
+        self.scale.of(rigid, displacement).max(ROUND_OFF * self.given)
+    }
+
     /// rms over C of a field.
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
@@ -245,56 +255,4 @@ impl Problem {
     pub fn bytes(&self) -> usize {
         self.operators.bytes() + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
     }
-}
-
-/// Squares of a length may round up: so much is left between a traction and its bound.
-const MARGIN: f64 = 4.0 * f64::EPSILON;
-
-/// The nearest traction to q with `|q| <= g`, whichever way its length is rounded.
-fn clip(q: Vector, g: f64) -> Vector {
-    if !(g > 0.0) {
-        return [0.0; 2];
-    }
-    let scaled = [q[0] / g, q[1] / g];
-    let length = square(scaled).sqrt();
-    if length > 1.0 - MARGIN {
-        let factor = (1.0 - MARGIN) / length;
-        return [q[0] * factor, q[1] * factor];
-    }
-    q
-}
-
-/// `|v|^2`.
-#[inline]
-pub fn square(v: Vector) -> f64 {
-    v[0] * v[0] + v[1] * v[1]
-}
-
-/// `v . w`.
-#[inline]
-pub fn dot(v: Vector, w: Vector) -> f64 {
-    v[0] * w[0] + v[1] * w[1]
-}
-
-/// `v + w`.
-#[inline]
-pub fn add(v: Vector, w: Vector) -> Vector {
-    [v[0] + w[0], v[1] + w[1]]
-}
-
-/// `v + a w`.
-#[inline]
-pub fn plus(v: Vector, a: f64, w: Vector) -> Vector {
-    [v[0] + a * w[0], v[1] + a * w[1]]
-}
-
-/// The traction nearest to q within a disc of radius g.
-#[inline]
-pub fn onto_disc(q: Vector, g: f64) -> Vector {
-    let squared = square(q);
-    if squared > g * g {
-        let factor = g / squared.sqrt();
-        return [q[0] * factor, q[1] * factor];
-    }
-    q
 }

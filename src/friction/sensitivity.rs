@@ -17,8 +17,8 @@ use super::vectors::{self, Fields};
 use super::Vector;
 use crate::error::Result;
 
-/// The residual of the linear solves, relative.
-const TOLERANCE: f64 = 1e-5;
+/// The residual of the linear solves of derivatives that are reported, relative.
+pub const TOLERANCE: f64 = 1e-5;
 /// Directions of one call.
 const DIRECTIONS: usize = 40;
 /// Restarts at most.
@@ -35,8 +35,13 @@ pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> R
 }
 
 /// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return. Where nothing moves or carries
-/// tractions, dq = 0.
-pub fn solve(problem: &mut Problem, tangent: &Tangent, fields: &mut Fields, dw: &mut [Vector]) -> Result<()> {
+/// tractions, dq = 0. `tolerance`: of the residual, relative.
+pub fn solve(
+    problem: &mut Problem,
+    tangent: &Tangent,
+    (fields, dw): (&mut Fields, &mut [Vector]),
+    tolerance: f64,
+) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
     // Unit tractions: the system is linear, and single precision has a small range.
     let size = vectors::dot(&threads, dw, dw).sqrt();
@@ -49,13 +54,13 @@ pub fn solve(problem: &mut Problem, tangent: &Tangent, fields: &mut Fields, dw: 
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
     let first = vectors::dot(&threads, &r, &r).sqrt();
-    let until = Until { target: TOLERANCE * first, most: DIRECTIONS };
+    let until = Until { target: tolerance * first, most: DIRECTIONS };
     let mut x = Bordered { field: fields.take(n)?, border: [0.0; 2] };
     x.field.fill([0.0; 2]);
     let mut product = fields.take(n)?;
     for _ in 0..MOST_CALLS {
         let left = vectors::dot(&threads, &r, &r).sqrt();
-        if !(left > TOLERANCE * first) {
+        if !(left > tolerance * first) {
             break;
         }
         product.fill([0.0; 2]);

@@ -46,7 +46,7 @@ pub struct Memory {
 pub struct Goal<'a> {
     /// The residual.
     pub tolerance: f64,
-    /// Iterations at most.
+    /// Iterations at most; of Newton's method products.
     pub limit: u64,
     /// Whether it has to hold by a fresh product.
     pub certified: bool,
@@ -125,7 +125,7 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
 /// The residual of the certificate.
 fn residual(problem: &Problem, rigid: f64, sums: Sums) -> f64 {
     let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| (sum / problem.count().max(1) as f64).sqrt());
-    relative(rest, problem.scale.of(rigid, displaced))
+    relative(rest, problem.compared(rigid, displaced))
 }
 
 /// One iteration; the sums of where it leads to.

@@ -40,6 +40,8 @@ pub struct Report {
     pub sensitivities: Option<[[f64; 3]; 3]>,
     /// mu N: the sum of the traction bounds, times the area of an element.
     pub carried: f64,
+    /// By how much forces that are given are missed, relative to mu N.
+    pub missing: f64,
     /// Whether there were no tractions before.
     pub from_rest: bool,
     /// Force and creepages of the next coarser grid, in steady rolling from rest.
@@ -61,6 +63,7 @@ impl Default for Report {
             creepage: [0.0; 2],
             sensitivities: None,
             carried: 0.0,
+            missing: 0.0,
             from_rest: false,
             coarser: None,
             error: [-1.0; 2],

@@ -1,15 +1,14 @@
 //! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
 
-use super::certificate::{is_on_circle, Certificate};
+use super::certificate::Certificate;
 use super::forces::Forces;
 use super::levels::{levels, Level};
 use super::march::Rolling;
 use super::nested::{self, Work, COARSE, COUNTS};
 use super::problem::Problem;
 use super::request::{Request, Start};
-use super::sensitivity;
-use super::shift::Memory;
-use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
+use super::scales::Scales;
+use super::solution::{Report, Solution};
 use super::take_over::before;
 use super::vectors;
 use super::window::{Displaced, Window};
@@ -28,6 +27,9 @@ const WORTHLESS: f64 = 0.1;
 pub struct Solver {
     pub(super) grid: Grid,
     pub(super) tangential: Tangential,
+    /// Units of the iterations, and the coefficients in them.
+    pub(super) scales: Scales,
+    pub(super) scaled: Tangential,
     single: bool,
     pub(super) threads: Threads,
     /// The finest first; none: nothing was solved yet.
@@ -64,9 +66,12 @@ impl Drop for Solver {
 impl Solver {
     /// For a grid and bodies. `single`: whether directions may be multiplied in single precision.
     pub fn new(grid: Grid, tangential: Tangential, single: bool, threads: &Threads) -> Solver {
+        let (scales, scaled) = Scales::of(&grid, &tangential);
         Solver {
             grid,
             tangential,
+            scales,
+            scaled,
             single,
             threads: threads.clone(),
             levels: Vec::new(),
@@ -132,14 +137,18 @@ impl Solver {
         let kept = &self.before;
         let from_rest =
             friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(friction, kept, i) == [0.0; 2]);
-        let rolling = (friction.motion == Motion::SteadyRolling)
-            .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
+        let rolling = (friction.motion == Motion::SteadyRolling).then(|| Rolling {
+            distance: self.scales.length(friction.distance(&self.grid)),
+            by: friction.elements_rolled(&self.grid),
+        });
         let window = Window::around(&self.grid, &self.threads.for_a_pass(self.grid.len()), |i| {
             pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
         });
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
+            self.scales.fit(self.largest_bound(window, bound));
+            let forces = forces.in_units_of(&self.scales);
             let mut near = Near::default();
             if let Start::Superposed(_) = request.start {
                 self.set_up_finest(window)?;
@@ -161,9 +170,10 @@ impl Solver {
             }
             let Problem { bound, operators, .. } = &self.levels[0].problem;
             let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
-            report.carried = carried * self.grid.element_area();
+            [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
         self.write(friction, pressure, window, &mut report);
+        report.missing = missing(friction, &report);
         if friction.sensitivities {
             report.sensitivities = Some(self.sensitivities(friction, window)?);
             report.products += self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64;
@@ -182,12 +192,15 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
+        let scales = self.scales;
+        let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
-        let mut work = Work { products: 0.0, coarse: if compared { COUNTS } else { COARSE }, watch };
-        let goal = (request.tolerance, request.limit);
-        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
+        let mut work =
+            Work { products: 0.0, limit: request.limit, coarse: if compared { COUNTS } else { COARSE }, watch };
+        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
         report.products += work.products;
-        report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
+        let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
+        report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
         let Level { problem, state, .. } = &self.levels[0];
         report.certificate = Certificate::of(problem, state);
         Ok(end)
@@ -195,22 +208,22 @@ impl Solver {
 
     /// Operators of a window.
     fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
-        let grid = window.grid(&self.grid);
+        let grid = self.scales.grid(&window.grid(&self.grid));
         if self.has_coarser && self.levels.first().is_some_and(|level| level.problem.suits(&grid, rolling)) {
             return Ok(());
         }
         self.levels.clear();
-        self.levels = levels(&self.tangential, grid, rolling, self.single, &self.threads)?;
+        self.levels = levels(&self.scaled, grid, rolling, self.single, &self.threads)?;
         self.has_coarser = true;
         Ok(())
     }
 
     /// What a product by the finest grid alone takes.
     fn set_up_finest(&mut self, window: Window) -> Result<()> {
-        let grid = window.grid(&self.grid);
+        let grid = self.scales.grid(&window.grid(&self.grid));
         if !self.levels.first().is_some_and(|level| level.problem.suits(&grid, None)) {
             self.levels.clear();
-            self.levels.push(Level::alone(&self.tangential, grid, self.single, &self.threads)?);
+            self.levels.push(Level::alone(&self.scaled, grid, self.single, &self.threads)?);
             self.has_coarser = false;
         }
         Ok(())
@@ -229,70 +242,17 @@ impl Solver {
             products: problem.take_products() as f64,
         }
     }
+}
 
-    /// See [`Report::sensitivities`].
-    fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
-        let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
-        level.be_ready()?;
-        let Level { problem, state, memory, .. } = level;
-        sensitivity::predict(problem, state, &mut memory.tangent)?;
-        for by in 0..3 {
-            let mut change = memory.fields.take(state.q.len())?;
-            for (k, i) in window.elements(&self.grid) {
-                change[k] = friction.rigid_slip_by(&self.grid, i, by);
-            }
-            let Memory { tangent, fields, .. } = memory;
-            sensitivity::solve(problem, tangent, fields, &mut change)?;
-            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
-            let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
-            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
-                row[by] = value;
-            }
-            memory.fields.give(change);
-        }
-        Ok(derivatives)
-    }
-
-    /// The result on the whole grid, and what is to be said of it.
-    fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], window: Option<Window>, report: &mut Report) {
-        let Solution { traction, slip, adhesion } = &mut self.solution;
-        let (grid, threads) = (self.grid, self.threads.suited_to(self.grid.len()));
-        let distance = friction.distance(&grid);
-        let mut offset = [0.0; 2];
-        if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
-            offset = problem.offset;
-            self.offset = offset;
-            // The elements in contact of a row.
-            let touching = |iy: usize| window.columns(iy).filter(move |(_, ix)| pressure[iy * grid.mx + ix] > 0.0);
-            threads.for_each_row_pair((traction, grid.mx), (slip, grid.mx), |iy, traction, slip| {
-                traction.fill([0.0; 2]);
-                slip.fill([0.0; 2]);
-                touching(iy).for_each(|(k, ix)| (traction[ix], slip[ix]) = (state.q[k], problem.slip_at(k, &state.u)));
-            });
-            threads.for_each_plain_row(adhesion, grid.mx, |iy, adhesion| {
-                adhesion.fill(EXTERIOR);
-                for (k, ix) in touching(iy) {
-                    adhesion[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
-                }
-            });
-            // Without friction all slips.
-            let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
-            let mut slipping = vec![0; grid.my];
-            threads.for_each(&mut slipping, |iy, count| *count = without(iy));
-            report.certificate.slip_count += slipping.iter().sum::<usize>();
-        } else {
-            traction.fill([0.0; 2]);
-            slip.fill([0.0; 2]);
-            adhesion.fill(EXTERIOR);
-        }
-        for (k, prescribed) in friction.prescribed.iter().enumerate() {
-            report.creepage[k] = match prescribed {
-                Prescribed::Creepage(creepage) => *creepage,
-                Prescribed::Force(_) => offset[k] / distance,
-            };
-        }
-        let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
-        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions);
+/// See [`Report::missing`].
+fn missing(friction: &Friction<'_>, report: &Report) -> f64 {
+    let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
+        Prescribed::Force(force) => report.force[k] - force,
+        Prescribed::Creepage(_) => 0.0,
+    });
+    if report.carried > 0.0 {
+        x.hypot(y) / report.carried
+    } else {
+        0.0
     }
 }

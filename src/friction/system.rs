@@ -136,7 +136,7 @@ impl System for TangentSystem<'_> {
 }
 
 /// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors: where all slips one way, or one force is given, it is singular.
-fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
+pub fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let off = 0.5 * (b + c);
     let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
     let radius = half.hypot(off);

@@ -16,6 +16,8 @@ pub struct Tables {
     cx: usize,
     cy: usize,
     values: Arc<Vec<Entry>>,
+    /// What they are multiplied by: a power of two.
+    factor: f64,
 }
 
 impl Tables {
@@ -29,7 +31,7 @@ impl Tables {
         for (k, entry) in values.iter_mut().enumerate() {
             *entry = at((k % cx) as i64, (k / cx) as i64);
         }
-        Ok(Tables { cx, cy, values: Arc::new(values) })
+        Ok(Tables { cx, cy, values: Arc::new(values), factor: 1.0 })
     }
 
     /// Whether they were made of these.
@@ -42,10 +44,16 @@ impl Tables {
             })
     }
 
+    /// The same in units of `unit`.
+    pub fn in_units_of(&self, unit: f64) -> Tables {
+        Tables { factor: self.factor / unit, ..self.clone() }
+    }
+
     /// The coefficients at a whole offset; beyond the tables the outermost serve.
     pub fn at(&self, x: i64, y: i64) -> Entry {
         let clamp = |k: i64, c: usize| (k.unsigned_abs() as usize).min(c - 1);
-        let [xx, yy, xy] = self.values[clamp(y, self.cy) * self.cx + clamp(x, self.cx)];
+        let [xx, yy, xy] =
+            self.values[clamp(y, self.cy) * self.cx + clamp(x, self.cx)].map(|value| self.factor * value);
         [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
     }
 

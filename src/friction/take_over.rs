@@ -3,8 +3,10 @@
 use super::levels::Level;
 use super::problem::{add, square, Scale};
 use super::request::{Request, Start, Superposed};
+use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
+use super::vectors;
 use super::window::{displaced, Window};
 use super::Vector;
 use crate::effects::{Friction, Motion, Prescribed, Previous};
@@ -20,10 +22,24 @@ const LARGEST_RATIO: f64 = 1e30;
 /// And this part of it: the round-off of what pressures displace sideways is a slip, too.
 const LEAST_RATIO: f64 = 1e-60;
 
+/// Bounds below this part of the largest carry nothing that counts, and leave the range of single precision: elements of them are
+/// solved as if they carried nothing, and get what their slip asks for.
+const NEGLIGIBLE: f64 = 1e-30;
+/// Tractions before the step are at most so many times the largest bound.
+const LARGEST_BEFORE: f64 = 1e150;
+
 /// What memory is for.
 const FIELDS: &str = "tangential fields";
 
 impl Solver {
+    /// The largest bound of the elements of a window.
+    pub(super) fn largest_bound(&self, window: Window, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+        let rows = window.grid(&self.grid).my;
+        let threads = self.threads.suited_to(self.grid.len());
+        let of_row = |iy: usize| window.row(&self.grid, iy).map(&bound).fold(0.0, f64::max);
+        vectors::largest(&threads, rows, of_row)
+    }
+
     /// Room for the result.
     pub(super) fn make_room(&mut self) -> Result<()> {
         if self.solution.traction.is_empty() {
@@ -63,33 +79,39 @@ impl Solver {
         bound: impl Fn(usize) -> f64 + Sync + Send,
     ) -> Result<bool> {
         let Request { friction, start, .. } = *request;
-        let (grid, kept) = (&self.grid, &self.before);
+        let (grid, kept, scales) = (&self.grid, &self.before, self.scales);
         let Level { problem, state, .. } = &mut self.levels[0];
         let (threads, width) = (problem.threads().clone(), problem.grid.mx);
         state.unload(&threads);
         threads.for_each_row_pair((&mut problem.bound, width), (&mut problem.rigid, width), |iy, bounds, rigid| {
             let places = window.row(grid, iy);
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
-                *g = bound(i);
+                *g = scales.traction(bound(i));
+                if *g < NEGLIGIBLE {
+                    *g = 0.0;
+                }
                 let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-                *rigid = add(friction.rigid_slip_at(grid, i), sideways);
+                *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }
         });
         if !from_rest {
             threads.for_each_plain_row(&mut state.q, width, |iy, row| {
-                row.iter_mut().zip(window.row(grid, iy)).for_each(|(q, i)| *q = before(friction, kept, i));
+                row.iter_mut()
+                    .zip(window.row(grid, iy))
+                    .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
         // A warm start of steady rolling starts from the last creepages, too.
         let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-        problem.offset = [0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 });
+        problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 }));
         problem.scale = match friction.motion {
             Motion::Shift => Scale::SlipOrDisplacement,
             Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
             _ => Scale::Slip,
         };
-        problem.ahead = spin_ahead(friction, grid);
+        problem.ahead = scales.displacement(spin_ahead(friction, grid));
+        problem.given = 0.0;
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);
@@ -113,6 +135,7 @@ impl Solver {
 
     /// The tractions and the offset to start from, where they are not those before the step.
     fn start_from(&mut self, request: &Request<'_>, window: Window) {
+        let scales = self.scales;
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
             Start::Before => {}
@@ -120,15 +143,17 @@ impl Solver {
                 let (threads, width) = (problem.threads().clone(), problem.grid.mx);
                 threads.for_each_row_pair((&mut state.q, width), (&mut state.u, width), |iy, q, u| {
                     for ((q, u), i) in q.iter_mut().zip(u).zip(window.row(&self.grid, iy)) {
-                        *q = along.map(|along| along * carried[i]);
-                        *u = along.map(|along| along * displaced[i]);
+                        *q = along.map(|along| scales.traction(along * carried[i]));
+                        *u = scales.displacement(along.map(|along| along * displaced[i]));
                     }
                 });
-                problem.offset = offset;
+                problem.offset = scales.displacement(offset);
             }
             Start::Again => {
-                window.elements(&self.grid).for_each(|(k, i)| state.q[k] = self.solution.traction[i]);
-                problem.offset = self.offset;
+                window
+                    .elements(&self.grid)
+                    .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
+                problem.offset = scales.displacement(self.offset);
             }
         }
     }
@@ -141,7 +166,7 @@ impl Solver {
             Motion::Shift => problem.operators.multiply(&state.q, problem.rms_bound(), &mut state.u),
             Motion::TransientRolling => {
                 let by = friction.elements_rolled(&self.grid);
-                let displaced = displaced(&mut self.displaced, &self.tangential, problem.grid, by, &self.threads)?;
+                let displaced = displaced(&mut self.displaced, &self.scaled, problem.grid, by, &self.threads)?;
                 displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
             }
         }
@@ -155,7 +180,11 @@ impl Solver {
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
-        if slip > 0.0 && displaced > 0.0 && !(slip / displaced < LARGEST_RATIO && slip / displaced > LEAST_RATIO) {
+        let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
+        if displaced > 0.0
+            && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
+        {
+            let [slip, displaced] = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);
             let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
             return invalid(format!(
                 "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e30 times or less than 1e-60 times that; {rule}"
@@ -172,6 +201,11 @@ pub(super) fn before(friction: &Friction<'_>, kept: &[Vector], i: usize) -> Vect
         Previous::Given([x, y]) => [x[i], y[i]],
         Previous::Kept => kept[i],
     }
+}
+
+/// Tractions in the units of the iterations; in steady rolling they are only where these start.
+fn in_range(q: Vector, scales: &Scales) -> Vector {
+    q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
 }
 
 /// What the slip by spin gains a step of steady rolling ahead.

@@ -174,7 +174,7 @@ impl Tangent {
             });
         self.slip_count = sums[2] as usize;
         let [squares, excess, _, rigid, displaced] = sums.map(|sum| (sum / problem.count().max(1) as f64).sqrt());
-        let scale = problem.scale.of(rigid, displaced);
+        let scale = problem.compared(rigid, displaced);
         Sight { residual: relative(squares, scale), excess: relative(excess, problem.rms_bound()) }
     }
 

@@ -75,12 +75,19 @@ impl Solver {
             if solved == MOST_TURNS {
                 break;
             }
+            // The work of all turns together is bounded by what the caller said.
+            let left = turn.options.max_cycles.saturating_sub(found.products as usize);
+            if left == 0 {
+                return Ok((Outcome::IterationLimit, found));
+            }
             monitor.ledger.rows.pop();
             monitor.enter_grid();
             let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
             (stop, _) = self.solve_normal((&scene, lowest(distance)), &options, None, monitor)?;
             let (products, seconds) = (found.products, found.seconds);
-            (tangential_stop, found) = tangent.solve_after(stop, turn, &self.state.p, Start::Again, monitor)?;
+            let rest = Options { max_cycles: left, ..*turn.options };
+            let turn = Turn { options: &rest, ..*turn };
+            (tangential_stop, found) = tangent.solve_after(stop, &turn, &self.state.p, Start::Again, monitor)?;
             (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
         }
         log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");

@@ -1,0 +1,85 @@
+//! The creepages by which the natural map itself carries the forces that are given.
+//!
+//! ```text
+//! sum of P(q - rho (s + dc)) = F/(dx dy)        P: onto the discs
+//! ```
+//!
+//! The sum falls as dc grows, and its slope is known: Newton's method, within a [`Corral`]. What is predicted to slip then carries the forces
+//! together with the rest: as long as these are less than mu N, not all elements slip one way, and the border of the linear systems is
+//! not singular.
+
+use super::corral::Corral;
+use super::forces::{sum_of_bounds, Forces};
+use super::problem::{add, onto_disc, plus, square, Problem, State};
+use super::system::pseudo_inverse;
+use super::vectors;
+use super::Vector;
+
+/// Forces that are met to this part of the sum of all bounds are met.
+const MET: f64 = 1e-13;
+/// Trials at most: halvings from the largest creepage to round-off.
+const MOST_TRIALS: usize = 200;
+/// A trial that leaves more than this part of what was missing is followed by one in the middle.
+const PROGRESS: f64 = 0.5;
+
+/// The sum of tractions that the natural map makes, and its derivative by `-rho dc`: xx, xy, yy.
+fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, [Vector; 2]) {
+    let [x, y, xx, xy, yy] = vectors::sum(problem.threads(), problem.bound.len(), |i| {
+        let g = problem.bound[i];
+        if !(g > 0.0) {
+            return [0.0; 5];
+        }
+        let tau = plus(state.q[i], -rho, add(problem.slip_at(i, &state.u), dc));
+        let length = square(tau).sqrt();
+        if !(length > g) {
+            return [tau[0], tau[1], 1.0, 0.0, 1.0];
+        }
+        let (n, share) = (tau.map(|tau| tau / length), g / length);
+        let turned = [share * n[1] * n[1], -share * n[0] * n[1], share * n[0] * n[0]];
+        let [x, y] = onto_disc(tau, g);
+        [x, y, turned[0], turned[1], turned[2]]
+    });
+    ([x, y], [[xx, xy], [xy, yy]])
+}
+
+/// These creepages, in the place of the offset of the problem.
+pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> Vector {
+    let bounds = sum_of_bounds(problem);
+    let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
+    // Where dc is larger than that all slip against it, more than F.
+    let furthest = vectors::largest(problem.threads(), problem.bound.len(), |i| {
+        let reach = if problem.bound[i] > 0.0 { square(problem.slip_at(i, &state.u)).sqrt() } else { 0.0 };
+        reach + (square(state.q[i]).sqrt() + problem.bound[i]) / rho
+    });
+    let mut corral = Corral::new(4.0 * furthest / (1.0 - part).max(f64::EPSILON), forces.given);
+    let (mut dc, mut least, mut last) = ([0.0; 2], (f64::INFINITY, [0.0; 2]), f64::INFINITY);
+    for _ in 0..MOST_TRIALS {
+        let (sum, slope) = response(problem, state, rho, dc);
+        let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
+        let missing = square(excess).sqrt() / bounds;
+        if missing < least.0 {
+            least = (missing, dc);
+        }
+        if !(missing > MET) {
+            break;
+        }
+        corral.cut(dc, excess);
+        let inverse = pseudo_inverse(only_given(slope, forces));
+        let step = inverse.map(|row| (row[0] * excess[0] + row[1] * excess[1]) / rho);
+        let newton = plus(dc, 1.0, forces.only_given(step));
+        let is_step = newton != dc && missing <= PROGRESS * last && corral.holds(newton);
+        let next = if is_step { newton } else { corral.centre() };
+        last = missing;
+        if next == dc {
+            break;
+        }
+        dc = next;
+    }
+    add(problem.offset, least.1)
+}
+
+/// Rows and columns of the directions in which forces are given.
+fn only_given([xx, yy]: [Vector; 2], forces: Forces) -> [Vector; 2] {
+    let keep = |row: Vector, k: usize| if forces.given[k] { forces.only_given(row) } else { [0.0; 2] };
+    [keep(xx, 0), keep(yy, 1)]
+}

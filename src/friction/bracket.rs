@@ -1,0 +1,240 @@
+//! Forces that are given, where Newton's method stalls: by solves with creepages that are given, between creepages that are known to
+//! carry too much and too little.
+//!
+//! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those by which the natural map
+//! carries the forces ([`balanced`]), best where nearly all slips, or those of the linear system,
+//! best where much sticks; where neither halves what is missing, those in the middle. That ends.
+
+use super::balance::balanced;
+use super::best::Best;
+use super::certificate::Certificate;
+use super::corral::Corral;
+use super::forces::{sum_of, sum_of_bounds, Forces};
+use super::newton::{self, Manner};
+use super::problem::{dot, plus, square, Problem, State};
+use super::sensitivity;
+use super::shift::{self, Goal, Memory};
+use super::step::compliance;
+use super::system::pseudo_inverse;
+use super::vectors;
+use super::Vector;
+use crate::error::Result;
+use crate::progress::Outcome;
+
+/// Where more than this part of C slips the natural map is tried first.
+const MOSTLY_SLIP: f64 = 0.8;
+/// A trial is good if it leaves at most this part of what was missing.
+const PROGRESS: f64 = 0.5;
+/// Where trials miss this part of what they missed before, Newton's method with balanced creepages tries to finish, by so many products.
+const CLOSE: f64 = 0.1;
+const FINISH: u64 = 30;
+/// Where other creepages leave the forces as they are, solves go on to this part of their residual, down to the least.
+const TIGHTER: f64 = 0.03;
+const LEAST_INNER: f64 = 1e-14;
+/// Derivatives of forces are known to this part; a matrix of them with a smaller determinant than that, relative, is singular.
+const SLOPE: f64 = 1e-2;
+const SINGULAR: f64 = 1e-8;
+/// Trials at most.
+const MOST_TRIALS: u32 = 400;
+
+/// Where trials come from.
+struct Trials {
+    corral: Corral,
+    by_map: bool,
+    /// Trials in succession that were not good.
+    bad: u32,
+    /// What was missing last.
+    last: Option<f64>,
+}
+
+/// Solves from what the state and the offset hold.
+pub fn solve(
+    problem: &mut Problem,
+    state: &mut State,
+    (memory, best): (&mut Memory, &mut Best),
+    forces: Forces,
+    goal: Goal<'_>,
+) -> Result<Outcome> {
+    let Goal { tolerance, limit, certified, watch } = goal;
+    let made = problem.operators.products;
+    memory.tangent.fit(problem.grid.len())?;
+    problem.continue_residuals()?;
+    problem.refresh(state);
+    let bounds = sum_of_bounds(problem);
+    let mut trials = Trials::new(problem, forces, bounds);
+    let (mut tried, mut inner, mut before) = (1.0, tolerance, [f64::NAN; 2]);
+    for _ in 0..MOST_TRIALS {
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 {
+            return Ok(Outcome::IterationLimit);
+        }
+        let end = by_creepages(
+            problem,
+            state,
+            memory,
+            Goal { tolerance: inner, limit: left, certified, watch: &mut *watch },
+        )?;
+        let residual = Certificate::of(problem, state).residual;
+        if end != Outcome::Converged && !(end == Outcome::Stagnated && residual < tolerance) {
+            return Ok(end);
+        }
+        let sum = sum_of(problem, &state.q);
+        let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
+        let missing = square(excess).sqrt() / bounds;
+        if std::env::var("FDEBUG").is_ok() {
+            eprintln!("   trial offset {:?} excess {excess:?} missing {missing:e} inner {inner:e} {end:?} residual {residual:e} products {}", problem.offset, problem.operators.products);
+        }
+        best.see(problem, state, missing.max(tolerance), &mut memory.fields)?;
+        if missing < tolerance {
+            return Ok(Outcome::Converged);
+        }
+        if missing < CLOSE * tried {
+            tried = missing;
+            let left = limit.saturating_sub(problem.operators.products - made).min(FINISH);
+            let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
+            let end = finish(problem, state, memory, forces, goal)?;
+            if end == Outcome::Converged || end == Outcome::Cancelled {
+                return Ok(end);
+            }
+        }
+        // The residual hides what forces change by.
+        if excess == before && inner > LEAST_INNER {
+            inner *= TIGHTER;
+            continue;
+        }
+        before = excess;
+        let next = trials.next(problem, state, memory, (forces, excess, missing))?;
+        if next == problem.offset {
+            break;
+        }
+        problem.offset = next;
+    }
+    Ok(Outcome::Stagnated)
+}
+
+/// Newton's method with balanced creepages from here; where it does not converge everything is as before.
+fn finish(
+    problem: &mut Problem,
+    state: &mut State,
+    memory: &mut Memory,
+    forces: Forces,
+    goal: Goal<'_>,
+) -> Result<Outcome> {
+    let Memory { tangent, fields, .. } = memory;
+    let (mut here, mut best) = (Best::none(), Best::none());
+    here.see(problem, state, 0.0, fields)?;
+    let end = newton::solve(problem, state, (tangent, fields, &mut best), (forces, Manner::Balanced), goal)?;
+    if end != Outcome::Converged {
+        here.take_up(problem, state);
+    }
+    here.give(fields);
+    best.give(fields);
+    Ok(end)
+}
+
+/// Solves with the creepages that the offset holds.
+fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Result<Outcome> {
+    let Goal { tolerance, limit, certified, watch } = goal;
+    if problem.rms_slip() == 0.0 {
+        state.unload(&problem.threads().clone());
+        return Ok(Outcome::Converged);
+    }
+    let made = problem.operators.products;
+    if problem.operators.rolling.is_none() {
+        let goal = Goal { tolerance, limit, certified, watch: &mut *watch };
+        let end = shift::solve(problem, state, memory, goal)?;
+        if end != Outcome::Stagnated {
+            return Ok(end);
+        }
+    }
+    let mut end = Outcome::Stagnated;
+    for manner in [Manner::Plain, Manner::Bold] {
+        let left = limit.saturating_sub(problem.operators.products - made);
+        let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
+        let mut best = Best::none();
+        let Memory { tangent, fields, .. } = memory;
+        end = newton::solve(problem, state, (tangent, fields, &mut best), (Forces::NONE, manner), goal)?;
+        if end == Outcome::Stagnated {
+            best.take_up(problem, state);
+        }
+        best.give(fields);
+        if end != Outcome::Stagnated {
+            break;
+        }
+    }
+    Ok(end)
+}
+
+impl Trials {
+    fn new(problem: &Problem, forces: Forces, bounds: f64) -> Trials {
+        // What all tractions together displace at most, of both components, here and a step ahead.
+        let displaced = 8.0 * problem.operators.greatest() * bounds;
+        let rigid = vectors::largest(problem.threads(), problem.bound.len(), |i| {
+            let inside = problem.bound[i] > 0.0;
+            if inside {
+                square(problem.slip[i]).sqrt()
+            } else {
+                0.0
+            }
+        });
+        let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
+        let half = 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
+        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, last: None }
+    }
+
+    /// The creepages to try next; those of now where there are no others.
+    fn next(
+        &mut self,
+        problem: &mut Problem,
+        state: &State,
+        memory: &mut Memory,
+        (forces, excess, missing): (Forces, Vector, f64),
+    ) -> Result<Vector> {
+        let at = problem.offset;
+        self.corral.cut(at, excess);
+        let rho = 1.0 / compliance(problem);
+        memory.tangent.predict(problem, state, rho);
+        match self.last {
+            Some(before) if missing > PROGRESS * before => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
+            Some(_) => self.bad = 0,
+            None => self.by_map = memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64,
+        }
+        self.last = Some(missing);
+        if self.bad % 3 == 2 {
+            return Ok(self.corral.centre());
+        }
+        for by_map in [self.by_map, !self.by_map] {
+            let trial = if by_map {
+                balanced(problem, state, rho, forces)
+            } else {
+                let slope = slope(problem, memory, forces)?;
+                plus(at, 1.0, forces.only_given(slope.map(|row| dot(row, excess))))
+            };
+            if trial != at && self.corral.holds(trial) {
+                return Ok(trial);
+            }
+        }
+        Ok(self.corral.centre())
+    }
+}
+
+/// How creepages go with what forces exceed: the inverse of minus the derivatives of the forces, while the same elements slip.
+fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
+    let Memory { tangent, fields, .. } = memory;
+    let mut falls = [[0.0; 2]; 2];
+    for k in (0..2).filter(|&k| forces.given[k]) {
+        let mut change = fields.take(problem.grid.len())?;
+        let unit = [[1.0, 0.0], [0.0, 1.0]][k];
+        vectors::fill(problem.threads(), &mut change, |_| unit);
+        sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE)?;
+        let by = forces.only_given(sum_of(problem, &change));
+        (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
+        fields.give(change);
+    }
+    let [[a, b], [c, d]] = falls;
+    let determinant = a * d - b * c;
+    if forces.given == [true; 2] && determinant.abs() > SINGULAR * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2) {
+        return Ok([[d / determinant, -b / determinant], [-c / determinant, a / determinant]]);
+    }
+    Ok(pseudo_inverse(falls))
+}

@@ -1,0 +1,65 @@
+//! Vectors of the plane, and discs in it.
+
+use super::Vector;
+
+/// Squares of a length may round up: so much is left between a traction and its bound.
+const MARGIN: f64 = 4.0 * f64::EPSILON;
+
+/// The nearest traction to q with `|q| <= g`, whichever way its length is rounded.
+pub fn clip(q: Vector, g: f64) -> Vector {
+    if !(g > 0.0) {
+        return [0.0; 2];
+    }
+    let scaled = [q[0] / g, q[1] / g];
+    let length = square(scaled).sqrt();
+    if length > 1.0 - MARGIN {
+        let factor = (1.0 - MARGIN) / length;
+        return [q[0] * factor, q[1] * factor];
+    }
+    q
+}
+
+/// The traction of length g against a slip, whichever way lengths are rounded.
+pub fn against(slip: Vector, g: f64) -> Vector {
+    let length = slip[0].hypot(slip[1]);
+    if length > 0.0 {
+        clip(slip.map(|s| -s / length * g), g)
+    } else {
+        [0.0; 2]
+    }
+}
+
+/// `|v|^2`.
+#[inline]
+pub fn square(v: Vector) -> f64 {
+    v[0] * v[0] + v[1] * v[1]
+}
+
+/// `v . w`.
+#[inline]
+pub fn dot(v: Vector, w: Vector) -> f64 {
+    v[0] * w[0] + v[1] * w[1]
+}
+
+/// `v + w`.
+#[inline]
+pub fn add(v: Vector, w: Vector) -> Vector {
+    [v[0] + w[0], v[1] + w[1]]
+}
+
+/// `v + a w`.
+#[inline]
+pub fn plus(v: Vector, a: f64, w: Vector) -> Vector {
+    [v[0] + a * w[0], v[1] + a * w[1]]
+}
+
+/// The traction nearest to q within a disc of radius g.
+#[inline]
+pub fn onto_disc(q: Vector, g: f64) -> Vector {
+    let squared = square(q);
+    if squared > g * g {
+        let factor = g / squared.sqrt();
+        return [q[0] * factor, q[1] * factor];
+    }
+    q
+}

@@ -1,0 +1,94 @@
+//! What a solve leaves: the result on the whole grid, and derivatives.
+
+use super::certificate::is_on_circle;
+use super::levels::Level;
+use super::problem::against;
+use super::sensitivity;
+use super::shift::Memory;
+use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
+use super::solver::Solver;
+use super::window::Window;
+use crate::effects::{Friction, Prescribed};
+use crate::error::Result;
+
+impl Solver {
+    /// See [`Report::sensitivities`].
+    pub(super) fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
+        let mut derivatives = [[0.0; 3]; 3];
+        let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
+        level.be_ready()?;
+        let Level { problem, state, memory, .. } = level;
+        sensitivity::predict(problem, state, &mut memory.tangent)?;
+        for by in 0..3 {
+            let mut change = memory.fields.take(state.q.len())?;
+            for (k, i) in window.elements(&self.grid) {
+                change[k] = self.scales.change(friction.rigid_slip_by(&self.grid, i, by));
+            }
+            let Memory { tangent, fields, .. } = memory;
+            sensitivity::solve(problem, tangent, (fields, &mut change), sensitivity::TOLERANCE)?;
+            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
+            let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
+            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
+                row[by] = value;
+            }
+            memory.fields.give(change);
+        }
+        Ok(derivatives)
+    }
+
+    /// The result on the whole grid, and what is to be said of it.
+    pub(super) fn write(
+        &mut self,
+        friction: &Friction<'_>,
+        pressure: &[f64],
+        window: Option<Window>,
+        report: &mut Report,
+    ) {
+        let Solution { traction, slip, adhesion } = &mut self.solution;
+        let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
+        let distance = friction.distance(&grid);
+        let mut offset = [0.0; 2];
+        if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
+            offset = scales.own_displacement(problem.offset);
+            self.offset = offset;
+            // The elements in contact of a row.
+            let touching = |iy: usize| window.columns(iy).filter(move |(_, ix)| pressure[iy * grid.mx + ix] > 0.0);
+            threads.for_each_row_pair((traction, grid.mx), (slip, grid.mx), |iy, traction, slip| {
+                traction.fill([0.0; 2]);
+                slip.fill([0.0; 2]);
+                for (k, ix) in touching(iy) {
+                    slip[ix] = scales.own_displacement(problem.slip_at(k, &state.u));
+                    traction[ix] = if problem.bound[k] > 0.0 {
+                        scales.own_traction(state.q[k])
+                    } else {
+                        let i = iy * grid.mx + ix;
+                        against(slip[ix], friction.coefficient.at(i) * pressure[i])
+                    };
+                }
+            });
+            threads.for_each_plain_row(adhesion, grid.mx, |iy, adhesion| {
+                adhesion.fill(EXTERIOR);
+                for (k, ix) in touching(iy) {
+                    adhesion[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
+                }
+            });
+            // Without friction all slips.
+            let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
+            let mut slipping = vec![0; grid.my];
+            threads.for_each(&mut slipping, |iy, count| *count = without(iy));
+            report.certificate.slip_count += slipping.iter().sum::<usize>();
+        } else {
+            traction.fill([0.0; 2]);
+            slip.fill([0.0; 2]);
+            adhesion.fill(EXTERIOR);
+        }
+        for (k, prescribed) in friction.prescribed.iter().enumerate() {
+            report.creepage[k] = match prescribed {
+                Prescribed::Creepage(creepage) => *creepage,
+                Prescribed::Force(_) => offset[k] / distance,
+            };
+        }
+        let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
+        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions);
+    }
+}

@@ -1,0 +1,85 @@
+//! Units of the iterations: powers of two, so that no bit changes. In them element sizes, coefficients and traction bounds are of order 1,
+//! whatever the caller's units are: squares, and what is in single precision, stay within range.
+
+use super::toeplitz::unit_of;
+use super::{Tangential, Vector};
+use crate::grid::Grid;
+
+/// Units of displacements keep to this range: their inverses are numbers.
+const SMALLEST: f64 = 1e-290;
+const LARGEST: f64 = 1e290;
+
+/// The units of one grid, and of the step that is solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    length: f64,
+    /// Of displacements, by tractions of 1.
+    compliance: f64,
+    traction: f64,
+}
+
+impl Scales {
+    /// Of a grid, and the coefficients in these units.
+    pub fn of(grid: &Grid, tangential: &Tangential) -> (Scales, Tangential) {
+        let length = unit_of(grid.dx);
+        let (scaled, compliance) = tangential.in_units_of(length);
+        (Scales { length, compliance, traction: 1.0 }, scaled)
+    }
+
+    /// Tractions of a step are at most `largest`.
+    pub fn fit(&mut self, largest: f64) {
+        let traction = unit_of(largest);
+        let displacement = (traction * self.compliance).clamp(SMALLEST, LARGEST);
+        self.traction = unit_of(displacement / self.compliance);
+    }
+
+    /// A grid.
+    pub fn grid(&self, grid: &Grid) -> Grid {
+        Grid { dx: self.length(grid.dx), dy: self.length(grid.dy), ..*grid }
+    }
+
+    /// A grid in the caller's units.
+    pub fn own_grid(&self, grid: &Grid) -> Grid {
+        Grid { dx: self.length * grid.dx, dy: self.length * grid.dy, ..*grid }
+    }
+
+    /// A length of the grid.
+    pub fn length(&self, length: f64) -> f64 {
+        length / self.length
+    }
+
+    /// A traction.
+    pub fn traction(&self, traction: f64) -> f64 {
+        traction / self.traction
+    }
+
+    /// A displacement or a slip.
+    pub fn displacement(&self, displacement: Vector) -> Vector {
+        displacement.map(|u| u / self.compliance / self.traction)
+    }
+
+    /// How a displacement changes by tractions that are in the caller's units.
+    pub fn change(&self, displacement: Vector) -> Vector {
+        displacement.map(|u| u / self.compliance)
+    }
+
+    /// A traction in the caller's units.
+    pub fn own_traction(&self, traction: Vector) -> Vector {
+        traction.map(|q| self.traction * q)
+    }
+
+    /// A displacement in the caller's units.
+    pub fn own_displacement(&self, displacement: Vector) -> Vector {
+        displacement.map(|u| u * self.traction * self.compliance)
+    }
+
+    /// A force in the caller's units.
+    pub fn own_force(&self, force: Vector) -> Vector {
+        force.map(|force| force * self.traction * self.length * self.length)
+    }
+
+    /// A displacement per length in the caller's units.
+    pub fn own_creepage(&self, creepage: Vector) -> Vector {
+        self.own_displacement(creepage).map(|creepage| creepage / self.length)
+    }
+}
