@@ -33,6 +33,14 @@ impl Grid {
 
     /// A grid, after a check of its sizes.
     pub fn new(mx: usize, my: usize, dx: f64, dy: f64) -> Result<Grid> {
+        let grid = Grid { mx, my, dx, dy };
+        grid.check()?;
+        Ok(grid)
+    }
+
+    /// Refuses sizes that are none: a grid may be made without [`new`](Self::new).
+    pub fn check(&self) -> Result<()> {
+        let Grid { mx, my, dx, dy } = *self;
         for (name, m) in [("mx", mx), ("my", my)] {
             if m == 0 {
                 return invalid(format!("{name} is 0; a grid has at least one element in each direction"));
@@ -45,7 +53,7 @@ impl Grid {
         for (name, d) in [("dx", dx), ("dy", dy)] {
             require(d > 0.0 && d.is_finite(), name, d, "an element size must be positive and finite")?;
         }
-        Ok(Grid { mx, my, dx, dy })
+        Ok(())
     }
 
     /// Rows of each block, where work is cut into at most so many blocks of at least so many elements: whatever the number of threads.

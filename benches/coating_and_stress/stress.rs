@@ -21,7 +21,7 @@ pub fn report() {
     let mises = Wanted { von_mises: true, ..Wanted::default() };
     let principal = Wanted { principal: true, ..Wanted::default() };
     let one = Wanted { components: [false, false, true, false, false, false], ..Wanted::default() };
-    let all = Loads { pressure: Some(&p), traction_x: Some(&q), traction_y: Some(&q) };
+    let all = Loads { pressure: Some(&p), traction_x: Some(&q), traction_y: Some(&q), ..Loads::default() };
     println!("Subsurface stresses, {M} x {M} elements, {DEPTHS} depths, one thread; medians of {RUNS} runs\n");
     println!("| loads | wanted | s | ms a depth | with two periods, s | ms a depth |\n|---|---|---:|---:|---:|---:|");
     for (loads, of) in [(Loads::pressure(&p), "p"), (all, "p, qx, qy")] {

@@ -24,7 +24,7 @@ impl State {
         let Load::Force(force) = self.load else { return true };
         let [sum, all] = self.sum_pressures(threads, |p| [p, p.abs()]);
         let area = self.grid.element_area();
-        (sum * area - force).abs() <= ROUND_OFF * (all * area + force)
+        (sum * area - force).abs() <= ROUND_OFF * (all * area + force.abs())
     }
 
     /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.

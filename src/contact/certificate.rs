@@ -115,7 +115,6 @@ impl Survey {
     /// How far the conditions are from being met: the larger of the relative residual and the relative violation, p = 0 having 1; infinite
     /// where pressures are not admissible. `max` alone would drop what is not a number.
     pub fn violation<S: AdmissibleSet>(&self, _: S) -> f64 {
-        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let residual = relative(self.residual, self.distance);
         let violation = if S::FIXED { 0.0 } else { relative(self.violation, self.scale) };
         let admissible = S::FIXED || self.range.0 >= 0.0;
@@ -125,15 +124,28 @@ impl Survey {
         }
     }
 
+    /// The residual, relative to the distances; 0 where there is none.
+    pub fn relative_residual(&self) -> f64 {
+        relative(self.residual, self.distance)
+    }
+
     /// The measures of the solution.
     pub fn certificate(&self) -> Certificate {
-        let relative = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         Certificate {
-            residual: relative(self.residual, self.distance),
+            residual: self.relative_residual(),
             violation: self.violation,
             complementarity: relative(self.work.0.max(0.0), self.work.1),
             min_pressure: self.range.0,
         }
+    }
+}
+
+/// A value relative to a scale: 0 is 0 on any scale, also on one of 0.
+pub fn relative(value: f64, scale: f64) -> f64 {
+    if value == 0.0 {
+        0.0
+    } else {
+        value / scale
     }
 }
 

@@ -15,7 +15,7 @@ mod state;
 mod survey_pass;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
-pub use certificate::{norm_of_distance, residual_norm, Certificate, Survey};
+pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey};
 pub use curvature::Curvature;
 pub use exchange::{admit, truncate};
 pub use guard::ExchangeGuard;

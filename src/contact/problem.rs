@@ -89,12 +89,13 @@ impl Problem {
 
     /// The influence of an element on itself.
     pub fn self_influence(&self) -> f64 {
-        self.coefficients.at(0, 0)
+        self.coefficients.self_influence()
     }
 
     /// E* of half-spaces with the coefficients of the kernel, as far as that is an elastic body's.
     pub fn modulus(&self) -> f64 {
-        self.grid.modulus(self.coefficients.kernel().at(0, 0))
+        let kernel = self.coefficients.kernel();
+        self.grid.modulus(kernel.at(0, 0) - kernel.constant())
     }
 
     /// The compliance c of the layer on element `i`.

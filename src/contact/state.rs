@@ -177,7 +177,8 @@ impl State {
         let Load::Force(force) = self.load else { return Some(1.0) };
         let carried = self.force_by(threads);
         let factor = force / carried;
-        if carried > 0.0 && factor.is_finite() && factor > 0.0 {
+        // Both push or both pull.
+        if carried != 0.0 && factor.is_finite() && factor > 0.0 {
             if factor != 1.0 {
                 threads.for_a_pass(self.p.len()).for_each_plain_row(&mut self.p, self.grid.mx, |_, row| {
                     row.iter_mut().for_each(|p| *p *= factor);

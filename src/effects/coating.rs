@@ -59,6 +59,7 @@ impl Coating {
         let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
         let Some(layer) = self.in_effect(b, scene) else { return Ok(plain) };
         let CoatingLayer { thickness, shear_modulus, poisson_ratio } = layer;
+        self.check_below(scene)?;
         let mu = shear_modulus / modulus;
         if !(mu >= RATIOS.0 && mu <= RATIOS.1) {
             return invalid(format!(
@@ -78,9 +79,23 @@ impl Coating {
 }
 
 impl Coating {
+    /// Refuses a rigid body below a coating.
+    pub fn check_below(&self, scene: &Plain<'_>) -> Result<()> {
+        let is_coated = |b: usize| self.in_effect(b, scene).is_some();
+        match (0..2).find(|&b| is_coated(b) && scene.bodies.shear_modulus[b] == f64::INFINITY) {
+            Some(b) => invalid(format!(
+                "shear_modulus[{b}] is {}, that of a rigid body, below coating[{b}]; the body below a coating must be elastic, at most {:e} times \
+                 as stiff as the coating",
+                f64::INFINITY, 1.0 / RATIOS.0
+            )),
+            None => Ok(()),
+        }
+    }
+
     /// What both bodies give way to a pressure wave of wave number k > 0, after a check.
     pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
         self.check(&scene.grid)?;
+        self.check_below(scene)?;
         scene.bodies.check()?;
         Ok((self.body(0, scene)?.of_wave(k)) + self.body(1, scene)?.of_wave(k))
     }
@@ -105,6 +120,17 @@ impl Effect for Coating {
 
     fn excludes(&self) -> &'static [&'static str] {
         &["influence", "row_tables"]
+    }
+
+    fn mean_response(&self, scene: &Plain<'_>) -> f64 {
+        // 1/M of a modulus and a ratio.
+        let of = |g: f64, nu: f64| (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu));
+        let of_body = |b: usize| {
+            let below = of(scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
+            let layer = self.in_effect(b, scene);
+            layer.map_or(0.0, |layer| layer.thickness * (of(layer.shear_modulus, layer.poisson_ratio) - below))
+        };
+        of_body(0) + of_body(1)
     }
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {

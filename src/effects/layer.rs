@@ -4,6 +4,7 @@ use super::effect::{check_values, Effect, Value};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
+use crate::scene::Plain;
 
 /// The compliance c of the layer, a length per pressure: of the same kind as influence coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +42,11 @@ impl Effect for Layer<'_> {
         }
     }
 
-    fn gives_way(&self) -> bool {
-        !self.is_rigid()
+    fn mean_response(&self, _scene: &Plain<'_>) -> f64 {
+        match self {
+            Layer::Uniform(c) => *c,
+            Layer::PerElement(c) => c.iter().sum::<f64>() / c.len() as f64,
+        }
     }
 
     fn without_multigrid(&self) -> Option<&'static str> {
@@ -53,7 +57,7 @@ impl Effect for Layer<'_> {
         let layer = match self {
             layer if layer.is_rigid() => return Ok(coefficients),
             Layer::Uniform(c) => influence::Layer::uniform(*c),
-            Layer::PerElement(c) => influence::Layer::per_element(c, coefficients.at(0, 0))?,
+            Layer::PerElement(c) => influence::Layer::per_element(c, coefficients.self_influence())?,
         };
         Ok(coefficients.with_layer(layer))
     }

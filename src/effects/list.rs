@@ -52,6 +52,14 @@ pub fn replace_bodies(scene: &Scene<'_>) -> bool {
     effects(scene).any(Effect::replaces_bodies)
 }
 
+/// Checks the bodies, which a coating needs to be elastic.
+pub fn check_bodies(scene: &Scene<'_>) -> Result<()> {
+    if let Some(coating) = &scene.coating {
+        coating.check_below(&scene.plain())?;
+    }
+    scene.bodies.check()
+}
+
 /// What of a scene MULTIGRID and FULL_MULTIGRID do not solve.
 pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
     effects(scene).find_map(Effect::without_multigrid)
@@ -60,6 +68,7 @@ pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
 impl Scene<'_> {
     /// The coefficients that this scene asks for.
     pub fn coefficients(&self) -> Result<Coefficients> {
+        self.grid.check()?;
         let (plain, mut kernel) = (self.plain(), None);
         for effect in effects(self) {
             if kernel.is_none() {
@@ -76,7 +85,7 @@ impl Scene<'_> {
         let lowest = self.check_distance_and_load(threads)?;
         check_effects(self)?;
         if !replace_bodies(self) {
-            self.bodies.check()?;
+            check_bodies(self)?;
         }
         Ok(lowest)
     }

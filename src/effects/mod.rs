@@ -29,7 +29,7 @@ pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use layer::Layer;
-pub use list::{check_effects, excluded_method, replace_bodies};
+pub use list::{check_bodies, check_effects, excluded_method, replace_bodies};
 pub use named::Named;
 pub use patches::Patches;
 pub use period::Period;

@@ -19,6 +19,13 @@ pub struct Patches<'a> {
     pub factors: &'a [f64],
 }
 
+impl Patches<'_> {
+    /// The factor between a patch and that of element i.
+    pub fn factor(&self, patch: usize, i: usize) -> f64 {
+        self.factors[patch * self.count + self.patch[i] as usize]
+    }
+}
+
 impl Effect for Patches<'_> {
     fn name(&self) -> &'static str {
         "patches"

@@ -35,7 +35,9 @@ impl Effect for Period {
     // is full there, and any force fits.
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
-        if others.iter().flatten().any(|other| other.gives_way()) {
+        // What is no number is refused by name.
+        let response: f64 = others.iter().flatten().map(|other| other.mean_response(scene)).sum();
+        if !(response <= 0.0) {
             return Ok(());
         }
         let h = scene.undeformed_distance;

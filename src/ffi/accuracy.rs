@@ -29,7 +29,7 @@ pub type contact_normal_surface_callback = Option<
 pub struct contact_normal_accuracy {
     /// Set by `contact_normal_accuracy_init`.
     pub struct_size: i64,
-    /// Estimated relative error of the force (of the approach, when the force is prescribed) at most; default 1e-3.
+    /// Estimated relative error of the force (of the approach, when the force is prescribed) at most, between 0 and 1; default 1e-3.
     pub target: f64,
     /// Seconds for all grids together; 0 (default): no limit.
     pub max_seconds: f64,
@@ -54,9 +54,9 @@ pub struct contact_normal_accuracy {
     pub reached: f64,
     /// Out: seconds for all grids together.
     pub seconds: f64,
-    /// Estimated relative error of the largest pressure at most; 0 (default): not asked for.
+    /// Estimated relative error of the largest pressure at most, below 1; 0 (default): not asked for.
     pub max_pressure_target: f64,
-    /// Estimated relative error of the corrected contact area at most; 0 (default): not asked for.
+    /// Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
     pub contact_area_target: f64,
 }
 

@@ -85,7 +85,7 @@ pub struct contact_normal_options {
     pub initial_guess: i32,
     /// CONTACT_NORMAL_CRITERION_...; default RESIDUAL.
     pub criterion: i32,
-    /// Of the criterion; default 1e-6.
+    /// Of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
     pub tolerance: f64,
     /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
     /// that `report->tolerance` says. Default 0: the tolerance above.

@@ -34,7 +34,7 @@ pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_price {
-    /// The relative error that is wanted.
+    /// The relative error that is wanted, between 0 and 1.
     pub target: f64,
     /// Relative error that the grid and the tolerance leave; < 0: not known.
     pub error: f64,

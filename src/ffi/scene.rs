@@ -45,7 +45,7 @@ pub struct contact_normal_scene {
     pub reserved: i32,
     /// Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
+    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
     pub force: f64,
     /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,

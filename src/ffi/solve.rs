@@ -163,26 +163,63 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         message += &format!("; the tangential force is off by {missing:e} of mu N");
     }
     if stop == Outcome::Stagnated {
-        let (largest, round_off) = state.map_or((0.0, 0.0), round_off);
-        // What the products and the distances lose together is some multiples of it.
-        if residual > report.tolerance && residual <= 100.0 * round_off {
-            message += &format!(
-                ", about the round-off of distances of order {largest:.0e}: a larger tolerance, or distances measured from nearer"
-            );
-        } else if method != Method::Auto {
-            message += ": another method may go on; AUTO tries them all";
-        }
+        message += &state.map_or_else(String::new, |state| stagnation(report, method, state));
     }
     message
 }
 
-/// The largest undeformed distance in contact, or of h - approach = -u there, and its round-off relative to the rms of u.
-fn round_off(state: &State) -> (f64, f64) {
-    let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
-    for i in (0..state.h.len()).filter(|&i| state.contact[i]) {
-        largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
-        squares += state.u[i] * state.u[i];
-        count += 1;
+/// What a solve without further progress has come to, as far as its result proves it.
+fn stagnation(report: &Report, method: Method, state: &State) -> String {
+    let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
+    // Where the normal problem is solved it is that of friction which is not.
+    let is_normal = report.friction.is_none() || residual > report.tolerance;
+    // What products and distances lose together is some multiples of it.
+    if residual > report.tolerance && residual <= 100.0 * distances.round_off {
+        return match distances.largest > FAR * distances.rms {
+            true => format!(
+                ", about the round-off of distances of order {:.0e}: a larger tolerance, or distances measured from nearer",
+                distances.largest
+            ),
+            false => ", about the round-off of double precision: a larger tolerance".into(),
+        };
     }
-    (largest, f64::EPSILON * largest / (squares / count.max(1) as f64).sqrt())
+    let advice = match method {
+        Method::Auto => "",
+        Method::Multigrid | Method::FullMultigrid => ": another method or smoother may go on; AUTO tries them all",
+        _ => ": another method may go on; AUTO tries them all",
+    };
+    match is_normal {
+        true if state.p.iter().all(|p| *p == 0.0) => {
+            format!(", that of p = 0: nothing that was tried is nearer to a solution{advice}")
+        }
+        true => advice.into(),
+        false => String::new(),
+    }
+}
+
+/// Distances that are so much larger than what the surfaces give way are far from where they are measured.
+const FAR: f64 = 100.0;
+
+/// Distances of the contact area.
+struct Distances {
+    /// The largest of h, or of u.
+    largest: f64,
+    /// rms of h - approach.
+    rms: f64,
+    /// Round-off of the largest, relative to the rms; 0 where there is none.
+    round_off: f64,
+}
+
+impl Distances {
+    fn of(state: &State) -> Distances {
+        let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
+        for i in (0..state.h.len()).filter(|&i| state.contact[i]) {
+            largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
+            squares += (state.h[i] - state.approach).powi(2);
+            count += 1;
+        }
+        let rms = (squares / count.max(1) as f64).sqrt();
+        let round_off = Some(f64::EPSILON * largest / rms).filter(|of| of.is_finite());
+        Distances { largest, rms, round_off: round_off.unwrap_or(0.0) }
+    }
 }

@@ -125,7 +125,7 @@ impl Coefficients {
 
     /// The largest coefficient within `grid`, whatever its sign.
     pub fn largest(&self, grid: &Grid) -> f64 {
-        self.kernel.largest(grid) + self.diagonal.as_ref().map_or(0.0, Layer::most)
+        self.kernel.largest(grid) - self.kernel.constant().min(0.0) + self.diagonal.as_ref().map_or(0.0, Layer::most)
     }
 
     /// Whether the coefficients of offsets are even in both directions.
@@ -165,20 +165,35 @@ impl Coefficients {
 
     /// Whether a uniform pressure on the whole grid displaces nothing, so that A has no inverse.
     pub fn is_mean_free(&self) -> bool {
-        self.diagonal.is_none() && self.kernel.constant_for_inverse() != 0.0
+        self.diagonal.is_none() && self.kernel.is_mean_free()
+    }
+
+    /// An element's influence on itself, of the kernel: without a constant that is negative, which is no part of what the element does.
+    fn kernel_on_itself(&self) -> f64 {
+        self.kernel.at(0, 0) - self.kernel.constant().min(0.0)
+    }
+
+    /// The same with the least layer.
+    pub fn self_influence(&self) -> f64 {
+        self.kernel_on_itself() + self.least()
+    }
+
+    /// The coefficients by which a prescribed force is solved: without the [constant](Kernel::constant) of the kernel. None where that is 0.
+    pub fn without_constant(&self) -> Option<Coefficients> {
+        self.kernel.without_constant().map(|kernel| self.clone().with_kernel(kernel))
     }
 
     /// For preconditioners, which know one compliance: coefficients of several, and the weights of the elements with each. No weights:
     /// the layer is the same everywhere.
     pub fn levels(&self) -> Result<Vec<(Coefficients, Vec<f64>)>> {
         let Some(layer) = &self.diagonal else { return Ok(vec![(self.clone(), Vec::new())]) };
-        let levels = layer.levels(self.kernel.at(0, 0))?.into_iter();
+        let levels = layer.levels(self.kernel_on_itself())?.into_iter();
         Ok(levels.map(|(layer, weights)| (self.clone().with_layer(layer), weights)).collect())
     }
 
     /// An element's influence on itself with the typical layer, relative to that without a layer.
     pub fn typical_compliance(&self) -> f64 {
-        1.0 + self.diagonal.as_ref().map_or(0.0, |layer| layer.typical / self.kernel.at(0, 0))
+        1.0 + self.diagonal.as_ref().map_or(0.0, |layer| layer.typical / self.kernel_on_itself())
     }
 
     /// The coefficients on a grid coarsened from `fine` to `coarse`.

@@ -88,6 +88,22 @@ pub trait Kernel: Debug + Send + Sync {
         (false, false)
     }
 
+    /// What all coefficients have in common beyond those of bodies whose mean displacement is zero. It displaces by the mean pressure, so it
+    /// changes the approach of a prescribed force, and not its pressures.
+    fn constant(&self) -> f64 {
+        0.0
+    }
+
+    /// The same kernel without it; none where it is 0.
+    fn without_constant(&self) -> Option<Arc<dyn Kernel>> {
+        None
+    }
+
+    /// Whether a uniform pressure on the whole grid displaces nothing.
+    fn is_mean_free(&self) -> bool {
+        false
+    }
+
     /// Added to all coefficients, this gives a uniform pressure the response asked for where it has none; 0 where it has.
     fn constant_for(&self, _response: f64) -> f64 {
         0.0

@@ -71,7 +71,7 @@ impl Periodic {
         periodic.add_images(grid, &near, &mut table)?;
         periodic.add_lines(grid, &near, &mut table)?;
         if x && y {
-            periodic.remove_mean(&mut table);
+            Periodic::remove_mean(&mut table, grid);
         }
         Ok(Periodic { table: Arc::new(table), ..periodic })
     }
@@ -123,13 +123,23 @@ impl Periodic {
         Ok(())
     }
 
-    fn remove_mean(&self, table: &mut [f64]) {
+    /// Two periods: subtracts the mean of coefficients at offsets up to half of them.
+    pub fn remove_mean(table: &mut [f64], grid: &Grid) {
+        let row = grid.mx / 2 + 1;
         // Offsets k and m - k are one entry, but for 0 and m/2.
         let weight = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
-        let weights = |i: usize| weight(i % self.row, self.mx) * weight(i / self.row, self.my);
+        let weights = |i: usize| weight(i % row, grid.mx) * weight(i / row, grid.my);
         let sum: f64 = table.iter().enumerate().map(|(i, value)| weights(i) * value).sum();
-        let mean = sum / (self.mx * self.my) as f64;
+        let mean = sum / (grid.mx * grid.my) as f64;
         table.iter_mut().for_each(|value| *value -= mean);
+    }
+
+    /// The coefficients of a coarser grid. An odd count makes it longer by an element: good enough to start from.
+    pub fn coarsened(&self, coarse: &Grid) -> Result<Periodic> {
+        let directions = (self.x, self.y);
+        let far = if self.far.serves(coarse) { self.far.clone() } else { Arc::new(Far::new(directions, coarse)) };
+        let half_space = self.half_space.for_element(coarse.dx, coarse.dy);
+        Periodic::with_far(half_space, directions, coarse, far)
     }
 }
 
@@ -157,6 +167,10 @@ impl Kernel for Periodic {
         }
     }
 
+    fn is_mean_free(&self) -> bool {
+        self.x && self.y
+    }
+
     // The mode of zero gets about the response `2 pi c/|q|` of the longest wave.
     fn constant_for_inverse(&self) -> f64 {
         let HalfSpace { dx, dy, .. } = self.half_space;
@@ -164,12 +178,8 @@ impl Kernel for Periodic {
         self.constant_for(self.half_space.compliance * longest)
     }
 
-    // An odd count makes it longer by an element: good enough to start from.
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
-        let directions = (self.x, self.y);
-        let far = if self.far.serves(coarse) { self.far.clone() } else { Arc::new(Far::new(directions, coarse)) };
-        let half_space = self.half_space.for_element(coarse.dx, coarse.dy);
-        Ok(Arc::new(Periodic::with_far(half_space, directions, coarse, far)?))
+        Ok(Arc::new(self.coarsened(coarse)?))
     }
 
     fn bytes(&self) -> usize {

@@ -106,7 +106,7 @@ impl<S: AdmissibleSet> Step<S> for Descent {
         monitor.count.active_set_steps += 1;
         let distance = crate::contact::norm_of_distance(state);
         let update = length * (dot(&self.t, &self.t) / state.contact_count().max(1) as f64).sqrt();
-        monitor.cycle_done(&state.grid, changes, update, rr.sqrt() / distance);
+        monitor.cycle_done(&state.grid, changes, update, crate::contact::relative(rr.sqrt(), distance));
         Ok(Change { update, changes: 0, gives_up: rr == 0.0 })
     }
 }

@@ -7,7 +7,7 @@ use crate::error::{invalid, Error, Result};
 pub enum Load {
     /// Prescribed approach (penetration): `e = h - approach + A p`.
     Approach(f64),
-    /// Prescribed normal force, `sum of p dx dy`; the approach is found.
+    /// Prescribed normal force, `sum of p dx dy`; the approach is found. Negative: only on a given contact area.
     Force(f64),
 }
 
@@ -21,9 +21,16 @@ impl Load {
         if !value.is_finite() {
             return Err(Error::NotFinite(format!("{name} is {value}; it must be finite")));
         }
-        if name == "force" && value < 0.0 {
-            return invalid(format!("force is {value}; it must not be negative: an elastic contact does not pull"));
-        }
         Ok(())
+    }
+
+    /// Refuses a force that pulls, unless the contact area is given: pressures may pull there.
+    pub fn check_sign(&self, is_fixed: bool) -> Result<()> {
+        match *self {
+            Load::Force(force) if force < 0.0 && !is_fixed => invalid(format!(
+                "force is {force}; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) does"
+            )),
+            _ => Ok(()),
+        }
     }
 }

@@ -21,8 +21,9 @@ pub struct Plain<'a> {
 }
 
 impl Plain<'_> {
-    /// Refuses distances that are none. Returns the least, infinite where there is no surface at all.
+    /// Refuses a grid and distances that are none. Returns the least, infinite where there is no surface at all.
     pub fn check_distance(&self, threads: &Threads) -> Result<f64> {
+        self.grid.check()?;
         let (h, n) = (self.undeformed_distance, self.grid.len());
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));

@@ -10,13 +10,14 @@ impl SetUp {
     /// Refuses a scene, whose distance and load are checked, and options that are not those of the set-up, or not solved together.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
+        scene.load.check_sign(options.is_fixed())?;
         if let Some(difference) = scene.grid.differs(&problem.grid) {
             return invalid(difference);
         }
         effects::check_effects(scene)?;
         // Own coefficients know no bodies.
         if !problem.given {
-            scene.bodies.check()?;
+            effects::check_bodies(scene)?;
         }
         if self.lacks_table {
             return invalid("influence could not be set the last time: set it again".into());
@@ -127,7 +128,7 @@ pub fn range(
             (pressure, depth, 0.0)
         }
         Load::Force(force) => {
-            let pressure = force / scene.grid.element_area();
+            let pressure = force.abs() / scene.grid.element_area();
             let farthest = fixed.map_or(lowest.abs(), |fixed| largest_on(fixed, &|h| h));
             (pressure, pressure * influence, farthest)
         }

@@ -92,13 +92,19 @@ impl Parts {
     }
 }
 
-/// dF/d(approach): that of a circle of the same area, or where contact is in many places or endless that of a parabola, 3/2 F/depth.
+/// dF/d(approach): that of a circle of the same area, or where contact is in many places or endless that of a parabola, 3/2 F/depth. What the
+/// mean pressure compresses lies in series with it.
 fn stiffness(problem: &Problem, force: f64, depth: f64, area: f64) -> f64 {
-    let of_parabola = 1.5 * force / depth;
-    if problem.coefficients.has_layer() {
-        return of_parabola;
+    let compressed = problem.coefficients.kernel().constant() / problem.grid.element_area();
+    let of_parabola = 1.5 * force / (depth - compressed * force);
+    let of_contact = match problem.coefficients.has_layer() {
+        true => of_parabola,
+        false => of_parabola.max(2.0 * problem.modulus() * (area / std::f64::consts::PI).sqrt()),
+    };
+    if compressed == 0.0 {
+        return of_contact;
     }
-    of_parabola.max(2.0 * problem.modulus() * (area / std::f64::consts::PI).sqrt())
+    1.0 / (1.0 / of_contact + compressed).max(0.0)
 }
 
 /// Relative discretisation error of the force (or the approach), from a state that is near the solution; 0 where it is not known.

@@ -54,7 +54,7 @@ pub fn iterate<S: AdmissibleSet>(
         let changes = change.changes + (left + entered) as u64;
         if habits.step_is_cycle {
             task.monitor.count.active_set_steps += 1;
-            task.monitor.cycle_done(&task.state.grid, changes, change.update, survey.residual / survey.distance);
+            task.monitor.cycle_done(&task.state.grid, changes, change.update, survey.relative_residual());
         }
 
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.

@@ -7,6 +7,7 @@ mod batch;
 mod best;
 mod by_approach;
 mod check;
+mod compression;
 mod estimates;
 mod friction_batch;
 mod iterate;
@@ -47,6 +48,7 @@ use crate::influence::{Coefficients, Table};
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
+use compression::Compressible;
 use methods::Methods;
 use tangential::Tangent;
 
@@ -101,6 +103,8 @@ struct SetUp {
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
     largest_influence: f64,
+    /// Where the coefficients have a constant.
+    compressible: Option<Compressible>,
     /// Smoother, sweeps, precision, and the threads asked for.
     options: Options,
 }
@@ -124,8 +128,9 @@ impl Solver {
         // The scene is refused first; threads that cannot be had, and options that are none, after it.
         let threads = options.check().and_then(|()| Threads::new(options.threads));
         let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
+        scene.load.check_sign(options.is_fixed())?;
         let threads = threads?;
-        let influence = scene.coefficients()?;
+        let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
             named: Named::new(scene),
             has_own_influence: scene.influence.is_some(),
@@ -133,6 +138,7 @@ impl Solver {
             given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
+            compressible,
             options: *options,
         };
         let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
@@ -179,14 +185,19 @@ impl Solver {
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, guess)?;
+        self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
+            let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
             let (stop, found) = self.solve_friction(scene, options, stop, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);
+            }
+            if let Some(measures) = self.compress(scene.load, &mut monitor) {
+                report.measures = measures;
             }
             report.solve_seconds = monitor.seconds();
             Ok((stop, report))

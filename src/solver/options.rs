@@ -54,7 +54,7 @@ pub struct Options {
     pub active_set: ActiveSet,
     /// Where to start.
     pub initial_guess: InitialGuess,
-    /// See [`Criterion`].
+    /// See [`Criterion`]; between 0 and 1.
     pub tolerance: f64,
     /// What has to become small.
     pub criterion: Criterion,
@@ -100,14 +100,19 @@ impl Options {
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
         let tolerance = self.tolerance;
-        require(tolerance > 0.0 && tolerance.is_finite(), "tolerance", tolerance, "it must be positive and finite")?;
+        require(
+            tolerance > 0.0 && tolerance < 1.0,
+            "tolerance",
+            tolerance,
+            "it must lie between 0 and 1: p = 0 has a residual of 1",
+        )?;
         if self.max_cycles == 0 {
             return invalid("max_cycles is 0; at least one cycle must be allowed".into());
         }
         let CycleShape { relaxation, pre_sweeps, post_sweeps, coarsest, .. } = self.cycle;
         let allowed = "it must lie in (0, 2), or be 0 for the default";
         require((0.0..2.0).contains(&relaxation), "relaxation", relaxation, allowed)?;
-        if pre_sweeps + post_sweeps == 0 {
+        if (pre_sweeps, post_sweeps) == (0, 0) {
             return invalid("pre_sweeps and post_sweeps are both 0; a cycle needs at least one sweep".into());
         }
         for (name, sweeps) in [("pre_sweeps", pre_sweeps), ("post_sweeps", post_sweeps)] {

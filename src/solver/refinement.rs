@@ -134,6 +134,7 @@ impl Refinement {
 
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
     options.check()?;
+    scene.grid.check()?;
     if scene.friction.is_some() {
         effects::check_effects(scene)?;
         let message =
@@ -153,8 +154,9 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     if options.initial_guess != InitialGuess::None {
         return invalid("initial_guess must be NONE: each grid is solved from nothing".into());
     }
+    scene.load.check_sign(false)?;
     if has_surface {
-        scene.bodies.check()?;
+        effects::check_bodies(scene)?;
         return scene.load.check();
     }
     scene.check(&Threads::One).map(drop)

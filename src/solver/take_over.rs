@@ -57,10 +57,16 @@ pub fn take_over<S: AdmissibleSet>(
         state.forget();
         return Ok(nothing);
     }
-    balance(problem, state, set)?;
+    let is_scaled = balance(problem, state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
     // A guess that is far worse than none costs time, or cannot be computed with.
-    let survey = Survey::by(state, &problem.threads);
+    let mut survey = Survey::by(state, &problem.threads);
+    if is_scaled && options.goal().holds(&survey, 0.0, set) {
+        // Perhaps this is the answer: only a product of its own says so, not one that was scaled with the load.
+        problem.refresh(state, set)?;
+        monitor.count_products(problem.take_products(), 1.0);
+        survey = Survey::by(state, &problem.threads);
+    }
     let Survey { residual, distance, .. } = survey;
     if residual.is_finite() && residual <= WORSE_THAN_NONE * distance || residual == 0.0 {
         return Ok((from, Some(survey)));
@@ -138,18 +144,23 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     state.project(set);
 }
 
-/// p carries the prescribed force, and u = A p; without a product where u is that of pressures that are only to be scaled.
-fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
+/// p carries the prescribed force, and u = A p; without a product where u is that of pressures that are only to be scaled. Returns whether it is.
+fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     if state.u_is != Freshness::Exact {
-        return problem.refresh(state, set);
+        problem.refresh(state, set)?;
+        return Ok(false);
     }
-    match state.carry_force(set, &problem.threads) {
+    let factor = state.carry_force(set, &problem.threads);
+    match factor {
         Some(1.0) => {}
         Some(factor) => state.u.iter_mut().for_each(|u| *u *= factor),
-        None => return problem.refresh(state, set),
+        None => {
+            problem.refresh(state, set)?;
+            return Ok(false);
+        }
     }
     state.fit_approach(&problem.threads);
-    Ok(())
+    Ok(factor != Some(1.0))
 }
 
 /// Whether a prescribed force is as much as all elements carry at their limit, but for round-off: then they are there, and no iteration finds it, for what

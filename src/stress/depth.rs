@@ -81,7 +81,7 @@ pub(super) struct DepthMemory {
 }
 
 impl DepthMemory {
-    pub fn new(product: &Product, wanted: &Wanted) -> Result<DepthMemory> {
+    pub fn new(product: &Product<'_>, wanted: &Wanted) -> Result<DepthMemory> {
         let n = product.body.grid.len();
         let field = |needed: bool| zeros(if needed { n } else { 0 }, "the stresses of a depth");
         let vectors = |needed: bool| zeros(if needed { n } else { 0 }, "the directions of a depth");
@@ -101,7 +101,7 @@ impl DepthMemory {
     }
 
     /// All that is wanted at depth z.
-    pub fn compute(&mut self, product: &Product, wanted: &Wanted, z: f64) {
+    pub fn compute(&mut self, product: &Product<'_>, wanted: &Wanted, z: f64) {
         product.enter(z, &mut self.workspace);
         for (c, out) in self.depth.stress.iter_mut().enumerate() {
             if !out.is_empty() {

@@ -1,8 +1,11 @@
 //! What acts on the surface of a body.
 
 use super::Loaded;
+use crate::effects::Effect;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
+use crate::memory::collected;
+use crate::scene::Patches;
 
 /// Pressures and tractions, `[my][mx]`; none: not there. Tractions act on the body considered, in the directions of x and y.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,6 +16,17 @@ pub struct Loads<'a> {
     pub traction_x: Option<&'a [f64]>,
     /// qy.
     pub traction_y: Option<&'a [f64]>,
+    /// Contact patches: below an element of one, the loads of another count times the factor between both.
+    pub patches: Option<Patches<'a>>,
+}
+
+/// Elements that are stressed by the same loads: those of a patch, or all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All elements, by the loads as they are.
+    All,
+    /// Those of a patch.
+    Patch(usize),
 }
 
 impl<'a> Loads<'a> {
@@ -30,6 +44,27 @@ impl<'a> Loads<'a> {
         self.list().map(|load| load.is_some())
     }
 
+    /// The parts of the grid that are stressed by loads of their own.
+    pub(super) fn parts(&self) -> Vec<Part> {
+        let Some(patches) = self.coupled() else { return vec![Part::All] };
+        let has = |patch: &usize| patches.patch.contains(&(*patch as i32));
+        (0..patches.count).filter(has).map(Part::Patch).collect()
+    }
+
+    /// Patches that do not all feel each other as if there were none.
+    pub(super) fn coupled(&self) -> Option<&Patches<'a>> {
+        self.patches.as_ref().filter(|patches| patches.factors.iter().any(|factor| *factor != 1.0))
+    }
+
+    /// The loads that stress a part: what each of these is times the factor of its patch.
+    pub(super) fn on(&self, part: Part, load: &[f64]) -> Result<Vec<f64>> {
+        let factor = |i: usize| match (self.coupled(), part) {
+            (Some(patches), Part::Patch(patch)) => patches.factor(patch, i),
+            _ => 1.0,
+        };
+        collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")
+    }
+
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         for (name, load) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.list()) {
             let Some(load) = load else { continue };
@@ -43,6 +78,9 @@ impl<'a> Loads<'a> {
                     load[i]
                 )));
             }
+        }
+        if let Some(patches) = &self.patches {
+            Effect::check(patches, grid)?;
         }
         match self.loaded().contains(&true) {
             true => Ok(()),

@@ -13,6 +13,8 @@
 //! products by FFT (`product`); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
 //! tabulated. At places off the centres the sum is direct (`points`).
 //!
+//! Contact patches that feel each other by factors have one product each (`loads`).
+//!
 //! Where the loads repeat themselves, kernels are sums over waves (`periodic`).
 //!
 //! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
@@ -30,13 +32,13 @@ mod transform;
 mod waves;
 
 pub use depth::{Depth, Maximum, Wanted};
-pub use loads::Loads;
+pub use loads::{Loads, Part};
 pub use points::stress_at_points;
 pub use tensor::{principal, von_mises, Principal, Tensor};
 
 use std::time::Instant;
 
-use crate::error::{require, Result};
+use crate::error::{require, Error, Result};
 use crate::grid::Grid;
 use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
@@ -63,6 +65,7 @@ pub struct Body {
 
 impl Body {
     fn check(&self) -> Result<()> {
+        self.grid.check()?;
         let nu = self.poisson_ratio;
         require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
     }
@@ -106,6 +109,11 @@ pub fn subsurface_stress(
     let began = Instant::now();
     body.check()?;
     loads.check(&body.grid)?;
+    if body.periodic && loads.patches.is_some() {
+        return Err(Error::Unsupported(
+            "patches and a period are both given; stresses are not computed for both".into(),
+        ));
+    }
     for (k, &z) in depths.iter().enumerate() {
         require(z >= 0.0 && z.is_finite(), &format!("depths[{k}]"), z, "a depth must be finite and not negative")?;
         if body.periodic {

@@ -4,14 +4,15 @@ use super::kernels;
 use super::tensor::Tensor;
 use super::{Body, Loads};
 use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
 use crate::threads::Threads;
 
 /// The stresses at points `(x, y, z)`: x and y are counted from the outer corner of element (0, 0), so that element `(ix, iy)` has its
 /// centre at `((ix + 1/2) dx, (iy + 1/2) dy)`; z is the depth. `out` has one tensor per point.
 ///
 /// # Errors
-/// `Unsupported`: a period; `InvalidArgument`: a negative depth, or a point on the edge of an element at the surface, where stresses jump
-/// or are infinite; otherwise as [`subsurface_stress`](super::subsurface_stress).
+/// `Unsupported`: a period; `InvalidArgument`: a negative depth, a point on the edge of an element at the surface, to within rounding of its
+/// coordinates, where stresses jump or are infinite, or with patches a point that no element is above; otherwise as [`subsurface_stress`](super::subsurface_stress).
 pub fn stress_at_points(
     body: &Body,
     loads: &Loads<'_>,
@@ -27,37 +28,69 @@ pub fn stress_at_points(
     }
     body.check()?;
     loads.check(&body.grid)?;
-    points.iter().enumerate().try_for_each(|(i, point)| check(body, i, *point))?;
+    points.iter().enumerate().try_for_each(|(i, point)| check(body, loads, i, *point))?;
     threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
     Ok(())
 }
 
-fn check(body: &Body, i: usize, [x, y, z]: [f64; 3]) -> Result<()> {
+fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Result<()> {
     for (axis, value) in ["x", "y", "z"].into_iter().zip([x, y, z]) {
         require(value.is_finite(), &format!("{axis} of point {i}"), value, "it must be finite")?;
     }
     require(z >= 0.0, &format!("z of point {i}"), z, "a depth must not be negative")?;
-    let grid = &body.grid;
-    let inside = |value: f64, d: f64, m: usize| value >= 0.0 && value <= m as f64 * d;
-    let on_line = |value: f64, d: f64| (value / d).fract() == 0.0;
-    let on_edge = on_line(x, grid.dx) || on_line(y, grid.dy);
-    if body.in_units(z) == 0.0 && inside(x, grid.dx, grid.mx) && inside(y, grid.dy, grid.my) && on_edge {
+    let Grid { mx, my, dx, dy } = body.grid;
+    let (in_x, in_y) = (Line::of(x, dx, mx), Line::of(y, dy, my));
+    let is_at_surface = body.in_units(z) == 0.0 || z <= in_x.rounding.min(in_y.rounding);
+    if is_at_surface && in_x.is_inside && in_y.is_inside && (in_x.is_on_edge || in_y.is_on_edge) {
         return invalid(format!(
-            "point {i} is ({x}, {y}, {z}), on the edge of an element at the surface; stresses jump there or are infinite: take a place \
-             within an element, or below"
+            "point {i} is ({x}, {y}, {z}), on the edge of an element at the surface, to within rounding; stresses jump there or are infinite: \
+             take a place within an element, or below"
+        ));
+    }
+    if loads.coupled().is_some() && !(in_x.is_inside && in_y.is_inside) {
+        return invalid(format!(
+            "point {i} is ({x}, {y}, {z}), and patches are given; a point takes the factors of the patch above it, so it must lie below the grid"
         ));
     }
     Ok(())
 }
 
+/// The rounding of coordinates, relative to the grid and to themselves: that of some thousand additions, or of an origin as far away.
+const ROUNDING: f64 = 4096.0 * f64::EPSILON;
+
+/// A coordinate among the edges of m elements of size d.
+struct Line {
+    rounding: f64,
+    is_inside: bool,
+    is_on_edge: bool,
+}
+
+impl Line {
+    fn of(x: f64, d: f64, m: usize) -> Line {
+        let length = m as f64 * d;
+        // Less than an element, of which edges are the two ends at most.
+        let rounding = (ROUNDING * length.max(x.abs())).min(1e-3 * d);
+        let nearest = (x / d).round().clamp(0.0, m as f64) * d;
+        let is_inside = x >= -rounding && x <= length + rounding;
+        Line { rounding, is_inside, is_on_edge: (x - nearest).abs() <= rounding }
+    }
+}
+
 fn at_point(body: &Body, loads: &Loads<'_>, [x, y, z]: [f64; 3]) -> Tensor {
     let (grid, (dx, dy)) = (&body.grid, body.element());
     let (loaded, list) = (loads.loaded(), loads.list());
-    let [x, y, z] = [x, y, z].map(|length| body.in_units(length));
     let scale = loads.scale();
+    // Of patches on a common edge that of the element beyond.
+    let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
+    let patches = loads.coupled().map(|patches| {
+        let i = grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my));
+        (patches, patches.patch[i] as usize)
+    });
+    let [x, y, z] = [x, y, z].map(|length| body.in_units(length));
     let mut sum = [0.0; 6];
     for j in 0..grid.len() {
-        let values = list.map(|load| load.map_or(0.0, |load| load[j] / scale));
+        let factor = patches.map_or(1.0, |(patches, patch)| patches.factor(patch, j));
+        let values = list.map(|load| load.map_or(0.0, |load| factor * (load[j] / scale)));
         if values == [0.0; 3] {
             continue;
         }

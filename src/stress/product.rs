@@ -7,25 +7,32 @@
 //! stress = F^-1 sum over loads of i^(number of odd directions) S . F load
 //! ```
 //!
-//! With a period nothing is padded, and the waves that have faded at a depth are left out.
+//! With a period nothing is padded, and the waves that have faded at a depth are left out. Where patches scale what elements feel, each has
+//! loads and products of its own; kernels are those of all.
 
 use super::kernels::{is_odd, Asked, Kernels};
+use super::loads::Part;
 use super::periodic::Waves;
 use super::transform::{gap, Memory, Transforms, BLOCK};
 use super::{Body, Loads};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::operator::fft::{good_length, Complex};
+use crate::scene::Patches;
 
 /// What memory is for.
 const STRESS: &str = "the stresses of a depth";
 
+/// The transform of each load, `[bin in x][bin in y]`, over its number of values; none: no such load.
+type Spectra = [Option<Vec<Complex<f64>>>; 3];
+
 /// Products with the loads of one body, of all depths.
-pub struct Product {
+pub struct Product<'a> {
     pub body: Body,
     transforms: Transforms,
-    /// The transform of each load, `[bin in x][bin in y]`, over its number of values; none: no such load.
-    loads: [Option<Vec<Complex<f64>>>; 3],
+    /// What stresses each part.
+    parts: Vec<(Part, Spectra)>,
+    patches: Option<Patches<'a>>,
     /// What the loads were divided by.
     scale: f64,
     /// With a period: whether some depth is near the surface.
@@ -50,20 +57,34 @@ pub struct Workspace {
     spectrum: Vec<f64>,
     /// Of the stresses: `[iy][bin in x]`.
     stress: Vec<Complex<f64>>,
+    /// Of patches: the stresses that one patch would have everywhere.
+    field: Vec<f64>,
 }
 
-impl Product {
+impl<'a> Product<'a> {
     /// Transforms the loads, which were checked.
-    pub fn new(body: &Body, loads: &Loads<'_>, near: bool) -> Result<Product> {
+    pub fn new(body: &Body, loads: &Loads<'a>, near: bool) -> Result<Product<'a>> {
         let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
         let (px, py) = (period(body.grid.mx), period(body.grid.my));
         let (transforms, scale) = (Transforms::new(px, py), loads.scale());
         let factor = 1.0 / (px as f64 * py as f64);
-        let mut spectra = [const { None }; 3];
-        for (spectrum, load) in spectra.iter_mut().zip(loads.list()) {
-            *spectrum = load.map(|load| transforms.of_load(load, body.grid.mx, scale, factor)).transpose()?;
+        let mut parts = Vec::new();
+        for part in loads.parts() {
+            let mut spectra = [const { None }; 3];
+            for (spectrum, load) in spectra.iter_mut().zip(loads.list()) {
+                let Some(load) = load else { continue };
+                let on_part = if part == Part::All { Vec::new() } else { loads.on(part, load)? };
+                let load = if part == Part::All { load } else { &on_part };
+                *spectrum = Some(transforms.of_load(load, body.grid.mx, scale, factor)?);
+            }
+            parts.push((part, spectra));
         }
-        Ok(Product { body: *body, transforms, loads: spectra, scale, near })
+        Ok(Product { body: *body, transforms, parts, patches: loads.patches, scale, near })
+    }
+
+    /// Which loads there are.
+    fn loaded(&self) -> [bool; 3] {
+        self.parts[0].1.each_ref().map(Option::is_some)
     }
 
     /// Offsets at which kernels are tabulated: those of the grid, or up to half a period.
@@ -75,7 +96,7 @@ impl Product {
     /// Memory for the products of one depth, with these components.
     pub fn workspace(&self, components: [bool; 6]) -> Result<Workspace> {
         let (nb, half) = self.transforms.bins();
-        let loaded = self.loads.each_ref().map(Option::is_some);
+        let loaded = self.loaded();
         let offsets = self.offsets();
         let asked = Asked { loaded, components, offsets };
         let tables = if self.body.periodic && !self.near { 0 } else { 3 };
@@ -89,6 +110,7 @@ impl Product {
             memory: self.transforms.memory(offsets.1)?,
             spectrum: zeros(tables * nb * half, STRESS)?,
             stress: zeros(self.body.grid.my * nb, STRESS)?,
+            field: zeros(if self.parts[0].0 == Part::All { 0 } else { self.body.grid.len() }, STRESS)?,
         })
     }
 
@@ -110,14 +132,20 @@ impl Product {
 
     /// Component c at the depth that was entered.
     pub fn component(&self, c: usize, workspace: &mut Workspace, out: &mut [f64]) {
-        for load in 0..3 {
-            if self.loads[load].is_some() {
-                self.transform_table(load, c, workspace);
+        for load in (0..3).filter(|&load| self.loaded()[load]) {
+            self.transform_table(load, c, workspace);
+        }
+        for (part, loads) in &self.parts {
+            self.multiply(loads, c, workspace);
+            let Workspace { stress, memory, left, field, .. } = workspace;
+            let to = if *part == Part::All { &mut *out } else { &mut field[..] };
+            self.transforms.rows_back(stress, left.0, self.scale, memory, to, self.body.grid.mx);
+            if let (Part::Patch(patch), Some(patches)) = (part, &self.patches) {
+                for ((out, value), of) in out.iter_mut().zip(&*field).zip(patches.patch) {
+                    *out = if *of as usize == *patch { *value } else { *out };
+                }
             }
         }
-        self.multiply(c, workspace);
-        let Workspace { stress, memory, left, .. } = workspace;
-        self.transforms.rows_back(stress, left.0, self.scale, memory, out, self.body.grid.mx);
     }
 
     /// S of one kernel, where it is tabulated.
@@ -138,9 +166,9 @@ impl Product {
     }
 
     /// Products with all loads, and back in y.
-    fn multiply(&self, c: usize, workspace: &mut Workspace) {
+    fn multiply(&self, loads: &Spectra, c: usize, workspace: &mut Workspace) {
         let ((_, py), (nb, half)) = (self.transforms.lengths(), self.transforms.bins());
-        let Workspace { source, spectrum, memory, stress, left, near } = workspace;
+        let Workspace { source, spectrum, memory, stress, left, near, .. } = workspace;
         let (source, tables, near) = (&*source, &*spectrum, *near);
         let spectrum = |load: usize| match source {
             Source::Periodic(waves) if !near => waves.spectrum(load, c),
@@ -151,7 +179,7 @@ impl Product {
             let columns = memory.columns.chunks_exact_mut(py).take(count);
             columns.for_each(|column| column[gap(left.1, py)].fill(Complex::default()));
             let mut first_load = true;
-            for (load, transform) in self.loads.iter().enumerate() {
+            for (load, transform) in loads.iter().enumerate() {
                 let (Some(transform), Some(spectrum)) = (transform, spectrum(load)) else { continue };
                 for (k, column) in memory.columns.chunks_exact_mut(py).take(count).enumerate() {
                     let bin = first + k;

@@ -34,6 +34,46 @@ fn a_stagnation_says_what_limits() {
     assert!(message.contains("round-off of distances of order 1e9"), "{message}");
 }
 
+/// Cycles that make everything worse end with p = 0. That is no matter of round-off.
+#[test]
+fn a_diverging_smoother_is_not_blamed_on_round_off() {
+    let mut call = Call::new();
+    (call.options.known.method, call.options.known.smoother) =
+        (CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_SMOOTHER_JACOBI);
+    (call.options.known.relaxation, call.options.known.coarsest) = (1.99, 1);
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_STAGNATED, "{message}");
+    assert!(message.contains("p = 0") && !message.contains("round-off"), "{message}");
+}
+
+/// The round-off of numbers near 1 has nothing to do with where distances are measured from.
+#[test]
+fn a_tolerance_below_round_off_is_named() {
+    let mut call = Call::new();
+    call.options.known.tolerance = 1e-30;
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_STAGNATED, "{message}");
+    assert!(message.contains("round-off of double precision") && !message.contains("nearer"), "{message}");
+}
+
+/// A given contact area may be pulled, by a call and by a handle that was set up for pressing.
+#[test]
+fn a_fixed_contact_area_may_be_pulled() {
+    let handle = Call::new().new_handle();
+    for through in [Through::Solve, Through::SolverNew, Through::SolverSolve, Through::SolverSolveBatch] {
+        let mut call = Call::new();
+        (call.scene.known.load, call.scene.known.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, -5.0);
+        call.fix_contact();
+        let (status, message) = call.run(through, handle);
+        assert_eq!(status, CONTACT_NORMAL_OK, "{through:?}: {message}");
+        if through != Through::SolverNew {
+            assert!((call.report.known.force + 5.0).abs() <= 1e-9, "{through:?}: {}", call.report.known.force);
+        }
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
 #[test]
 fn a_valid_call_writes_every_output() {
     let mut call = Call::new();
@@ -321,6 +361,11 @@ fn what_only_an_accuracy_refuses() {
         (&["accuracy"], NULL, |c| c.without = "accuracy"),
         (&["target", "0"], INVALID, |c| c.accuracy.known.target = 0.0),
         (&["target", "-0.001"], INVALID, |c| c.accuracy.known.target = -1e-3),
+        (&["target", "1", "between 0 and 1"], INVALID, |c| c.accuracy.known.target = 1.0),
+        (&["target", "3"], INVALID, |c| c.accuracy.known.target = 3.0),
+        (&["max_pressure_target", "1"], INVALID, |c| c.accuracy.known.max_pressure_target = 1.0),
+        (&["max_pressure_target", "NaN"], NOT_FINITE, |c| c.accuracy.known.max_pressure_target = NAN),
+        (&["contact_area_target", "20"], INVALID, |c| c.accuracy.known.contact_area_target = 20.0),
         (&["target", "NaN"], NOT_FINITE, |c| c.accuracy.known.target = NAN),
         (&["target", "inf"], NOT_FINITE, |c| c.accuracy.known.target = INF),
         (&["max_seconds", "-1"], INVALID, |c| c.accuracy.known.max_seconds = -1.0),

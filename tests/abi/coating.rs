@@ -80,3 +80,21 @@ fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
     let status = unsafe { contact_normal_coating_compliance(&coating(1.0, 1e3, 0.3), 500.0, 0.25, 1.0, null_mut()) };
     assert_eq!((status, last_error().contains("compliance")), (CONTACT_NORMAL_NULL_POINTER, true));
 }
+
+#[test]
+fn a_rigid_body_below_a_coating_is_named() {
+    let layer = coating(0.1, 1e3, 0.3);
+    for (moduli, coated, words) in [
+        ([f64::INFINITY; 2], 0, "shear_modulus[0] is inf"),
+        ([f64::INFINITY; 2], 1, "shear_modulus[1] is inf"),
+        ([1e3, f64::INFINITY], 1, "shear_modulus[1] is inf"),
+    ] {
+        let mut call = Call::new();
+        (call.scene.known.shear_modulus, call.scene.known.coating[coated]) = (moduli, &layer);
+        for through in [Through::Solve, Through::SolverNew] {
+            let (got, message) = call.run(through, null_mut());
+            assert_eq!(got, CONTACT_NORMAL_INVALID_ARGUMENT, "{message}");
+            assert!(message.contains(words) && message.contains(&format!("below coating[{coated}]")), "{message}");
+        }
+    }
+}

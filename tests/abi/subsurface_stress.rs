@@ -322,3 +322,45 @@ fn points_at_the_centres_have_the_stresses_of_the_grid() {
     assert_eq!(at(null(), stress.as_mut_ptr()).0, CONTACT_NORMAL_NULL_POINTER);
     assert_eq!(at(points.as_ptr(), null_mut()).0, CONTACT_NORMAL_NULL_POINTER);
 }
+
+/// What is below a patch knows nothing of an independent one, by planes and by points.
+#[test]
+fn patches_of_the_scene_scale_the_loads() {
+    let patch: Vec<i32> = (0..N).map(|i| i32::from(i % MX >= 2)).collect();
+    let mut patches = initialised(contact_normal_patches_init);
+    let factors = [1.0, 0.0, 0.0, 1.0];
+    (patches.count, patches.patch, patches.factors) = (2, patch.as_ptr(), factors.as_ptr());
+    let (mut with, mut alone) = (Call::new(), Call::new());
+    with.scene.patches = &patches;
+    for i in (0..N).filter(|&i| patch[i] == 1) {
+        (alone.pressure[i], alone.traction[i]) = (0.0, 0.0);
+    }
+    assert_eq!([with.run().0, alone.run().0], [CONTACT_NORMAL_OK; 2]);
+    for (k, i) in (0..DEPTHS.len()).flat_map(|k| (0..N).map(move |i| (k, i))).filter(|(_, i)| patch[*i] == 0) {
+        let (a, b) = (with.mises[k * N + i], alone.mises[k * N + i]);
+        assert!((a - b).abs() <= 1e-13, "{k} {i}: {a} {b}");
+    }
+    let mut stress = [[0.0; 6]; 2];
+    for (call, stress) in [&with, &alone].into_iter().zip(&mut stress) {
+        // SAFETY: arrays as long as the call says.
+        let status = unsafe {
+            contact_normal_stress_at_points(
+                &call.scene,
+                1,
+                call.pressure.as_ptr(),
+                call.traction.as_ptr(),
+                null(),
+                [1.3, 0.8, 0.6].as_ptr(),
+                1,
+                null(),
+                stress.as_mut_ptr(),
+            )
+        };
+        assert_eq!(status, CONTACT_NORMAL_OK);
+    }
+    assert!(stress[0].iter().zip(stress[1]).all(|(a, b)| (a - b).abs() <= 1e-13), "{stress:?}");
+    patches.count = 65;
+    with.scene.patches = &patches;
+    let (status, message) = with.run();
+    assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("patches->count is 65"), "{message}");
+}

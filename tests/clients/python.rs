@@ -318,7 +318,7 @@ True
 True (40, 48) True
 ZeroDivisionError
 TypeError
-target is -1; it must be positive and finite
+target is -1; it must lie between 0 and 1: a relative error of 1 is that of p = 0
 ";
     let (start, hertz) = printed.split_at(expected.len().min(printed.len()));
     assert_eq!(start, expected);

@@ -63,7 +63,7 @@ fn products_are_direct_sums() {
     {
         let body = body(mx, my, dx, dy, 0.3);
         let [p, qx, qy] = [1, 2, 3].map(|seed| noise(seed, mx * my));
-        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy), ..Loads::default() };
         for (depth, z) in all_depths(&body, &loads, &depths, &TENSOR, 1).iter().zip(depths) {
             let centre = |i: usize| [((i % mx) as f64 + 0.5) * dx, ((i / mx) as f64 + 0.5) * dy, z];
             let points: Vec<_> = (0..mx * my).map(centre).collect();
@@ -85,7 +85,7 @@ fn hard_cases_are_direct_sums() {
     for (mx, my, dx, dy, nu) in [(4099, 7, 1.0, 1.0, 0.5), (7, 4099, 0.3, 1.0, 0.0), (1, 1, 2.0, 0.5, 0.5)] {
         let (body, unit) = (body(mx, my, dx, dy, nu), f64::max(dx, dy));
         let [p, qx, qy] = [1, 2, 3].map(|seed| noise(seed, mx * my));
-        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy), ..Loads::default() };
         let depths = [0.0, 1e-12 * unit, 0.5 * unit, 30.0 * unit, 1e6 * unit];
         for (depth, z) in all_depths(&body, &loads, &depths, &TENSOR, 1).iter().zip(depths) {
             let chosen: Vec<usize> = (0..4).map(|k| k * (mx * my - 1) / 3).collect();
@@ -106,7 +106,7 @@ fn hard_cases_are_direct_sums() {
 fn at_the_surface_stresses_are_the_loads() {
     let body = body(33, 20, 0.2, 0.3, 0.28);
     let [p, qx, qy] = [4, 5, 6].map(|seed| noise(seed, 33 * 20));
-    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy), ..Loads::default() };
     let surface = &all_depths(&body, &loads, &[0.0], &TENSOR, 1)[0];
     for (c, load) in [(2, &p), (4, &qx), (5, &qy)] {
         for (stress, load) in surface.stress[c].iter().zip(load) {
@@ -143,7 +143,7 @@ fn a_rectangle_and_a_strip_have_their_closed_forms() {
 fn stresses_are_in_equilibrium() {
     let body = body(5, 4, 1.0, 0.8, 0.3);
     let [p, qx, qy] = [7, 8, 9].map(|seed| noise(seed, 20));
-    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy) };
+    let loads = Loads { pressure: Some(&p), traction_x: Some(&qx), traction_y: Some(&qy), ..Loads::default() };
     let step = 1e-3;
     for point in [[2.3, 1.1, 0.4], [0.2, 3.0, 1.5], [7.1, -2.0, 0.7], [30.0, 11.0, 4.0]] {
         let moved = |axis: usize, by: f64| {
@@ -170,7 +170,7 @@ fn forces_pass_through_each_depth() {
     let m = 121;
     let (body, half) = (body(m, m, 1.0, 1.0, 0.3), 0.5 * m as f64);
     let load: Vec<f64> = (0..m * m).map(|i| f64::from(i == m * m / 2)).collect();
-    let loads = Loads { pressure: Some(&load), traction_x: Some(&load), traction_y: Some(&load) };
+    let loads = Loads { pressure: Some(&load), traction_x: Some(&load), traction_y: Some(&load), ..Loads::default() };
     let depths = [0.0, 0.5, 2.0, 8.0, 32.0, 200.0];
     for (depth, z) in all_depths(&body, &loads, &depths, &TENSOR, 1).iter().zip(depths) {
         let (a2, r) = (half * half, (2.0 * half * half + z * z).sqrt());
@@ -248,7 +248,7 @@ fn a_sliding_ball_yields_first_where_it_should() {
     let traction: Vec<f64> = pressure.iter().map(|p| 0.25 * p).collect();
     let depths: Vec<f64> = (40..50).map(|k| 0.01 * k as f64).collect();
     let wanted = Wanted { von_mises: true, ..Wanted::default() };
-    let loads = Loads { pressure: Some(&pressure), traction_x: Some(&traction), traction_y: None };
+    let loads = Loads { pressure: Some(&pressure), traction_x: Some(&traction), traction_y: None, ..Loads::default() };
     let mut maximum = None;
     for (k, depth) in all_depths(&body, &loads, &depths, &wanted, 2).iter().enumerate() {
         Maximum::join(&mut maximum, &depth.von_mises, k, &body.grid);
@@ -305,13 +305,13 @@ fn what_is_not_wanted_is_not_computed_and_does_not_change_what_is() {
 #[test]
 fn threads_units_and_depths_in_any_order_change_no_bit() {
     let [p, q] = [1, 2].map(|seed| noise(seed, 35 * 21));
-    let loads = Loads { pressure: Some(&p), traction_x: None, traction_y: Some(&q) };
+    let loads = Loads { pressure: Some(&p), traction_x: None, traction_y: Some(&q), ..Loads::default() };
     let depths = [3.0, 0.0, 0.4, 40.0, 0.1];
     let one = all_depths(&body(35, 21, 1.0, 0.5, 0.3), &loads, &depths, &ALL, 1);
     let two = all_depths(&body(35, 21, 1.0, 0.5, 0.3), &loads, &depths, &ALL, 2);
     let (large_p, large_q) =
         (p.iter().map(|p| p * 1024.0).collect::<Vec<_>>(), q.iter().map(|q| q * 1024.0).collect::<Vec<_>>());
-    let larger = Loads { pressure: Some(&large_p), traction_x: None, traction_y: Some(&large_q) };
+    let larger = Loads { pressure: Some(&large_p), traction_x: None, traction_y: Some(&large_q), ..Loads::default() };
     let scaled = all_depths(&body(35, 21, 4.0, 2.0, 0.3), &larger, &depths.map(|z| 4.0 * z), &ALL, 1);
     for k in 0..depths.len() {
         assert_eq!(one[k].stress, two[k].stress);
@@ -329,7 +329,7 @@ fn hard_cases_are_numbers() {
     {
         let body = body(mx, my, dx, dy, nu);
         let p = vec![1e300; mx * my];
-        let loads = Loads { pressure: Some(&p), traction_x: Some(&p), traction_y: Some(&p) };
+        let loads = Loads { pressure: Some(&p), traction_x: Some(&p), traction_y: Some(&p), ..Loads::default() };
         let unit = dx.max(dy);
         for depth in
             all_depths(&body, &loads, &[0.0, 1e-12 * unit, f64::MIN_POSITIVE, unit, 1e6 * unit, 1e300], &ALL, 1)
@@ -459,7 +459,7 @@ fn periodic_stresses_are_those_of_finer_elements() {
         let depths = [0.0, 0.1, 0.5, 0.9, 1.0, 1.5, 9.0, 20.0, 1e3];
         let of = |body: &Body, loads: &[Vec<f64>; 3], threads: usize| {
             let [p, qx, qy] = loads.each_ref().map(|load| load.as_slice());
-            let loads = Loads { pressure: Some(p), traction_x: Some(qx), traction_y: Some(qy) };
+            let loads = Loads { pressure: Some(p), traction_x: Some(qx), traction_y: Some(qy), ..Loads::default() };
             all_depths(body, &loads, &depths, &TENSOR, threads)
         };
         let both = (of(&coarse, &loads, 2), of(&fine, &loads.each_ref().map(refined), 1));

@@ -15,6 +15,7 @@ mod polynomial;
 mod quadrature;
 mod radial;
 mod transfer;
+mod waves;
 
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -157,6 +158,11 @@ impl CoatedBody {
     /// The first offset in a row whose distance is not below the thickness, or the row's end.
     fn first_of_substrate(&self, grid: &Grid, ky: usize) -> usize {
         self.layer.as_ref().map_or(grid.mx, |(t, _)| first_beyond(*t, grid, ky))
+    }
+
+    /// `u/p` of a uniform pressure under which nothing stretches sideways: what the layer is compressed by more than as much of the substrate.
+    fn of_mean(&self) -> f64 {
+        self.layer.as_ref().map_or(0.0, |(t, radial)| 2.0 * PI * self.compliance * t * radial.transfer.of_mean)
     }
 
     /// `u/p` of a wave: `2 pi c/k B(k t)`.

@@ -1,134 +1,166 @@
 //! Coated bodies in a scene that repeats itself in both directions.
 //!
-//! The half-space of the layer's material has its coefficients of [`Periodic`]. To them comes, per wave k of the grid and its aliases,
-//! `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`, which fades as `exp(-2 k t)`. The mean displacement is zero, as without a coating.
+//! The half-space of the layer's material has its coefficients of [`Periodic`]. To them come the sums over [`waves`](super::waves) of what the
+//! coating changes.
+//!
+//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A coating adds what a uniform pressure p, under
+//! which nothing stretches sideways, compresses it by, less what as much of the substrate would have given way: with the oedometric moduli
+//! `M = 2 G (1 - nu)/(1 - 2 nu)` that is `p t (1/M1 - 1/M2)`. All coefficients have it in common ([`Kernel::constant`]).
+//!
+//! *Coarser grids.* Where elements become too long for sums over waves, coefficients are means of those of the finer grid: the displacement of
+//! four elements, in the mean, by a pressure on four.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{CoatedBody, HalfSpace, Kernel};
+use super::{waves, CoatedBody, HalfSpace, Kernel};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Periodic;
 use crate::memory::zeros;
 
-/// `exp(-2 k t) (k t)^2` is below 1e-15 there.
-const FADED: f64 = 20.0;
-/// Elements that are longer, in thicknesses, have too many aliases.
+/// Elements that are longer, in thicknesses, have too many aliases,
 const LONGEST: f64 = 16.0;
+/// and where those of a coarser grid are, joining elements costs less.
+const LONGEST_COARSE: f64 = 4.0;
+/// What memory is for.
+const COATED: &str = "the coefficients of a coating";
 
 /// Coefficients of a period.
 #[derive(Clone, Debug)]
 pub struct CoatedPeriodic {
-    bodies: [CoatedBody; 2],
-    half_space: Periodic,
-    /// The correction at offsets up to half the period, `[ky][kx]`.
+    /// The bodies and the half-space of the layers; none where finer elements were joined.
+    sums: Option<([CoatedBody; 2], Periodic)>,
+    /// Coefficients without their constant, at offsets up to half the period, `[ky][kx]`.
     table: Arc<Vec<f64>>,
     mx: usize,
     my: usize,
+    /// What a uniform pressure of 1 displaces.
+    mean: f64,
+    has_mean: bool,
+    /// About what the longest wave displaces.
+    longest: f64,
 }
 
 impl CoatedPeriodic {
     /// The coefficients of a grid, which is one period in both directions.
     pub fn new(bodies: [CoatedBody; 2], grid: &Grid) -> Result<CoatedPeriodic> {
+        bodies.iter().try_for_each(|body| check(body, grid))?;
         let compliance: f64 = bodies.iter().map(|body| PI * body.compliance).sum();
         let half_space = Periodic::new(HalfSpace::new(grid.dx, grid.dy, compliance), (true, true), grid)?;
         CoatedPeriodic::with_half_space(bodies, half_space, grid)
     }
 
     fn with_half_space(bodies: [CoatedBody; 2], half_space: Periodic, grid: &Grid) -> Result<CoatedPeriodic> {
-        let (row, rows) = (grid.mx / 2 + 1, grid.my / 2 + 1);
-        let what = "the coefficients of a coating";
-        let (mut waves, mut in_x): (Vec<f64>, Vec<f64>) = (zeros(row * rows, what)?, zeros(row * rows, what)?);
-        let mut table = zeros(row * rows, what)?;
-        for body in &bodies {
-            if let Some((t, _)) = &body.layer {
-                check(*t, grid)?;
-                add_waves(body, *t, grid, &mut waves);
+        let (row, rows) = waves::bins(grid);
+        let mut changes: Vec<f64> = zeros(row * rows, COATED)?;
+        bodies.iter().try_for_each(|body| waves::add(body, grid, &mut changes))?;
+        let mut table = waves::coefficients(&changes, grid)?;
+        for (ky, row) in table.chunks_exact_mut(row).enumerate() {
+            row.iter_mut().zip(0..).for_each(|(value, kx)| *value += half_space.at(kx, ky as i64));
+        }
+        let mean: f64 = bodies.iter().map(CoatedBody::of_mean).sum();
+        let (table, longest) = (Arc::new(table), half_space.constant_for_inverse() * grid.len() as f64);
+        let Grid { mx, my, .. } = *grid;
+        Ok(CoatedPeriodic { sums: Some((bodies, half_space)), table, mx, my, mean, has_mean: mean != 0.0, longest })
+    }
+
+    /// The coefficients of a grid of joined elements.
+    fn joined(&self, coarse: &Grid) -> Result<CoatedPeriodic> {
+        let (row, rows) = waves::bins(coarse);
+        let parts = |m: usize, fine: usize, k: i64| match m < fine {
+            true => [(2 * k, 1.0), (2 * k - 1, 0.5), (2 * k + 1, 0.5)],
+            false => [(k, 1.0), (k, 0.0), (k, 0.0)],
+        };
+        let mut table: Vec<f64> = zeros(row * rows, COATED)?;
+        for (ky, out) in (0..).zip(table.chunks_exact_mut(row)) {
+            for (kx, value) in (0..).zip(out) {
+                for (y, in_y) in parts(coarse.my, self.my, ky) {
+                    *value +=
+                        parts(coarse.mx, self.mx, kx).map(|(x, in_x)| in_x * in_y * self.own(x, y)).iter().sum::<f64>();
+                }
             }
         }
-        // Cosines in x, then in y; bins k and m - k are one.
-        for (waves, out) in waves.chunks_exact(row).zip(in_x.chunks_exact_mut(row)) {
-            let terms = |kx: usize| waves.iter().enumerate().map(move |(i, wave)| wave * cosine(i, kx, grid.mx));
-            out.iter_mut().enumerate().for_each(|(kx, value)| *value = terms(kx).sum());
-        }
-        for (ky, out) in table.chunks_exact_mut(row).enumerate() {
-            for (j, in_x) in in_x.chunks_exact(row).enumerate() {
-                let factor = cosine(j, ky, grid.my) / grid.len() as f64;
-                out.iter_mut().zip(in_x).for_each(|(value, wave)| *value += factor * wave);
-            }
-        }
-        Ok(CoatedPeriodic { bodies, half_space, table: Arc::new(table), mx: grid.mx, my: grid.my })
+        Periodic::remove_mean(&mut table, coarse);
+        Ok(CoatedPeriodic { sums: None, table: Arc::new(table), mx: coarse.mx, my: coarse.my, ..self.clone() })
+    }
+
+    /// Without the constant.
+    fn own(&self, kx: i64, ky: i64) -> f64 {
+        let folded = |k: i64, m: usize| {
+            let k = k.unsigned_abs() as usize % m;
+            k.min(m - k)
+        };
+        self.table[folded(ky, self.my) * (self.mx / 2 + 1) + folded(kx, self.mx)]
+    }
+
+    fn share(&self, response: f64) -> f64 {
+        response / (self.mx as f64 * self.my as f64)
     }
 }
 
 /// Refuses coatings with too many aliases.
-fn check(t: f64, grid: &Grid) -> Result<()> {
-    if t * LONGEST < grid.dx.max(grid.dy) {
-        return Err(Error::Unsupported(format!(
+fn check(body: &CoatedBody, grid: &Grid) -> Result<()> {
+    match &body.layer {
+        Some((t, _)) if t * LONGEST < grid.dx.max(grid.dy) => Err(Error::Unsupported(format!(
             "a coating has thickness {t} on elements {} x {}; with a period it must be at least 1/{LONGEST} of the longer side: name a \
              layer instead, which thin coatings are",
             grid.dx, grid.dy
-        )));
-    }
-    Ok(())
-}
-
-/// `cos(2 pi i k/m)` times the number of bins that i stands for.
-fn cosine(i: usize, k: usize, m: usize) -> f64 {
-    let count = if i == 0 || 2 * i == m { 1.0 } else { 2.0 };
-    count * (2.0 * PI * ((i * k) % m) as f64 / m as f64).cos()
-}
-
-/// Adds what waves meet, `[bin in y][bin in x]`.
-fn add_waves(body: &CoatedBody, t: f64, grid: &Grid, waves: &mut [f64]) {
-    let Some((_, radial)) = &body.layer else { return };
-    let Grid { mx, my, dx, dy } = *grid;
-    let row = mx / 2 + 1;
-    let last = |d: f64| (FADED * d / (2.0 * PI * t)).ceil() as i64 + 1;
-    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
-    for (bin, wave) in waves.iter_mut().enumerate() {
-        let number = |i: usize, m: usize, alias: i64, d: f64| 2.0 * PI * (i as f64 / m as f64 + alias as f64) / d;
-        for a in -last(dx)..=last(dx) {
-            let kx = number(bin % row, mx, a, dx);
-            for b in -last(dy)..=last(dy) {
-                let ky = number(bin / row, my, b, dy);
-                let k = kx.hypot(ky);
-                if k > 0.0 && k * t <= FADED {
-                    let change = 2.0 * PI * body.compliance / k * radial.transfer.less_one(k * t);
-                    *wave += change * sinc(0.5 * kx * dx) * sinc(0.5 * ky * dy);
-                }
-            }
-        }
+        ))),
+        _ => Ok(()),
     }
 }
 
 impl Kernel for CoatedPeriodic {
     fn at(&self, kx: i64, ky: i64) -> f64 {
-        let folded = |k: i64, m: usize| {
-            let k = k.unsigned_abs() as usize % m;
-            k.min(m - k)
-        };
-        self.half_space.at(kx, ky) + self.table[folded(ky, self.my) * (self.mx / 2 + 1) + folded(kx, self.mx)]
+        self.own(kx, ky) + self.constant()
     }
 
     fn repeats(&self, grid: &Grid) -> (bool, bool) {
-        self.half_space.repeats(grid)
+        (grid.mx == self.mx, grid.my == self.my)
     }
 
+    fn constant(&self) -> f64 {
+        if self.has_mean {
+            self.share(self.mean)
+        } else {
+            0.0
+        }
+    }
+
+    fn without_constant(&self) -> Option<Arc<dyn Kernel>> {
+        self.has_mean.then(|| Arc::new(CoatedPeriodic { has_mean: false, ..self.clone() }) as Arc<dyn Kernel>)
+    }
+
+    fn is_mean_free(&self) -> bool {
+        !self.has_mean
+    }
+
+    // A response that is negative is none to precondition with.
     fn constant_for(&self, response: f64) -> f64 {
-        self.half_space.constant_for(response)
+        self.share(response) - self.constant().min(0.0)
     }
 
+    // The mean counts as no stiffer than the longest wave: it is a wave that is not alone in a contact area.
     fn constant_for_inverse(&self) -> f64 {
-        self.half_space.constant_for_inverse()
+        (self.share(self.longest) - self.constant()).max(0.0)
     }
 
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
-        Ok(Arc::new(CoatedPeriodic::new(self.bodies.clone(), coarse)?))
+        let is_thin =
+            |body: &CoatedBody| body.layer.as_ref().is_some_and(|(t, _)| t * LONGEST_COARSE < coarse.dx.max(coarse.dy));
+        let mut kernel = match &self.sums {
+            Some((bodies, half_space)) if !bodies.iter().any(is_thin) => {
+                let half_space = half_space.coarsened(coarse)?;
+                CoatedPeriodic::with_half_space(bodies.clone(), half_space, coarse)?
+            }
+            _ => self.joined(coarse)?,
+        };
+        kernel.has_mean = self.has_mean;
+        Ok(Arc::new(kernel))
     }
 
     fn bytes(&self) -> usize {
-        self.half_space.bytes() + size_of_val(&self.table[..])
+        self.sums.as_ref().map_or(0, |(_, half_space)| half_space.bytes()) + size_of_val(&self.table[..])
     }
 }

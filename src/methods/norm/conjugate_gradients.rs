@@ -7,7 +7,7 @@
 //! ```
 
 use super::Workspace;
-use crate::contact::{norm_of_distance, State};
+use crate::contact::{norm_of_distance, relative, State};
 use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
@@ -79,7 +79,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
         update = step.abs() * (dot(direction, direction) / count).sqrt();
         let small = update <= stop.update * (dot(&state.p, &state.p) / count).sqrt();
         let met = stop.update > 0.0 && small && rr.sqrt() <= stop.believed;
-        if !monitor.cycle_done(&state.grid, 0, update, rr.sqrt() / stop.distance) || met {
+        if !monitor.cycle_done(&state.grid, 0, update, relative(rr.sqrt(), stop.distance)) || met {
             break;
         }
         for (d, r) in direction.iter_mut().zip(&*r) {

@@ -3,7 +3,7 @@
 
 use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
-use crate::contact::{norm_of_distance, State};
+use crate::contact::{norm_of_distance, relative, State};
 use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::Task;
@@ -145,7 +145,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
             problem.displace(full, product)?;
             iterations += 1;
             let Some((left, is_last)) = krylov.add(product, project) else { break };
-            cancelled = !monitor.cycle_done(&state.grid, 0, update, left / stop.distance);
+            cancelled = !monitor.cycle_done(&state.grid, 0, update, relative(left, stop.distance));
             if left <= aim || is_last {
                 break;
             }

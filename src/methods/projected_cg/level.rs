@@ -84,7 +84,7 @@ impl Level {
 
     /// The influence of an element on itself.
     pub fn self_influence(&self) -> f64 {
-        self.influence.at(0, 0)
+        self.influence.self_influence()
     }
 
     /// The coefficients of this grid.
@@ -215,7 +215,7 @@ impl Level {
         let grid = window.grid(&self.grid);
         let units = match self.precision {
             Precision::Double => Scaling::SAME,
-            Precision::Auto | Precision::Mixed => Scaling::for_state(state, self.influence.at(0, 0), &self.threads),
+            Precision::Auto | Precision::Mixed => Scaling::for_state(state, self.self_influence(), &self.threads),
         };
         let part = if window.is_full(&self.grid) && units == Scaling::SAME {
             None

@@ -27,7 +27,7 @@ impl Scaling {
     pub fn for_state(state: &State, self_influence: f64, threads: &Threads) -> Scaling {
         let alone = match state.load {
             Load::Approach(_) => 0.0,
-            Load::Force(force) => force / state.grid.element_area() * self_influence,
+            Load::Force(force) => force.abs() / state.grid.element_area() * self_influence,
         };
         let length = farthest(state, threads).max(alone);
         let pressure = length / self_influence;

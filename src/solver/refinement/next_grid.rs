@@ -134,16 +134,31 @@ impl fmt::Display for Past {
     }
 }
 
+/// Refuses a relative error that says nothing: p = 0 has an error of 1.
+pub(super) fn require_target(target: f64) -> Result<()> {
+    require(
+        target > 0.0 && target < 1.0,
+        "target",
+        target,
+        "it must lie between 0 and 1: a relative error of 1 is that of p = 0",
+    )
+}
+
 impl Accuracy {
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
-        let (target, seconds) = (self.target, self.max_seconds);
-        require(target > 0.0 && target.is_finite(), "target", target, "it must be positive and finite")?;
+        require_target(self.target)?;
         let more =
             [("max_pressure_target", self.max_pressure_target), ("contact_area_target", self.contact_area_target)];
         for (name, target) in more {
-            require(target >= 0.0 && target.is_finite(), name, target, "it must be positive, or 0 for none")?;
+            require((0.0..1.0).contains(&target), name, target, "it must lie between 0 and 1, or be 0 for none")?;
         }
+        self.check_limits()
+    }
+
+    /// The same of the limits alone.
+    pub(super) fn check_limits(&self) -> Result<()> {
+        let seconds = self.max_seconds;
         require(
             seconds >= 0.0 && seconds.is_finite(),
             "max_seconds",

@@ -5,10 +5,10 @@
 
 use std::time::Instant;
 
-use super::next_grid::{tolerance_for, ENOUGH_ACROSS, MOST_ELEMENTS, ROUND_OFF};
+use super::next_grid::{require_target, tolerance_for, ENOUGH_ACROSS, MOST_ELEMENTS, ROUND_OFF};
 use super::outlook::{across, Falling};
 use super::{check, on_grid, scaled, Accuracy, Quantity, Solved, SurfaceCallback};
-use crate::error::{require, Result};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::Scene;
 use crate::solver::{Options, Outcome, Progress};
@@ -104,10 +104,10 @@ pub fn cost_of_accuracy(
     (quantity, targets): (Quantity, &[f64]),
     mut surface: Option<SurfaceCallback<'_>>,
 ) -> Result<(Outcome, Vec<Price>)> {
-    accuracy.check()?;
+    accuracy.check_limits()?;
     check(scene, options, surface.is_some())?;
     for &target in targets {
-        require(target > 0.0 && target.is_finite(), "target", target, "it must be positive and finite")?;
+        require_target(target)?;
     }
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);

@@ -8,9 +8,10 @@
 //! sum that element I sees is `r_I - sum over J < I of A_IJ d_J`: a triangular block Toeplitz product. So the changes of
 //! each finished row are transformed in x once, and what they do to later rows is gathered in transformed space, by
 //! products within [`STRIP`] rows and by FFT in y between halves of larger blocks (divide and conquer). Only the part
-//! inside the current row is sequential. Same iterates as the dense sweep to round-off, at O(n log^2 n) plus mx^2 my for
-//! the rows themselves.
+//! inside the current row is sequential. Same iterates as the dense sweep to round-off, at O(n log^2 n) plus, for rows
+//! that are not [long](super::long_rows), mx^2 my for the rows themselves.
 
+use super::long_rows::LongRows;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -31,6 +32,7 @@ pub struct GaussSeidel {
     rows: RowTransform<f64>,
     /// Coefficients `c(k, 0)` inside a row, `k >= 0`.
     within_row: Vec<f64>,
+    long_rows: Option<LongRows>,
     /// `[d][bin]`: transformed coefficients between rows that are `d < STRIP` apart, normalised.
     between_rows: Vec<Complex<f64>>,
     /// For blocks of 2, 4, .. strips: how their first half acts on the second.
@@ -94,6 +96,7 @@ impl GaussSeidel {
         Ok(GaussSeidel {
             mx,
             my,
+            long_rows: LongRows::new(&within_row)?,
             within_row,
             between_rows: kernels,
             halves,
@@ -204,6 +207,12 @@ impl GaussSeidel {
         self.row.fill(0.0);
         let (start, end) = (start - elements.start, last - elements.start + 1);
         let factor = sweep.relaxation / self.within_row[0];
+        if let Some(long_rows) = &mut self.long_rows {
+            let changed = &mut self.row[start..end];
+            long_rows.sweep(&mut residual[start..end], changed, factor, |ix| in_set(elements.start + start + ix));
+            p[start..end].iter_mut().zip(&*changed).for_each(|(p, change)| *p += change);
+            return self.rows.forward(&self.row, changes, &mut self.scratch);
+        }
         for ix in start..end {
             if !in_set(elements.start + ix) {
                 continue;

@@ -2,6 +2,7 @@
 
 mod fft;
 mod gauss_seidel;
+mod long_rows;
 
 pub use fft::Fft;
 pub use gauss_seidel::GaussSeidel;

@@ -1,0 +1,239 @@
+//! What a coating adds to the waves of a period.
+//!
+//! Per wave k of the grid and its aliases `k + 2 pi (a/dx, b/dy)` that is `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`, which fades as
+//! `exp(-2 k t)`. Thin coatings have many aliases. The first of them, and of slender elements those along the longer side, are computed for
+//! each wave. The sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`: its singularities are those of `1/k`, at
+//! least as far from each end as half of that length is long, so that n Chebyshev nodes in each direction leave `r^-n` of it,
+//! `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. They carry it to all waves; on grids with fewer waves it is summed for each.
+
+use std::f64::consts::PI;
+
+use super::CoatedBody;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::memory::{collected, zeros};
+use crate::operator::fft::{ColumnTransform, Complex};
+
+/// `exp(-2 k t) (k t)^2` is below 1e-15 there.
+const FADED: f64 = 20.0;
+/// Nodes of the polynomial that carries aliases, in each direction.
+const NODES: usize = 24;
+/// Columns that are transformed at a time.
+const BLOCK: usize = 8;
+/// What memory is for.
+const WAVES: &str = "the waves of a coating";
+
+/// Bins of a period that are not negative.
+pub fn bins(grid: &Grid) -> (usize, usize) {
+    (grid.mx / 2 + 1, grid.my / 2 + 1)
+}
+
+/// Adds what waves meet, `[bin in y][bin in x]`.
+pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
+    let Some((t, _)) = body.layer else { return Ok(()) };
+    let directions = [(grid.dx, grid.mx), (grid.dy, grid.my)];
+    add_nearest(body, grid, waves)?;
+    // The longest alias is that of the shortest wave.
+    if PI * t > FADED * grid.dx.max(grid.dy) {
+        return Ok(());
+    }
+    let [x, y] = directions.map(|(d, m)| Direction::new(d / t, m));
+    let (x, y, nearest) = (x?, y?, nearest(grid));
+    let mut values = zeros(x.places.len() * y.places.len(), WAVES)?;
+    let (columns, is_symmetric) = (x.places.len(), grid.dx == grid.dy && x.is_carried() && y.is_carried());
+    for (row, in_y) in y.places.iter().enumerate() {
+        for (column, in_x) in x.places.iter().enumerate().skip(if is_symmetric { row } else { 0 }) {
+            let value = others(body, nearest, in_x, in_y);
+            values[row * columns + column] = value;
+            if is_symmetric {
+                values[column * columns + row] = value;
+            }
+        }
+    }
+    let row = x.bins;
+    let mut in_x = zeros(x.places.len(), WAVES)?;
+    for (j, waves) in waves.chunks_exact_mut(row).enumerate() {
+        in_x.fill(0.0);
+        y.each(j, |place, weight| {
+            let values = &values[place * in_x.len()..][..in_x.len()];
+            in_x.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        });
+        match x.is_carried() {
+            false => waves.iter_mut().zip(&in_x).for_each(|(wave, value)| *wave += value),
+            true => x.weights.chunks_exact(row).zip(&in_x).for_each(|(weights, value)| {
+                waves.iter_mut().zip(weights).for_each(|(wave, weight)| *wave += weight * value);
+            }),
+        }
+    }
+    Ok(())
+}
+
+/// The aliases that are computed for each wave: numbers in x and in y up to these, of either sign; one of both is 0.
+fn nearest(grid: &Grid) -> (i64, i64) {
+    // Where the wave number is below that of the shortest wave across.
+    let last = |ratio: f64| (0.5 * (1.0 + ratio)).ceil().min(1e6) as i64 - 1;
+    (last(grid.dx / grid.dy).max(0), last(grid.dy / grid.dx).max(0))
+}
+
+/// The nearest aliases; the wave of none is left out.
+fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
+    let Some((t, radial)) = &body.layer else { return Ok(()) };
+    let ((row, rows), (last_x, last_y)) = (bins(grid), nearest(grid));
+    let [of_x, of_y] = [(grid.dx, grid.mx), (grid.dy, grid.my)]
+        .map(|(d, m)| move |bin: usize, number: i64| alias(d / t, PI * bin as f64 / m as f64, number));
+    let scale = 2.0 * PI * body.compliance * t;
+    for a in (-last_x..=last_x).filter(|&a| is_left(of_x(0, a), of_x(row - 1, a))) {
+        let in_x = collected((0..row).map(|i| of_x(i, a)), WAVES)?;
+        for b in (-last_y..=last_y).filter(|&b| is_left(of_y(0, b), of_y(rows - 1, b))) {
+            for (j, waves) in waves.chunks_exact_mut(row).enumerate() {
+                let (sy, mean_y) = of_y(j, b);
+                if sy.abs() > FADED {
+                    continue;
+                }
+                for (wave, (sx, mean_x)) in waves.iter_mut().zip(&in_x) {
+                    let s = (sx * sx + sy * sy).sqrt();
+                    if s > 0.0 && s <= FADED {
+                        *wave += scale * radial.transfer.less_one(s) / s * (mean_x * mean_y);
+                    } else if a == 0 && s > 0.0 {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether some wave between two has not faded.
+fn is_left((first, _): (f64, f64), (last, _): (f64, f64)) -> bool {
+    first.abs().min(last.abs()) <= FADED
+}
+
+/// The sum over all aliases but the nearest at a place.
+fn others(body: &CoatedBody, (last_x, last_y): (i64, i64), in_x: &Place, in_y: &Place) -> f64 {
+    let Some((t, radial)) = &body.layer else { return 0.0 };
+    let mut sum = 0.0;
+    for (a, (sx, mean_x)) in in_x {
+        for (b, (sy, mean_y)) in in_y {
+            let s = (sx * sx + sy * sy).sqrt();
+            if s <= FADED && (a.abs() > last_x || b.abs() > last_y) {
+                sum += radial.transfer.less_one(s) / s * (mean_x * mean_y);
+            }
+        }
+    }
+    2.0 * PI * body.compliance * t * sum
+}
+
+/// An alias of a wave in one direction: `k t`, and the mean of the wave over an element of d thicknesses, half of which is `angle` long.
+fn alias(d: f64, angle: f64, number: i64) -> (f64, f64) {
+    let half = angle + PI * number as f64;
+    let mean = if half == 0.0 { 1.0 } else { angle.sin() / half };
+    (2.0 * half / d, if number % 2 == 0 { mean } else { -mean })
+}
+
+/// The aliases of a wave in one direction that have not faded: their numbers, `k t`, and the mean of each over an element.
+type Place = Vec<(i64, (f64, f64))>;
+
+/// One direction: where aliases are summed, and how they are carried to the bins.
+struct Direction {
+    bins: usize,
+    places: Vec<Place>,
+    /// `[place][bin]`; empty: places are bins.
+    weights: Vec<f64>,
+}
+
+impl Direction {
+    /// Of m elements of size d, in thicknesses.
+    fn new(d: f64, m: usize) -> Result<Direction> {
+        let bins = m / 2 + 1;
+        let angle_of = |bin: usize| PI * bin as f64 / m as f64;
+        if bins <= NODES {
+            let places = (0..bins).map(|bin| Direction::place(d, angle_of(bin))).collect();
+            return Ok(Direction { bins, places, weights: Vec::new() });
+        }
+        // Half the angle of a wave over an element.
+        let node = |n: usize| 0.25 * PI * (1.0 + (PI * (n as f64 + 0.5) / NODES as f64).cos());
+        let places = (0..NODES).map(|n| Direction::place(d, node(n))).collect();
+        let barycentric = |n: usize| (PI * (n as f64 + 0.5) / NODES as f64).sin() * if n % 2 == 0 { 1.0 } else { -1.0 };
+        let mut weights = zeros(NODES * bins, WAVES)?;
+        for bin in 0..bins {
+            let away = |n: usize| angle_of(bin) - node(n);
+            let total: f64 = (0..NODES).map(|n| barycentric(n) / away(n)).sum();
+            let at_node = (0..NODES).find(|&n| away(n) == 0.0);
+            for n in 0..NODES {
+                weights[n * bins + bin] = match at_node {
+                    Some(node) => f64::from(u8::from(n == node)),
+                    None => barycentric(n) / away(n) / total,
+                };
+            }
+        }
+        Ok(Direction { bins, places, weights })
+    }
+
+    fn place(d: f64, angle: f64) -> Place {
+        let last = (FADED * d / (2.0 * PI)).ceil() as i64 + 1;
+        (-last..=last).map(|a| (a, alias(d, angle, a))).filter(|(_, (s, _))| s.abs() <= FADED).collect()
+    }
+
+    fn is_carried(&self) -> bool {
+        !self.weights.is_empty()
+    }
+
+    /// The places that a bin takes values from, and their weights.
+    fn each(&self, bin: usize, mut take: impl FnMut(usize, f64)) {
+        match self.is_carried() {
+            false => take(bin, 1.0),
+            true => (0..self.places.len()).for_each(|place| take(place, self.weights[place * self.bins + bin])),
+        }
+    }
+}
+
+/// Sums of cosines: the coefficients at offsets up to half the period that have these waves.
+pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
+    let (mx, my, (row, rows)) = (grid.mx, grid.my, bins(grid));
+    let (x, y) = (ColumnTransform::<f64>::new(mx), ColumnTransform::<f64>::new(my));
+    let mut scratch = x.scratch();
+    y.fit(&mut scratch);
+    let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;
+    // What is even has a real transform: two rows, or columns, are one complex one.
+    let mut line: Vec<Complex<f64>> = zeros(mx, WAVES)?;
+    for (waves, in_x) in waves.chunks(2 * row).zip(in_x.chunks_mut(2 * row)) {
+        if waves.iter().all(|wave| *wave == 0.0) {
+            continue;
+        }
+        let (one, other) = waves.split_at(row);
+        mirrored(&mut line, |i| Complex::new(one[i], other.get(i).copied().unwrap_or(0.0)));
+        x.forward(&mut line, &mut scratch);
+        let (one, other) = in_x.split_at_mut(row);
+        one.iter_mut().zip(&line).for_each(|(value, sum)| *value = sum.re);
+        other.iter_mut().zip(&line).for_each(|(value, sum)| *value = sum.im);
+    }
+    let mut table: Vec<f64> = zeros(row * rows, WAVES)?;
+    let mut columns: Vec<Complex<f64>> = zeros(BLOCK * my, WAVES)?;
+    let share = 1.0 / grid.len() as f64;
+    for first in (0..row).step_by(2 * BLOCK) {
+        let values = (row - first).min(2 * BLOCK);
+        let columns = &mut columns[..values.div_ceil(2) * my];
+        for (k, column) in columns.chunks_exact_mut(my).enumerate() {
+            let at = |j: usize, k: usize| if k < values { in_x[j * row + first + k] } else { 0.0 };
+            mirrored(column, |j| Complex::new(at(j, 2 * k), at(j, 2 * k + 1)));
+        }
+        y.forward(columns, &mut scratch);
+        for (ky, table) in table.chunks_exact_mut(row).enumerate() {
+            for (two, column) in table[first..first + values].chunks_mut(2).zip(columns.chunks_exact(my)) {
+                let both = [column[ky].re, column[ky].im];
+                two.iter_mut().zip(both).for_each(|(value, sum)| *value = share * sum);
+            }
+        }
+    }
+    Ok(table)
+}
+
+/// Fills a period with what is even.
+fn mirrored(line: &mut [Complex<f64>], value: impl Fn(usize) -> Complex<f64>) {
+    let m = line.len();
+    for i in 0..m / 2 + 1 {
+        line[i] = value(i);
+        line[(m - i) % m] = line[i];
+    }
+}

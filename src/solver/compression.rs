@@ -1,0 +1,124 @@
+//! What the mean pressure compresses: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
+//!
+//! A constant changes no pressure of a given force, but it hides what they are off: residuals are relative to the approach. So a given force
+//! is solved without it, and the result gets it at the end. A given approach is solved with it.
+
+use super::{Guess, InitialGuess, Options, Solver};
+use crate::contact::{Fixed, Freshness, NonNegative, Survey};
+use crate::error::Result;
+use crate::influence::Coefficients;
+use crate::progress::{Measures, Monitor, Outcome};
+use crate::scene::{Load, Scene};
+
+/// Of the tolerance, where it has to be met once more.
+const SAFETY: f64 = 0.5;
+
+/// Coefficients that have a constant, and whether the solver is set up without it.
+#[derive(Clone)]
+pub struct Compressible {
+    coefficients: Coefficients,
+    /// None: neither, an attempt to change failed.
+    is_without: Option<bool>,
+}
+
+impl Compressible {
+    /// The coefficients that a load is solved with, and this if they are not the only ones.
+    pub fn of(coefficients: Coefficients, load: Load) -> (Coefficients, Option<Compressible>) {
+        let Some(without) = coefficients.without_constant() else { return (coefficients, None) };
+        let is_without = matches!(load, Load::Force(_));
+        let used = if is_without { without } else { coefficients.clone() };
+        (used, Some(Compressible { coefficients, is_without: Some(is_without) }))
+    }
+
+    /// The compression by a uniform pressure that adds up to this over all elements.
+    fn by(&self, sum: f64) -> f64 {
+        self.coefficients.kernel().constant() * sum
+    }
+}
+
+impl Solver {
+    /// Takes the coefficients that a load is solved with.
+    pub(super) fn suit(&mut self, load: Load) -> Result<()> {
+        let wanted = matches!(load, Load::Force(_));
+        let Some(compressible) = self.set_up.compressible.as_mut().filter(|of| of.is_without != Some(wanted)) else {
+            return Ok(());
+        };
+        compressible.is_without = None;
+        let all = compressible.coefficients.clone();
+        let coefficients = if wanted { all.without_constant().unwrap_or(all) } else { all };
+        self.methods.forget_operator();
+        self.state.u_is = Freshness::Stale;
+        self.problem.renew(coefficients)?;
+        self.methods.renew(&self.problem)?;
+        if let Some(compressible) = &mut self.set_up.compressible {
+            compressible.is_without = Some(wanted);
+        }
+        Ok(())
+    }
+
+    /// Where a force was given: whether the tolerance is met with the approach that the compression makes of the one found. A negative compression
+    /// brings the approach nearer to the distances, and a smaller residual is solved for; a positive one may be all that there is of them.
+    pub(super) fn meet_compressed(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        monitor: &mut Monitor<'_>,
+        stop: Outcome,
+    ) -> Result<Outcome> {
+        let (by, goal) = (self.compression(scene.load), options.goal());
+        if by == 0.0 || goal.by_update() {
+            return Ok(stop);
+        }
+        let (holds, part) = self.holds_compressed(by, options);
+        match stop {
+            Outcome::Stagnated if holds => Ok(Outcome::Converged),
+            Outcome::Converged if !holds => {
+                let tolerance = SAFETY * part * options.tolerance;
+                let more = Options { tolerance, initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
+                monitor.ledger.rows.pop();
+                let (again, _) = self.solve_normal((scene, lowest), &more, guess, monitor)?;
+                let is_met = again == Outcome::Stagnated && self.holds_compressed(by, options).0;
+                Ok(if is_met { Outcome::Converged } else { again })
+            }
+            _ => Ok(stop),
+        }
+    }
+
+    /// Whether the criterion holds with the compression, and the distances with it, in those without.
+    fn holds_compressed(&mut self, by: f64, options: &Options) -> (bool, f64) {
+        let without = Survey::of(&self.state);
+        self.state.approach += by;
+        let with = Survey::of(&self.state);
+        self.state.approach -= by;
+        let work = (without.work.0, (without.work.1 + by * without.pressures).abs());
+        let survey = Survey { distance: with.distance, scale: with.scale, work, ..without };
+        let holds = match options.is_fixed() {
+            true => options.goal().holds(&survey, 0.0, Fixed),
+            false => options.goal().holds(&survey, 0.0, NonNegative),
+        };
+        (holds && self.state.carries(&self.problem.threads), with.distance / without.distance)
+    }
+
+    /// The compression of the result.
+    fn compression(&self, load: Load) -> f64 {
+        match (&self.set_up.compressible, load) {
+            (Some(of), Load::Force(force)) => of.by(force / self.problem.grid.element_area()),
+            _ => 0.0,
+        }
+    }
+
+    /// Adds the compression to the result of a given force: displacements, approach, and the approaches of the ledger, of which coarser grids have
+    /// another count of elements. Returns what is measured then; none where nothing is compressed.
+    pub(super) fn compress(&mut self, load: Load, monitor: &mut Monitor<'_>) -> Option<Measures> {
+        let by = Some(self.compression(load)).filter(|by| *by != 0.0)?;
+        self.state.u.iter_mut().for_each(|u| *u += by);
+        self.state.approach += by;
+        // A later solve begins without it.
+        self.state.u_is = Freshness::Stale;
+        monitor.ledger.rows.iter_mut().for_each(|row| row.measures.approach += by);
+        let row = monitor.ledger.rows.last_mut()?;
+        row.measures.certificate = Survey::of(&self.state).certificate();
+        Some(row.measures)
+    }
+}

@@ -1,0 +1,104 @@
+//! A given contact area that is pulled: forces below 0, with active_set FIXED.
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::operator::dense;
+use contact_normal::scene::{Bodies, Layer, Load, Period, Scene};
+use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
+
+fn fixed(method: Method) -> Options {
+    Options { method, active_set: ActiveSet::Fixed, tolerance: 1e-9, estimates: true, ..Options::default() }
+}
+
+/// A ball, and a contact area that is no disc.
+fn bonded(grid: &Grid) -> (Vec<f64>, Vec<bool>) {
+    let place = |k: usize, m: usize| k as f64 - 0.5 * (m as f64 - 1.0);
+    let of = |i: usize| (place(i % grid.mx, grid.mx), place(i / grid.mx, grid.my));
+    let h = (0..grid.len()).map(|i| 0.01 * (of(i).0.powi(2) + of(i).1.powi(2))).collect();
+    let contact = (0..grid.len()).map(|i| of(i).0.abs() + 0.7 * of(i).1.abs() < 0.35 * grid.mx as f64).collect();
+    (h, contact)
+}
+
+/// Forces of both signs and of none, with the direct sum: one approach for all elements, and the force to rounding.
+#[test]
+fn a_force_that_pulls_is_carried_by_every_method() {
+    let grid = Grid::new(22, 17, 0.5, 0.4).unwrap();
+    let (h, contact) = bonded(&grid);
+    let pressure = vec![0.0; h.len()];
+    let compliances: Vec<f64> = (0..h.len()).map(|i| 0.1 * (i % 3) as f64).collect();
+    let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.0));
+    let with_multigrid = [plain.clone(), Scene { layer: Some(Layer::Uniform(0.2)), ..plain.clone() }];
+    let without = [
+        Scene { layer: Some(Layer::PerElement(&compliances)), ..plain.clone() },
+        Scene { period: Some(Period { x: true, y: false }), ..plain.clone() },
+        Scene { period: Some(Period { x: true, y: true }), ..plain.clone() },
+    ];
+    for (k, scene) in with_multigrid.iter().chain(&without).enumerate() {
+        for method in [Method::Auto, Method::Norm, Method::ProjectedCg, Method::Multigrid, Method::FullMultigrid] {
+            if k >= 2 && matches!(method, Method::Multigrid | Method::FullMultigrid) {
+                continue;
+            }
+            let mut solver = Solver::new(scene, &fixed(method)).unwrap();
+            for force in [-3.0, -1e-3, 0.0, 2.0, -50.0] {
+                let scene = Scene { load: Load::Force(force), ..scene.clone() };
+                let guess = Some(Guess { pressure: &pressure, contact: &contact });
+                let (stop, report) = solver.solve(&scene, &fixed(method), guess, None).unwrap();
+                let (what, p) = (format!("scene {k}, {method:?}, {force}"), &solver.state().p);
+                assert_eq!(stop, Outcome::Converged, "{what}");
+                assert_eq!(report.measures.contact_count, contact.iter().filter(|inside| **inside).count());
+                let all: f64 = p.iter().map(|p| p.abs()).sum();
+                let carried = p.iter().sum::<f64>();
+                assert!((carried * 0.2 - force).abs() <= 1e-11 * (all * 0.2), "{what}: {}", carried * 0.2);
+                assert!((report.measures.force - force).abs() <= 1e-11 * (all * 0.2), "{what}");
+                let mut u = vec![0.0; p.len()];
+                dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
+                let (mut residual, mut distance) = (0.0, 0.0);
+                for i in 0..p.len() {
+                    let e = h[i] - report.measures.approach + u[i];
+                    assert!(contact[i] || p[i] == 0.0, "{what}");
+                    if contact[i] {
+                        residual += e * e;
+                        distance += (h[i] - report.measures.approach).powi(2);
+                    }
+                }
+                // The tolerance, and the round-off of two products.
+                assert!(residual.sqrt() <= 1.01e-9 * distance.sqrt(), "{what}: {}", (residual / distance).sqrt());
+            }
+        }
+    }
+}
+
+/// Twice the pull less what the surface bends is as the equations are: linear. A pull from the last solution takes its product.
+#[test]
+fn pulls_add_up() {
+    let grid = Grid::new(20, 20, 1.0, 1.0).unwrap();
+    let (h, contact) = bonded(&grid);
+    let pressure = vec![0.0; h.len()];
+    let guess = Some(Guess { pressure: &pressure, contact: &contact });
+    let scene = |force| Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(force));
+    let mut solver = Solver::new(&scene(1.0), &fixed(Method::Auto)).unwrap();
+    let mut pressures = |force, initial_guess| {
+        let options = Options { initial_guess, ..fixed(Method::Auto) };
+        let (stop, report) = solver.solve(&scene(force), &options, guess, None).unwrap();
+        assert!(stop == Outcome::Converged && report.count.matrix_products > 0, "{force}");
+        solver.state().p.clone()
+    };
+    let none = pressures(0.0, InitialGuess::None);
+    let [one, two] = [-40.0, -80.0].map(|force| pressures(force, InitialGuess::Previous));
+    let largest = two.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
+    for ((none, one), two) in none.iter().zip(&one).zip(&two) {
+        assert!((two - none - 2.0 * (one - none)).abs() <= 1e-6 * largest);
+    }
+}
+
+#[test]
+fn a_free_contact_area_is_not_pulled() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).unwrap();
+    let (h, _) = bonded(&grid);
+    let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(-1.0));
+    let refused = solve(&scene, &Options::default()).map(drop).unwrap_err();
+    assert!(
+        matches!(&refused, Error::InvalidArgument(text) if text.contains("force is -1") && text.contains("FIXED")),
+        "{refused}"
+    );
+}
