@@ -121,14 +121,22 @@ impl State {
         self.contact.iter().filter(|&&inside| inside).count()
     }
 
-    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+    /// Whether element i is in contact, free or at its limit.
+    #[inline]
+    pub fn touches(&self, i: usize) -> bool {
+        self.contact[i] || self.at_limit.get(i).is_some_and(|&at_limit| at_limit)
+    }
+
+    /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
         let Grid { mx, my, .. } = self.grid;
         let of_row = |(iy, row): (usize, &[bool])| match iy == 0 || iy + 1 == my {
             true => row.iter().filter(|&&inside| inside).count(),
             false => usize::from(row[0]) + row[1..].last().map_or(0, |last| usize::from(*last)),
         };
-        self.contact.chunks_exact(mx).enumerate().map(of_row).sum()
+        let of = |touches: &[bool]| touches.chunks_exact(mx).enumerate().map(of_row).sum::<usize>();
+        // No element is both.
+        of(&self.contact) + if self.has_limited() { of(&self.at_limit) } else { 0 }
     }
 
     /// `sum of p dx dy`.

@@ -176,7 +176,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
 /// The largest undeformed distance in contact, or of h - approach = -u there, and its round-off relative to the rms of u.
 fn round_off(state: &State) -> (f64, f64) {
     let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
-    for i in (0..state.h.len()).filter(|&i| state.contact[i]) {
+    for i in (0..state.h.len()).filter(|&i| state.touches(i)) {
         largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
         squares += state.u[i] * state.u[i];
         count += 1;

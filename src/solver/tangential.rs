@@ -171,24 +171,25 @@ impl Tangent {
         }
     }
 
-    /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,
-    /// relative to `h - approach`. None where bodies are alike.
-    pub fn distance(&mut self, state: &State) -> Option<(&[f64], f64)> {
+    /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed where pressures act (in C and
+    /// at a limit): rms relative to `h - approach`. No change at all: none on the whole grid. None where bodies are alike.
+    pub fn distance(&mut self, state: &State) -> Option<(&[f64], Option<f64>)> {
         let Tangent { solver, coupled: Some(Coupled { here, along_normal, own, displaced, .. }) } = self else {
             return None;
         };
         here.along_normal(&solver.solution()?.traction, along_normal);
-        let (mut changes, mut distances) = (0.0, 0.0);
+        let (mut changes, mut distances, mut differs) = (0.0, 0.0, false);
         for i in 0..along_normal.len() {
-            let h = own[i];
-            if state.contact[i] {
-                changes += (h + along_normal[i] - state.h[i]).powi(2);
+            displaced[i] = own[i] + along_normal[i];
+            // One element alone displaces others, not itself.
+            differs |= displaced[i] != state.h[i];
+            if state.touches(i) {
+                changes += (displaced[i] - state.h[i]).powi(2);
                 distances += (state.h[i] - state.approach).powi(2);
             }
-            displaced[i] = h + along_normal[i];
         }
         let change = if changes == 0.0 { 0.0 } else { (changes / distances).sqrt() };
-        Some((&displaced[..], change))
+        Some((&displaced[..], differs.then_some(change)))
     }
 
     /// The step is done: the next one may continue from its pressures.

@@ -69,7 +69,10 @@ impl Solver {
                 return Ok((so_far, found));
             };
             // Tractions that displace nothing leave the normal problem as it was found.
-            if change == 0.0 || self.holds_with(distance, change, turn, monitor) || so_far != Outcome::Converged {
+            let Some(change) = change else {
+                return Ok((so_far, found));
+            };
+            if self.holds_with(distance, change, turn, monitor) || so_far != Outcome::Converged {
                 return Ok((so_far, found));
             }
             if solved == MOST_TURNS {

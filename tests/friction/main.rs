@@ -25,5 +25,6 @@ mod support;
 mod tables;
 mod threads;
 mod unlike;
+mod unlike_at_limit;
 mod wheel_on_rail;
 mod wheel_rail;
