@@ -86,6 +86,20 @@ impl State {
         })
     }
 
+    /// A copy.
+    pub fn copy(&self, threads: &Threads) -> Result<State> {
+        let mut copy = State::new(self.grid, (self.load, self.approach), threads)?;
+        copy.h.copy_from_slice(&self.h);
+        copy.p.copy_from_slice(&self.p);
+        copy.u.copy_from_slice(&self.u);
+        copy.contact.copy_from_slice(&self.contact);
+        copy.at_limit = zeros(self.at_limit.len(), "elements at their limit")?;
+        copy.at_limit.copy_from_slice(&self.at_limit);
+        (copy.u_is, copy.reached_limit, copy.approach) = (self.u_is, self.reached_limit, self.approach);
+        copy.round_off = self.round_off;
+        Ok(copy)
+    }
+
     /// h, p and u are needed.
     pub fn wake(&mut self, threads: &Threads) {
         let n = self.grid.len();

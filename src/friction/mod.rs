@@ -10,20 +10,22 @@
 //! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `system`, `fgmres`, `march`, `forces` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
-//! | `sensitivity` | derivatives of the forces by creepages and spin |
+//! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `request`, `take_over`, `solver` | coarser grids, nested iteration, and the whole solve |
+//! | `levels`, `nested`, `request`, `take_over`, `solver`, `last` | coarser grids, nested iteration, the whole solve, and the way back from it |
 
 mod certificate;
 pub mod coefficients;
 mod component;
 pub mod cross;
 pub mod dense;
+mod derivatives;
 mod disc;
 mod discs;
 mod extension;
 mod fgmres;
 mod forces;
+mod last;
 mod levels;
 mod march;
 mod nested;
@@ -53,6 +55,7 @@ pub(crate) use certificate::rest;
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
+pub use last::Last;
 pub use request::{Request, Start, Superposed};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;

@@ -7,8 +7,6 @@ use super::march::Rolling;
 use super::nested::{self, Work, COARSE, COUNTS};
 use super::problem::Problem;
 use super::request::{Request, Start};
-use super::sensitivity;
-use super::shift::Memory;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::take_over::before;
 use super::vectors;
@@ -41,7 +39,11 @@ pub struct Solver {
     pub(super) before: Vec<Vector>,
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
-    has_solution: bool,
+    pub(super) has_solution: bool,
+    /// The box of the last solve.
+    pub(super) window: Option<Window>,
+    /// Sums of each row, while a result is summed up.
+    pub(super) sums: Vec<[f64; 3]>,
 }
 
 /// What a start by superposition is worth.
@@ -76,6 +78,8 @@ impl Solver {
             before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
+            window: None,
+            sums: Vec::new(),
         }
     }
 
@@ -105,9 +109,10 @@ impl Solver {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let displaced = self.displaced.as_ref().map_or(0, |displaced| displaced.operator.bytes());
+        let displaced = self.displaced.as_ref().map_or(0, Displaced::bytes);
         let fields = self.solution.traction.len() * (2 * size_of::<Vector>() + size_of::<i32>())
-            + self.before.capacity() * size_of::<Vector>();
+            + self.before.capacity() * size_of::<Vector>()
+            + size_of_val(&self.sums[..]);
         self.levels.iter().map(Level::bytes).sum::<usize>() + displaced + fields
     }
 
@@ -136,7 +141,7 @@ impl Solver {
             .then(|| Rolling { distance: friction.distance(&self.grid), by: friction.elements_rolled(&self.grid) });
         let window = Window::around(&self.grid, &self.threads.for_a_pass(self.grid.len()), |i| {
             pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
-        });
+        })?;
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
@@ -157,17 +162,24 @@ impl Solver {
                     self.begin(&request, from_rest, window, bound)?
                 };
                 let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
-                end = self.iterate(request, forces, (nested, had_slip), watch, &mut report)?;
+                end = match request.is_cancelled {
+                    true => Outcome::Cancelled,
+                    false => self.iterate(request, forces, (nested, had_slip), watch, &mut report)?,
+                };
+                let Level { problem, state, .. } = &self.levels[0];
+                report.certificate = Certificate::of(problem, state);
             }
             let Problem { bound, operators, .. } = &self.levels[0].problem;
             let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
             report.carried = carried * self.grid.element_area();
         }
-        self.write(friction, pressure, window, &mut report);
-        if friction.sensitivities {
-            report.sensitivities = Some(self.sensitivities(friction, window)?);
-            report.products += self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64;
+        self.window = window;
+        // Before the result is written: what fails leaves the last one.
+        if friction.sensitivities && end != Outcome::Cancelled {
+            report.sensitivities = Some(self.sensitivities(friction)?);
+            report.products += self.take_products();
         }
+        self.write(friction, pressure, window, &mut report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
@@ -188,8 +200,6 @@ impl Solver {
         let end = nested::solve(&mut self.levels, forces, (nested, had_slip), goal, &mut work)?;
         report.products += work.products;
         report.coarser = self.levels.get(1).filter(|_| compared).map(Level::found);
-        let Level { problem, state, .. } = &self.levels[0];
-        report.certificate = Certificate::of(problem, state);
         Ok(end)
     }
 
@@ -230,30 +240,6 @@ impl Solver {
         }
     }
 
-    /// See [`Report::sensitivities`].
-    fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
-        let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
-        level.be_ready()?;
-        let Level { problem, state, memory, .. } = level;
-        sensitivity::predict(problem, state, &mut memory.tangent)?;
-        for by in 0..3 {
-            let mut change = memory.fields.take(state.q.len())?;
-            for (k, i) in window.elements(&self.grid) {
-                change[k] = friction.rigid_slip_by(&self.grid, i, by);
-            }
-            let Memory { tangent, fields, .. } = memory;
-            sensitivity::solve(problem, tangent, fields, &mut change)?;
-            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
-            let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
-            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
-                row[by] = value;
-            }
-            memory.fields.give(change);
-        }
-        Ok(derivatives)
-    }
-
     /// The result on the whole grid, and what is to be said of it.
     fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], window: Option<Window>, report: &mut Report) {
         let Solution { traction, slip, adhesion } = &mut self.solution;
@@ -278,9 +264,8 @@ impl Solver {
             });
             // Without friction all slips.
             let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
-            let mut slipping = vec![0; grid.my];
-            threads.for_each(&mut slipping, |iy, count| *count = without(iy));
-            report.certificate.slip_count += slipping.iter().sum::<usize>();
+            threads.for_each(&mut self.sums, |iy, sum| sum[0] = without(iy) as f64);
+            report.certificate.slip_count += self.sums.iter().map(|sum| sum[0] as usize).sum::<usize>();
         } else {
             traction.fill([0.0; 2]);
             slip.fill([0.0; 2]);
@@ -293,6 +278,6 @@ impl Solver {
             };
         }
         let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
-        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions);
+        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions, &mut self.sums);
     }
 }
