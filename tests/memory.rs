@@ -168,3 +168,48 @@ fn ten_thousand_handles_leave_nothing_behind() {
     }
     assert_eq!(limited_memory::held(), held, "bytes are held after 10^4 handles");
 }
+
+/// `bytes` of a report are those that the handle holds, with friction's operators, their workspaces and what its iterations keep.
+#[test]
+fn reported_bytes_are_those_that_a_handle_with_friction_holds() {
+    let _alone = alone();
+    let m = 96;
+    let mut h = Vec::new();
+    let mut scene = scene(m, &mut h);
+    let options: contact_normal_options = initialised(contact_normal_options_init);
+    for moduli in [[1.0; 2], [1.0, 3.0]] {
+        for motion in 0..3 {
+            for force in [false, true] {
+                let mut friction: contact_normal_friction = initialised(contact_normal_friction_init);
+                (friction.coefficient, friction.motion) = (0.3, motion);
+                (friction.creepage, friction.force) = ([-0.003, 0.001], [1e-3, 0.0]);
+                friction.prescribed = [i32::from(force); 2];
+                scene.shear_modulus = moduli;
+                scene.friction = &friction;
+                let mut bytes = [0.0; 2];
+                // Plans of transforms are the thread's: they are there the second time.
+                for _ in 0..2 {
+                    // SAFETY (all): structs with their arrays, a handle of ours, and NULL.
+                    unsafe { contact_normal_solver_free(null_mut()) };
+                    let before = limited_memory::held();
+                    let mut handle = null_mut();
+                    let mut report: contact_normal_report = initialised(contact_normal_report_init);
+                    let status = unsafe {
+                        assert_eq!(contact_normal_solver_new(&scene, &options, &mut handle), CONTACT_NORMAL_OK);
+                        contact_normal_solver_solve(handle, &scene, &options, null_mut(), &mut report)
+                    };
+                    assert_eq!(status, CONTACT_NORMAL_OK, "{moduli:?} {motion} {force}");
+                    unsafe { contact_normal_solver_free(null_mut()) };
+                    bytes = [report.bytes as f64, (limited_memory::held() - before) as f64];
+                    unsafe { contact_normal_solver_free(handle) };
+                }
+                let [reported, held] = bytes;
+                // Blocks may have more room than they are asked for, and small lists are not counted.
+                assert!(
+                    (reported / held - 1.0).abs() <= 0.05,
+                    "{moduli:?} {motion} {force}: {reported} bytes reported, {held} held"
+                );
+            }
+        }
+    }
+}

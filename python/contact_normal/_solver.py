@@ -158,7 +158,7 @@ class Solver:
         pressure_limit : float or array_like, (my, mx), optional
             For all problems.
         friction : mapping, optional
-            For all problems, as for `solve`.
+            For all problems, as for `solve`, but "continues" is refused: the order of the solves is not known.
         pressure, contact : sequence of array_like, (count, my, mx), optional
             Initial guesses.
         **given : SolveOptions

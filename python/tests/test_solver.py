@@ -78,6 +78,19 @@ class Handles(unittest.TestCase):
             self.assertEqual((each.status, each.message), (alone.status, alone.message))
 
 
+    def test_no_problem_of_a_batch_goes_on_from_another(self):
+        friction = {"coefficient": 0.3, "creepage": (1e-3, 0.0)}
+        with cn.Solver(16, 16, 0.1, 0.1, **STEEL) as solver:
+            solver.solve(ball(16), force=100.0, friction=friction)
+            solver.solve_batch([ball(16)] * 3, force=100.0, friction=friction)
+            found = solver.solve_batch([ball(16)] * 3, force=100.0, friction={**friction, "continues": True})
+            for each in found:
+                self.assertEqual(each.status, -2)
+                self.assertRegex(each.message, "friction->continues is 1; in a batch it must be 0")
+            # The solver's own tractions are there to go on from.
+            self.assertEqual(solver.solve(ball(16), force=100.0, friction={**friction, "continues": True}).status, 0)
+
+
 class Shown(unittest.TestCase):
     def drawn(self, tqdm):
         with contextlib.redirect_stderr(io.StringIO()) as err, mock.patch.dict("sys.modules", {"tqdm": tqdm}):

@@ -86,6 +86,20 @@ impl State {
         })
     }
 
+    /// A copy.
+    pub fn copy(&self, threads: &Threads) -> Result<State> {
+        let mut copy = State::new(self.grid, (self.load, self.approach), threads)?;
+        copy.h.copy_from_slice(&self.h);
+        copy.p.copy_from_slice(&self.p);
+        copy.u.copy_from_slice(&self.u);
+        copy.contact.copy_from_slice(&self.contact);
+        copy.at_limit = zeros(self.at_limit.len(), "elements at their limit")?;
+        copy.at_limit.copy_from_slice(&self.at_limit);
+        (copy.u_is, copy.reached_limit, copy.approach) = (self.u_is, self.reached_limit, self.approach);
+        copy.round_off = self.round_off;
+        Ok(copy)
+    }
+
     /// h, p and u are needed.
     pub fn wake(&mut self, threads: &Threads) {
         let n = self.grid.len();
@@ -121,14 +135,22 @@ impl State {
         self.contact.iter().filter(|&&inside| inside).count()
     }
 
-    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+    /// Whether element i is in contact, free or at its limit.
+    #[inline]
+    pub fn touches(&self, i: usize) -> bool {
+        self.contact[i] || self.at_limit.get(i).is_some_and(|&at_limit| at_limit)
+    }
+
+    /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
         let Grid { mx, my, .. } = self.grid;
         let of_row = |(iy, row): (usize, &[bool])| match iy == 0 || iy + 1 == my {
             true => row.iter().filter(|&&inside| inside).count(),
             false => usize::from(row[0]) + row[1..].last().map_or(0, |last| usize::from(*last)),
         };
-        self.contact.chunks_exact(mx).enumerate().map(of_row).sum()
+        let of = |touches: &[bool]| touches.chunks_exact(mx).enumerate().map(of_row).sum::<usize>();
+        // No element is both.
+        of(&self.contact) + if self.has_limited() { of(&self.at_limit) } else { 0 }
     }
 
     /// `sum of p dx dy`.

@@ -53,6 +53,11 @@ impl Coating {
         self.layers[b].filter(|layer| !is_none(layer))
     }
 
+    /// Whether a scene has to know of it: there is a coating on one of the bodies, or something is wrong with what is named.
+    pub fn is_one(&self, scene: &Plain<'_>) -> bool {
+        (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
+    }
+
     /// One body with its coating.
     fn body(&self, b: usize, scene: &Plain<'_>) -> Result<CoatedBody> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);

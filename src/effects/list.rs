@@ -11,7 +11,8 @@ use crate::threads::Threads;
 /// Number of effects.
 pub(super) const COUNT: usize = 8;
 
-/// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients.
+/// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients. A coating of no
+/// thickness, or of the body's own material, is none.
 pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
     fn of<'s, E: Effect>(effect: &'s Option<E>) -> Option<&'s (dyn Effect + 's)> {
         effect.as_ref().map(|effect| effect as &dyn Effect)
@@ -19,7 +20,7 @@ pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] 
     [
         of(&scene.influence),
         of(&scene.row_tables),
-        of(&scene.coating),
+        of(&scene.coating).filter(|_| scene.coating.is_some_and(|coating| coating.is_one(&scene.plain()))),
         of(&scene.period),
         of(&scene.patches),
         of(&scene.layer),

@@ -15,7 +15,7 @@ use super::status::{
 };
 use super::structs::{self, Versioned};
 use crate::memory::collected;
-use crate::solver::{Options, Solver};
+use crate::solver::{check_problem, Options, Solver};
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
 /// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
@@ -28,7 +28,7 @@ use crate::solver::{Options, Solver};
 /// counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 ///
 /// Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
-/// `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.
+/// `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused; what the solver itself solved last stays as it is, for later ones.
 /// `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
 /// messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
 #[no_mangle]
@@ -163,6 +163,7 @@ impl Batch {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
+            check_problem(&scene)?;
             run(worker, (&scene, None), options, None, outputs, &mut Buffers::default())
         };
         let outcome = solved().unwrap_or_else(Conclusion::from);

@@ -208,7 +208,8 @@ pub struct contact_normal_report {
     /// Seconds of the tangential problem, which are part of `solve_seconds`.
     pub tangential_seconds: f64,
     /// If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-    /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
+    /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow
+    /// the tractions, but those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
     pub sensitivities: [f64; 9],
     /// Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
     /// They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.

@@ -213,7 +213,7 @@ struct Distances {
 impl Distances {
     fn of(state: &State) -> Distances {
         let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
-        for i in (0..state.h.len()).filter(|&i| state.contact[i]) {
+        for i in (0..state.h.len()).filter(|&i| state.touches(i)) {
             largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
             squares += (state.h[i] - state.approach).powi(2);
             count += 1;

@@ -141,7 +141,8 @@ pub unsafe extern "C" fn contact_normal_solver_set_influence(
 
 /// Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
 /// with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
-/// leaves the result before as it is, or none. INVALID_ARGUMENT if there is none. Since 0.1.
+/// leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it.
+/// INVALID_ARGUMENT if there is none. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_fields(
     solver: *const contact_normal_solver,

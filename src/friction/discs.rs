@@ -213,6 +213,7 @@ impl<T: Real> Discs<T> {
         let in_double = size_of::<f64>() + 4 * size_of::<Vector>();
         self.bound.capacity() * in_double
             + (13 * self.curvature.capacity() + 2 * 2 * self.given.capacity()) * size_of::<T>()
+            + self.extension.bytes()
     }
 }
 

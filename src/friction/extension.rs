@@ -76,6 +76,15 @@ impl<T: Real> Extension<T> {
         Ok(Extension { grids })
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let of = |fields: &Fields<T>| {
+            let Fields { decay, share, values, rows, .. } = fields;
+            size_of_val(&decay[..]) + size_of_val(&share[..]) + size_of_val(&values[..]) + size_of_val(&rows[..])
+        };
+        self.grids.iter().map(of).sum()
+    }
+
     /// For a grid, where it is not there yet.
     pub fn fit(&mut self, grid: &Grid, threads: &Threads) -> Result<()> {
         if self.grids.is_empty() {

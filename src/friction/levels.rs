@@ -15,7 +15,7 @@
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
 
 use super::certificate::ON_THE_CIRCLE;
-use super::extension::neighbours;
+use super::extension::{neighbours, Extension};
 use super::march::Rolling;
 use super::operators::Operators;
 use super::problem::{add, onto_disc, plus, square, Problem, State};
@@ -24,7 +24,7 @@ use super::shift::Memory;
 use super::{Tangential, Vector};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::zeros;
+use crate::memory::{collected, zeros};
 use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
@@ -82,7 +82,10 @@ impl Level {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.problem.bytes() + 2 * self.state.q.len() * size_of::<Vector>() + self.memory.bytes()
+        let Level { problem, state, memory, .. } = self;
+        let continued = problem.extension.as_ref().map_or(0, Extension::bytes);
+        let fields = 2 * state.q.len() * size_of::<Vector>();
+        problem.bytes() + problem.places.bytes() + continued + fields + memory.bytes()
     }
 }
 
@@ -135,7 +138,7 @@ fn children(fine: &Grid, coarse: &Grid) -> usize {
 }
 
 /// g, w and what goes with them on the next coarser grid; q = 0.
-pub fn restrict(fine: &Problem, coarse: &mut Level) {
+pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
     let Level { problem, state, .. } = coarse;
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
@@ -155,7 +158,8 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
         (bound / all as f64, of_all(slip), of_all(rigid))
     };
     let rows = problem.bound.chunks_mut(to.mx).zip(problem.slip.chunks_mut(to.mx)).zip(problem.rigid.chunks_mut(to.mx));
-    problem.operators.threads.for_each(&mut rows.collect::<Vec<_>>(), |iy, ((bound, slip), rigid)| {
+    let mut rows = collected(rows, "the rows of a coarser grid")?;
+    problem.operators.threads.for_each(&mut rows, |iy, ((bound, slip), rigid)| {
         for ix in 0..to.mx {
             (bound[ix], slip[ix], rigid[ix]) = element(iy * to.mx + ix);
         }
@@ -164,6 +168,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) {
     problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();
     state.unload(problem.threads());
+    Ok(())
 }
 
 /// How much longer a step of steady rolling is on a coarse grid.
@@ -190,7 +195,7 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
     let is_rolling = fine.problem.operators.rolling.is_some();
     let shorter = 1.0 / step_ratio(&coarse.problem, &fine.problem);
     fine.problem.offset = coarse.problem.offset.map(|w| shorter * w);
-    let (x, y) = (places(to.mx, from.mx), places(to.my, from.my));
+    let (x, y) = (places(to.mx, from.mx)?, places(to.my, from.my)?);
     let between = |i: usize| {
         let g = fine.problem.bound[i];
         if !(g > 0.0) {
@@ -280,7 +285,7 @@ fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
 }
 
 /// Of each fine place the two coarse ones between which its centre lies, with their weights.
-fn places(fine: usize, coarse: usize) -> Vec<[(usize, f64); 2]> {
+fn places(fine: usize, coarse: usize) -> Result<Vec<[(usize, f64); 2]>> {
     let of = |i: usize| if fine == coarse { [(i, 1.0), (i, 0.0)] } else { neighbours(i, coarse) };
-    (0..fine).map(of).collect()
+    collected((0..fine).map(of), "the start from a coarser grid")
 }

@@ -11,9 +11,9 @@
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `fgmres`, `march`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
-//! | `sensitivity` | derivatives of the forces by creepages and spin |
+//! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `request`, `scales`, `take_over`, `solver`, `result` | coarser grids, nested iteration, units, and the whole solve |
+//! | `levels`, `nested`, `request`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
 
 mod balance;
 mod best;
@@ -24,11 +24,13 @@ mod component;
 mod corral;
 pub mod cross;
 pub mod dense;
+mod derivatives;
 mod disc;
 mod discs;
 mod extension;
 mod fgmres;
 mod forces;
+mod last;
 mod levels;
 mod march;
 mod nested;
@@ -61,6 +63,7 @@ pub(crate) use certificate::rest;
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
+pub use last::Last;
 pub use request::{Request, Start, Superposed};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;

@@ -60,7 +60,7 @@ pub fn solve(
     if nested {
         for l in 1..levels.len() {
             let (fine, coarse) = levels.split_at_mut(l);
-            restrict(&fine[l - 1].problem, &mut coarse[0]);
+            restrict(&fine[l - 1].problem, &mut coarse[0])?;
         }
         for l in (1..levels.len()).rev() {
             let level = &mut levels[l];

@@ -158,10 +158,10 @@ impl Operators {
         }
     }
 
-    /// Bytes of the spectra.
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
         fn of<T: Real>(operator: &Option<(Toeplitz<T>, Workspace<T>)>) -> usize {
-            operator.as_ref().map_or(0, |(operator, _)| operator.bytes())
+            operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
         }
         of(&self.exact) + of(&self.fast) + of(&self.inverse)
     }

@@ -98,6 +98,11 @@ impl Places {
         })
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.elements.capacity() * size_of::<u32>() + self.blocks.capacity() * size_of::<Block>()
+    }
+
     /// A field on C by blocks.
     pub fn cut<'a, A>(&'a self, field: &'a mut [A]) -> impl Iterator<Item = &'a mut [A]> {
         debug_assert_eq!(field.len(), self.count());

@@ -18,6 +18,8 @@ pub struct Request<'a> {
     pub sideways: Option<&'a [Vector]>,
     /// Where it starts.
     pub start: Start<'a>,
+    /// Whether the caller has cancelled before: then it ends where it starts.
+    pub is_cancelled: bool,
     /// Whether errors are to be estimated.
     pub estimates: bool,
 }
@@ -25,7 +27,8 @@ pub struct Request<'a> {
 impl<'a> Request<'a> {
     /// From the tractions before the step, for like bodies, in 1000 iterations at most, without estimates.
     pub fn new(pressure: &'a [f64], friction: &'a Friction<'a>, tolerance: f64) -> Request<'a> {
-        Request { pressure, friction, tolerance, limit: 1000, sideways: None, start: Start::Before, estimates: false }
+        let (limit, start) = (1000, Start::Before);
+        Request { pressure, friction, tolerance, limit, sideways: None, start, is_cancelled: false, estimates: false }
     }
 }
 

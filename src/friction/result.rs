@@ -1,41 +1,14 @@
-//! What a solve leaves: the result on the whole grid, and derivatives.
+//! What a solve leaves: the result on the whole grid.
 
 use super::certificate::is_on_circle;
 use super::levels::Level;
 use super::problem::against;
-use super::sensitivity;
-use super::shift::Memory;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use super::window::Window;
 use crate::effects::{Friction, Prescribed};
-use crate::error::Result;
 
 impl Solver {
-    /// See [`Report::sensitivities`].
-    pub(super) fn sensitivities(&mut self, friction: &Friction<'_>, window: Option<Window>) -> Result<[[f64; 3]; 3]> {
-        let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(level)) = (window, self.levels.first_mut()) else { return Ok(derivatives) };
-        level.be_ready()?;
-        let Level { problem, state, memory, .. } = level;
-        sensitivity::predict(problem, state, &mut memory.tangent)?;
-        for by in 0..3 {
-            let mut change = memory.fields.take(state.q.len())?;
-            for (k, i) in window.elements(&self.grid) {
-                change[k] = self.scales.change(friction.rigid_slip_by(&self.grid, i, by));
-            }
-            let Memory { tangent, fields, .. } = memory;
-            sensitivity::solve(problem, tangent, (fields, &mut change), sensitivity::TOLERANCE)?;
-            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
-            let (force, moment) = resultant(&self.grid, problem.threads(), friction.spin_centre, changes);
-            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
-                row[by] = value;
-            }
-            memory.fields.give(change);
-        }
-        Ok(derivatives)
-    }
-
     /// The result on the whole grid, and what is to be said of it.
     pub(super) fn write(
         &mut self,
@@ -74,9 +47,8 @@ impl Solver {
             });
             // Without friction all slips.
             let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
-            let mut slipping = vec![0; grid.my];
-            threads.for_each(&mut slipping, |iy, count| *count = without(iy));
-            report.certificate.slip_count += slipping.iter().sum::<usize>();
+            threads.for_each(&mut self.sums, |iy, sum| sum[0] = without(iy) as f64);
+            report.certificate.slip_count += self.sums.iter().map(|sum| sum[0] as usize).sum::<usize>();
         } else {
             traction.fill([0.0; 2]);
             slip.fill([0.0; 2]);
@@ -89,6 +61,6 @@ impl Solver {
             };
         }
         let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
-        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions);
+        (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions, &mut self.sums);
     }
 }

@@ -36,7 +36,7 @@ pub struct Report {
     /// Creepages: given, or found.
     pub creepage: Vector,
     /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
-    /// that are found count as given.
+    /// that are found count as given. The pressures are held, but where a solve finds those of unlike bodies. None after it was cancelled.
     pub sensitivities: Option<[[f64; 3]; 3]>,
     /// mu N: the sum of the traction bounds, times the area of an element.
     pub carried: f64,
@@ -74,16 +74,17 @@ impl Default for Report {
 }
 
 /// The force of tractions, and their moment about `centre`, a place from the middle of the grid. `row(iy)` gives those of a row, each with
-/// its column.
+/// its column; `sums` has room for one of each row.
 pub fn resultant<I: Iterator<Item = (usize, Vector)>>(
     grid: &Grid,
     threads: &Threads,
     centre: Vector,
     row: impl Fn(usize) -> I + Sync + Send,
+    sums: &mut [[f64; 3]],
 ) -> (Vector, f64) {
     let (Grid { mx, my, dx, dy }, area) = (*grid, grid.element_area());
-    let mut sums = vec![[0.0; 3]; my];
-    threads.for_each_plain_row(&mut sums, 1, |iy, sum| {
+    sums.fill([0.0; 3]);
+    threads.for_each_plain_row(sums, 1, |iy, sum| {
         let y = (iy as f64 - 0.5 * (my as f64 - 1.0)) * dy - centre[1];
         for (ix, q) in row(iy) {
             let x = (ix as f64 - 0.5 * (mx as f64 - 1.0)) * dx - centre[0];

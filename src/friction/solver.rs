@@ -43,7 +43,11 @@ pub struct Solver {
     pub(super) before: Vec<Vector>,
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
-    has_solution: bool,
+    pub(super) has_solution: bool,
+    /// The box of the last solve.
+    pub(super) window: Option<Window>,
+    /// Sums of each row, while a result is summed up.
+    pub(super) sums: Vec<[f64; 3]>,
 }
 
 /// What a start by superposition is worth.
@@ -81,6 +85,8 @@ impl Solver {
             before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
+            window: None,
+            sums: Vec::new(),
         }
     }
 
@@ -110,9 +116,10 @@ impl Solver {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let displaced = self.displaced.as_ref().map_or(0, |displaced| displaced.operator.bytes());
+        let displaced = self.displaced.as_ref().map_or(0, Displaced::bytes);
         let fields = self.solution.traction.len() * (2 * size_of::<Vector>() + size_of::<i32>())
-            + self.before.capacity() * size_of::<Vector>();
+            + self.before.capacity() * size_of::<Vector>()
+            + size_of_val(&self.sums[..]);
         self.levels.iter().map(Level::bytes).sum::<usize>() + displaced + fields
     }
 
@@ -143,7 +150,7 @@ impl Solver {
         });
         let window = Window::around(&self.grid, &self.threads.for_a_pass(self.grid.len()), |i| {
             pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
-        });
+        })?;
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
@@ -166,18 +173,25 @@ impl Solver {
                     self.begin(&request, from_rest, window, bound)?
                 };
                 let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
-                end = self.iterate(request, forces, (nested, had_slip), watch, &mut report)?;
+                end = match request.is_cancelled {
+                    true => Outcome::Cancelled,
+                    false => self.iterate(request, forces, (nested, had_slip), watch, &mut report)?,
+                };
+                let Level { problem, state, .. } = &self.levels[0];
+                report.certificate = Certificate::of(problem, state);
             }
             let Problem { bound, operators, .. } = &self.levels[0].problem;
             let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
+        self.window = window;
+        // Before the result is written: what fails leaves the last one.
+        if friction.sensitivities && end != Outcome::Cancelled {
+            report.sensitivities = Some(self.sensitivities(friction)?);
+            report.products += self.take_products();
+        }
         self.write(friction, pressure, window, &mut report);
         report.missing = missing(friction, &report);
-        if friction.sensitivities {
-            report.sensitivities = Some(self.sensitivities(friction, window)?);
-            report.products += self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64;
-        }
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
@@ -201,8 +215,6 @@ impl Solver {
         report.products += work.products;
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
         report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
-        let Level { problem, state, .. } = &self.levels[0];
-        report.certificate = Certificate::of(problem, state);
         Ok(end)
     }
 

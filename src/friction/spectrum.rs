@@ -11,8 +11,8 @@
 use super::coefficients::Entry;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{blank, keep};
-use crate::operator::fft::{ColumnTransform, Complex, Real};
+use crate::memory::{blank, keep, zeros};
+use crate::operator::fft::{room_for_plans, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
@@ -43,11 +43,12 @@ pub fn general<T: Real>(
     unit: f64,
     threads: &Threads,
 ) -> Result<Spectrum<T>> {
+    room_for_plans::<f64>(&[px, py])?;
     let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let (nb, mx, my) = (rows.bins(), grid.mx as i64, grid.my as i64);
     let nothing = Complex::new(f64::NAN, f64::NAN);
     let mut in_x = blank((2 * grid.my - 1) * nb, [nothing; 3], SPECTRUM)?;
-    let mut scratch = SetUp::for_pieces(threads, &rows, &columns);
+    let mut scratch = SetUp::for_pieces(threads, &rows, &columns)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |i, out, piece| {
         let ky = i as i64 - (my - 1);
         piece.row.fill([0.0; 3]);
@@ -90,14 +91,14 @@ pub fn even<T: Real>(
     unit: f64,
     threads: &Threads,
 ) -> Result<Option<Spectrum<T>>> {
+    room_for_plans::<f64>(&[px, py])?;
     let (rows, columns) = (ColumnTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let (nb, half) = (px / 2 + 1, py / 2 + 1);
-    let piece = |_| {
-        let mut scratch = rows.scratch();
-        columns.fit(&mut scratch);
-        (vec![Complex::default(); px.max(py)], scratch)
+    let of_transforms = rows.scratch_length().max(columns.scratch_length());
+    let piece = |_| -> Result<(Vec<Complex<f64>>, Vec<Complex<f64>>)> {
+        Ok((zeros(px.max(py), SPECTRUM)?, zeros(of_transforms, SPECTRUM)?))
     };
-    let mut scratch: Vec<_> = (0..threads.count()).map(piece).collect();
+    let mut scratch = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
     let mut in_x: Vec<Entry> = blank(given.1 * nb, [f64::NAN; 3], SPECTRUM)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {
         let row = &mut row[..px];
@@ -168,16 +169,17 @@ struct SetUp {
 }
 
 impl SetUp {
-    fn for_pieces(threads: &Threads, rows: &RowTransform<f64>, columns: &ColumnTransform<f64>) -> Vec<SetUp> {
-        let mut scratch = rows.scratch();
-        columns.fit(&mut scratch);
-        let piece = |_| SetUp {
-            row: vec![[0.0; 3]; rows.length()],
-            values: vec![0.0; rows.length()],
-            bins: vec![Complex::default(); rows.bins()],
-            column: vec![Complex::default(); columns.length()],
-            waves: vec![[Complex::default(); 3]; columns.length()],
-            scratch: scratch.clone(),
+    fn for_pieces(threads: &Threads, rows: &RowTransform<f64>, columns: &ColumnTransform<f64>) -> Result<Vec<SetUp>> {
+        let of_transforms = rows.scratch_length().max(columns.scratch_length());
+        let piece = |_| {
+            Ok(SetUp {
+                row: zeros(rows.length(), SPECTRUM)?,
+                values: zeros(rows.length(), SPECTRUM)?,
+                bins: zeros(rows.bins(), SPECTRUM)?,
+                column: zeros(columns.length(), SPECTRUM)?,
+                waves: zeros(columns.length(), SPECTRUM)?,
+                scratch: zeros(of_transforms, SPECTRUM)?,
+            })
         };
         (0..threads.count()).map(piece).collect()
     }

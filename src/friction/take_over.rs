@@ -12,7 +12,7 @@ use super::Vector;
 use crate::effects::{Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
-use crate::memory::{blank, unwritten};
+use crate::memory::{blank, unwritten, zeros};
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -45,6 +45,7 @@ impl Solver {
         if self.solution.traction.is_empty() {
             let n = self.grid.len();
             let field = || blank(n, [f64::NAN; 2], FIELDS);
+            self.sums = zeros(self.grid.my, FIELDS)?;
             self.solution = Solution { traction: field()?, slip: field()?, adhesion: blank(n, EXTERIOR, FIELDS)? };
         }
         Ok(())

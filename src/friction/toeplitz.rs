@@ -25,7 +25,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{computed, keep};
 use crate::operator::columns::for_each_mirrored_block;
-use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
+use crate::operator::fft::{good_length, room_for_plans, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
@@ -91,7 +91,7 @@ impl<T: Real> Toeplitz<T> {
         let unit = unit_of(quadrant.at(0, 0)[0]);
         let product = spectrum::even(period, (grid.mx, grid.my), fill, Kind::Direct, unit, threads)?;
         let spectrum = product.unwrap_or_else(|| unreachable!("only an inverse may not be"));
-        Ok(Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, HERE)), unit, threads))
+        Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, HERE)), unit, threads)
     }
 
     /// See [`inverse`](Self::inverse).
@@ -108,7 +108,7 @@ impl<T: Real> Toeplitz<T> {
         let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
         let inverse = spectrum::even(period, given, fill, Kind::Inverse, unit, threads)?;
         let uncoupled = quadrant.is_uncoupled(grid, HERE);
-        Ok(inverse.map(|spectrum| Toeplitz::with(grid, period, (spectrum, uncoupled), unit, threads)))
+        inverse.map(|spectrum| Toeplitz::with(grid, period, (spectrum, uncoupled), unit, threads)).transpose()
     }
 
     /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
@@ -130,7 +130,7 @@ impl<T: Real> Toeplitz<T> {
         let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
         let unit = unit_of(quadrant.at(0, 0)[0]);
         let spectrum = spectrum::general(grid, period, fill, unit, threads)?;
-        Ok(Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, by)), unit, threads))
+        Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, by)), unit, threads)
     }
 
     fn with(
@@ -139,8 +139,9 @@ impl<T: Real> Toeplitz<T> {
         (spectrum, is_uncoupled): (Spectrum<T>, bool),
         unit: f64,
         threads: &Threads,
-    ) -> Toeplitz<T> {
-        Toeplitz {
+    ) -> Result<Toeplitz<T>> {
+        room_for_plans::<T>(&[px, py])?;
+        Ok(Toeplitz {
             mx: grid.mx,
             my: grid.my,
             rows: ColumnTransform::new(px),
@@ -150,7 +151,7 @@ impl<T: Real> Toeplitz<T> {
             is_uncoupled,
             threads: threads.clone(),
             unit,
-        }
+        })
     }
 
     /// The same operator in another precision.
@@ -165,7 +166,7 @@ impl<T: Real> Toeplitz<T> {
         };
         let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
         let periods = (self.rows.length(), self.columns.length());
-        Ok(Toeplitz::with(&grid, periods, (spectrum, self.is_uncoupled), self.unit, &self.threads))
+        Toeplitz::with(&grid, periods, (spectrum, self.is_uncoupled), self.unit, &self.threads)
     }
 
     /// Bytes of the spectrum.

@@ -5,6 +5,7 @@ use super::workspace::Workspace;
 use super::Tangential;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
+use crate::memory::zeros;
 use crate::threads::Threads;
 
 /// A box of elements: the first column and row, and behind the last.
@@ -16,8 +17,12 @@ pub struct Window {
 
 impl Window {
     /// Around the elements that are `inside`; none if there is none.
-    pub fn around(grid: &Grid, threads: &Threads, inside: impl Fn(usize) -> bool + Sync + Send) -> Option<Window> {
-        let mut ends = vec![None; grid.my];
+    pub fn around(
+        grid: &Grid,
+        threads: &Threads,
+        inside: impl Fn(usize) -> bool + Sync + Send,
+    ) -> Result<Option<Window>> {
+        let mut ends: Vec<Option<(usize, usize)>> = zeros(grid.my, "the box around the contact area")?;
         threads.for_each(&mut ends, |iy, ends| {
             let row = iy * grid.mx;
             let first = (0..grid.mx).find(|ix| inside(row + ix));
@@ -25,7 +30,7 @@ impl Window {
             *ends = first.and_then(|first| Some((first, last()? + 1)));
         });
         let rows = ends.iter().enumerate().filter_map(|(iy, ends)| ends.map(|x| Window { x, y: (iy, iy + 1) }));
-        rows.reduce(|a, b| Window { x: (a.x.0.min(b.x.0), a.x.1.max(b.x.1)), y: (a.y.0, b.y.1) })
+        Ok(rows.reduce(|a, b| Window { x: (a.x.0.min(b.x.0), a.x.1.max(b.x.1)), y: (a.y.0, b.y.1) }))
     }
 
     /// Its grid.
@@ -61,6 +66,13 @@ pub struct Displaced {
     grid: Grid,
     pub operator: Toeplitz<f64>,
     pub workspace: Workspace<f64>,
+}
+
+impl Displaced {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.operator.bytes() + self.workspace.bytes()
+    }
 }
 
 /// Products displaced by so many elements, set up where they are not there.

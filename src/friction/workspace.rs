@@ -2,7 +2,7 @@
 
 use super::toeplitz::Toeplitz;
 use crate::error::Result;
-use crate::memory::{blank, keep};
+use crate::memory::{blank, keep, zeros};
 use crate::operator::columns::BLOCK;
 use crate::operator::fft::{Complex, Real};
 
@@ -26,6 +26,17 @@ pub(super) struct Piece<T: Real> {
     pub(super) scratch: Vec<Complex<T>>,
 }
 
+impl<T: Real> Workspace<T> {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let piece = |piece: &Piece<T>| {
+            let Piece { row, columns, mirrored, scratch } = piece;
+            size_of_val(&row[..]) + size_of_val(&columns[..]) + size_of_val(&mirrored[..]) + size_of_val(&scratch[..])
+        };
+        size_of_val(&self.bins[..]) + self.pieces.iter().map(piece).sum::<usize>()
+    }
+}
+
 impl<T: Real> Drop for Workspace<T> {
     fn drop(&mut self) {
         keep([&mut self.bins]);
@@ -40,10 +51,9 @@ impl<T: Real> Toeplitz<T> {
         let nothing = Complex::new(T::nan(), T::nan());
         let columns = || blank(BLOCK * py, nothing, WORKSPACE);
         let piece = |_| {
-            let mut scratch = self.rows.scratch();
-            self.real_rows.fit(&mut scratch);
-            self.columns.fit(&mut scratch);
-            Ok(Piece { row: vec![T::zero(); px], columns: columns()?, mirrored: columns()?, scratch })
+            let of_rows = self.rows.scratch_length().max(self.real_rows.scratch_length());
+            let scratch = zeros(of_rows.max(self.columns.scratch_length()), WORKSPACE)?;
+            Ok(Piece { row: zeros(px, WORKSPACE)?, columns: columns()?, mirrored: columns()?, scratch })
         };
         let pieces = (0..self.threads.count()).map(piece).collect::<Result<_>>()?;
         Ok(Workspace { bins: blank(self.my * px, nothing, WORKSPACE)?, pieces })

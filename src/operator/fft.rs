@@ -3,7 +3,7 @@
 //! Plans are kept per thread and precision, so that a second operator of the same size costs no planning.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -15,6 +15,8 @@ use rustfft::{Fft, FftNum, FftPlanner};
 use super::even_plan::EvenPlan;
 use super::lane_rows::RowPlan;
 use super::lanes::Lanes;
+use crate::error::Result;
+use crate::memory::sparse;
 use crate::sums::Value;
 
 /// `f32` or `f64`.
@@ -35,6 +37,8 @@ pub trait Real:
 #[doc(hidden)]
 pub struct Plans<T: Real> {
     planner: FftPlanner<T>,
+    /// Lengths for whose plans there was room.
+    planned: HashSet<usize>,
     /// Of transforms of real rows, by their length.
     twiddles: HashMap<usize, Arc<[Complex<T>]>>,
     /// Of columns of even coefficients, by theirs.
@@ -49,6 +53,7 @@ macro_rules! real {
             static $plans: RefCell<Plans<$t>> =
                 RefCell::new(Plans {
                     planner: FftPlanner::new(),
+                    planned: HashSet::new(),
                     twiddles: HashMap::new(),
                     even: HashMap::new(),
                     rows: HashMap::new(),
@@ -63,6 +68,21 @@ macro_rules! real {
 }
 real!(f64, PLANS_F64);
 real!(f32, PLANS_F32);
+
+/// Values that the plans of a length take, both ways, relative to it: one in each stage, and what a stage is made from.
+const PLANS: usize = 4;
+
+/// Refuses transforms of some lengths where there is no room for their plans. The FFT crate cannot refuse: it would end the process. Plans that
+/// this thread has take no room.
+pub fn room_for_plans<T: Real>(lengths: &[usize]) -> Result<()> {
+    T::with_plans(|plans| {
+        let new = || lengths.iter().filter(|length| !plans.planned.contains(length));
+        let values = new().fold(0_usize, |all, length| all.saturating_add(length.saturating_mul(PLANS)));
+        drop(sparse::<Complex<T>>(values, "the plans of transforms")?);
+        plans.planned.extend(lengths);
+        Ok(())
+    })
+}
 
 /// The twiddles of real rows of length `n`, computed once.
 pub(super) fn twiddles<T: Real>(n: usize, compute: impl FnOnce() -> Vec<Complex<T>>) -> Arc<[Complex<T>]> {

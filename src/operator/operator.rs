@@ -9,7 +9,7 @@ use std::iter::once;
 use std::ops::Range;
 
 use super::convolution::Convolution;
-use super::fft::{Complex, Real};
+use super::fft::{room_for_plans, Complex, Real};
 use super::lane_rows::LaneRows;
 use super::periods::{full_reach, periods, Reach};
 use super::row_tables::PerRow;
@@ -59,7 +59,10 @@ impl<T: Real> Operator<T> {
 
     /// For products with pressures within a reach.
     pub fn within(reach: Reach, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
-        let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads);
+        let (px, py) = periods(coefficients, grid, reach);
+        room_for_plans::<T>(&[px, py])?;
+        room_for_plans::<f64>(&[px, py])?;
+        let mut operator = Operator::of_period(grid, (px, py), threads);
         operator.reach = reach;
         operator.renew(coefficients, 1.0, grid, &mut SetUp::default())?;
         Ok(operator)

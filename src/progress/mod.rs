@@ -125,8 +125,9 @@ impl<'a> Monitor<'a> {
         self.tell(grid, changes, update, residual)
     }
 
+    /// Tells the caller, who is not asked again after having cancelled.
     fn tell(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
-        if let Some(callback) = &mut self.callback {
+        if let (Some(callback), false) = (&mut self.callback, self.cancelled) {
             let progress = Progress {
                 mx: grid.mx,
                 my: grid.my,
@@ -137,7 +138,7 @@ impl<'a> Monitor<'a> {
                 update,
                 residual,
             };
-            self.cancelled |= callback(&progress);
+            self.cancelled = callback(&progress);
         }
         !self.cancelled
     }

@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::{Guess, InitialGuess, Options, Outcome, Report, Solver};
 use crate::contact::State;
+use crate::effects::Previous;
 use crate::error::{invalid, Result};
 use crate::scene::Scene;
 use crate::threads::Threads;
@@ -18,6 +19,15 @@ pub struct Problem<'a> {
     pub guess: Option<Guess<'a>>,
 }
 
+/// Refuses a problem that would go on from whatever its worker solved last.
+pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
+    if scene.friction.is_some_and(|friction| friction.previous == Previous::Kept) {
+        let message = "friction->continues is 1; in a batch it must be 0, for the order of the solves is not known";
+        return invalid(format!("{message}: give previous_traction"));
+    }
+    Ok(())
+}
+
 impl Solver {
     /// Solves many problems with the same options, as many at a time as the solver was set up with threads; each solve runs on
     /// one thread. `found(i, outcome, state)` is called for each problem, on the thread that solved it and in no particular
@@ -25,8 +35,8 @@ impl Solver {
     /// `i` of what the batch returns.
     ///
     /// A problem that is refused does not keep the others from being solved. Results have the same bits as those of one solve
-    /// after the other with one thread. PREVIOUS is refused: the order of the solves is not known. This solver's own
-    /// [`state`](Self::state) stays as it is.
+    /// after the other with one thread. PREVIOUS is refused, and so is a problem whose friction [continues](crate::scene::Previous::Kept): the
+    /// order of the solves is not known. This solver's own [`state`](Self::state) stays as it is.
     pub fn solve_batch<R: Send>(
         &mut self,
         problems: &[Problem<'_>],
@@ -36,7 +46,8 @@ impl Solver {
         self.check_batch(options)?;
         let results: Vec<Mutex<Option<R>>> = problems.iter().map(|_| Mutex::new(None)).collect();
         self.distribute(problems.len(), |i, worker| {
-            let outcome = worker.solve(&problems[i].scene, options, problems[i].guess, None);
+            let Problem { scene, guess } = &problems[i];
+            let outcome = check_problem(scene).and_then(|()| worker.solve(scene, options, *guess, None));
             let result = found(i, outcome, worker.state());
             *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
         })?;

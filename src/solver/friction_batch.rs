@@ -8,7 +8,7 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::tangential::{check_pressures, measures, Tangent, Turn};
+use super::tangential::{measures, positive, Tangent, Turn};
 use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects::{Effect, Previous};
 use crate::error::{invalid, Result};
@@ -78,12 +78,12 @@ pub fn solve_friction_batch(
         return invalid("friction->continues is 1; in a table there is no step before".into());
     }
     let threads = Threads::new(options.threads)?;
-    let solver;
+    let (solver, given);
     let (stop, mut report, pressure) = match pressure {
         Some(pressure) => {
-            check_pressures(&scene.grid, pressure)?;
-            let measures = measures(&scene.grid, pressure);
-            (Outcome::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, pressure)
+            given = positive(&scene.grid, pressure)?;
+            let measures = measures(&scene.grid, &given);
+            (Outcome::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, &*given)
         }
         None => {
             let normal = Scene { friction: None, ..scene.clone() };

@@ -8,9 +8,11 @@ mod best;
 mod by_approach;
 mod check;
 mod compression;
+mod coupled;
 mod estimates;
 mod friction_batch;
 mod iterate;
+mod kept;
 mod methods;
 mod nested;
 mod normal;
@@ -22,6 +24,7 @@ mod take_over;
 mod tangential;
 mod tangential_estimates;
 mod turns;
+mod unlike_sensitivities;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,6 +33,7 @@ pub use crate::operator::Precision;
 pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
+pub(crate) use batch::check_problem;
 pub use batch::Problem;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use options::{ActiveSet, InitialGuess, Method, Options};
@@ -63,8 +67,8 @@ pub struct Guess<'a> {
 
 /// Operators and grids for many solves on one grid and one pair of bodies. One thread at a time.
 ///
-/// It holds the last complete result, or none: after a solve that was refused before it began the result is that of the solve before,
-/// after one that failed on the way there is none.
+/// It holds the last complete result, or none: after a solve that was refused before it began, or for its friction, the result is that of the
+/// solve before; after another one that failed on the way there is none.
 ///
 /// A solve from nothing or from a given guess has the same result, to the last bit, whatever was solved before. After a first
 /// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for two
@@ -188,6 +192,8 @@ impl Solver {
         self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
+        self.check_continues(scene)?;
+        let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
             let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
@@ -202,8 +208,10 @@ impl Solver {
             report.solve_seconds = monitor.seconds();
             Ok((stop, report))
         });
-        self.has_result &= outcome.is_ok();
         self.ledger = monitor.ledger.rows;
+        if outcome.is_err() {
+            self.go_back(kept);
+        }
         let (stop, mut report) = outcome?;
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;

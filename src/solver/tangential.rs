@@ -1,42 +1,24 @@
 //! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
 
+use std::borrow::Cow;
+
+use super::coupled::Coupled;
 use super::{Measures, Options, Outcome, ProgressCallback};
 use crate::contact::State;
-use crate::effects::Previous;
 use crate::error::{invalid, Error, Result};
-use crate::friction::{
-    Compliance, Coupling, CrossTables, Report, Request, Solution, Solver, Source, Start, Tangential, Vector,
-};
+use crate::friction::{Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::operator::Precision;
 use crate::progress::Monitor;
-use crate::scene::{Friction, Motion, Prescribed, Scene};
+use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
-
-/// What memory is for.
-const FIELDS: &str = "the coupling of unlike bodies";
 
 /// What a solver keeps for scenes with friction.
 pub struct Tangent {
     solver: Solver,
     /// Of unlike bodies.
     coupled: Option<Coupled>,
-}
-
-/// What unlike bodies need beside: see [`Coupling`].
-struct Coupled {
-    source: Source,
-    here: Coupling,
-    /// Of rolling: at the places before the step, which are so many elements away.
-    there: Option<((f64, f64), Coupling)>,
-    sideways: Vec<Vector>,
-    along_normal: Vec<f64>,
-    /// The scene's own undeformed distance, a copy, and the one with what tractions displace.
-    own: Vec<f64>,
-    displaced: Vec<f64>,
-    /// Pressures of the last step.
-    last_pressure: Vec<f64>,
 }
 
 /// What stands still while normal and tangential problem are solved in turns.
@@ -82,7 +64,7 @@ impl Tangent {
 
     /// Whether it has the coefficients that a scene asks for.
     pub fn suits(&self, friction: &Friction<'_>) -> bool {
-        let cross = self.coupled.as_ref().map(|coupled| &coupled.source);
+        let cross = self.coupled.as_ref().map(Coupled::source);
         let has_cross = match (cross, &friction.influence) {
             (Some(Source::Tables(tables)), Some(influence)) => tables.are_of(influence),
             (_, Some(influence)) => influence.cross.is_none(),
@@ -126,15 +108,16 @@ impl Tangent {
     ) -> Result<(Outcome, Report)> {
         let Tangent { solver, coupled } = self;
         if let Some(coupled) = coupled {
-            coupled.displace(turn, pressure)?;
+            coupled.displace(&turn.scene.grid, turn.friction, pressure, turn.threads)?;
         }
         let request = Request {
             pressure,
             friction: turn.friction,
             tolerance: turn.options.tolerance,
             limit: turn.options.max_cycles as u64,
-            sideways: coupled.as_ref().map(|coupled| &coupled.sideways[..]),
+            sideways: coupled.as_ref().map(Coupled::sideways),
             start,
+            is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
         };
         solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
@@ -164,37 +147,43 @@ impl Tangent {
         }
     }
 
-    /// The distance of a scene whose normal problem is solved. Of unlike bodies a copy is made: a callback may change the caller's.
+    /// The distance of a scene whose normal problem is solved.
     pub fn take_distance(&mut self, h: &[f64]) {
         if let Some(coupled) = &mut self.coupled {
-            coupled.own.copy_from_slice(h);
+            coupled.take_distance(h);
         }
     }
 
-    /// The undeformed distance with what the tractions displace along the normal, and by how much that has changed: rms over C,
-    /// relative to `h - approach`. None where bodies are alike.
-    pub fn distance(&mut self, state: &State) -> Option<(&[f64], f64)> {
-        let Tangent { solver, coupled: Some(Coupled { here, along_normal, own, displaced, .. }) } = self else {
-            return None;
-        };
-        here.along_normal(&solver.solution()?.traction, along_normal);
-        let (mut changes, mut distances) = (0.0, 0.0);
-        for i in 0..along_normal.len() {
-            let h = own[i];
-            if state.contact[i] {
-                changes += (h + along_normal[i] - state.h[i]).powi(2);
-                distances += (state.h[i] - state.approach).powi(2);
-            }
-            displaced[i] = h + along_normal[i];
-        }
-        let change = if changes == 0.0 { 0.0 } else { (changes / distances).sqrt() };
-        Some((&displaced[..], change))
+    /// See [`Coupled::distance`]. None where bodies are alike.
+    pub fn distance(&mut self, state: &State) -> Option<(&[f64], Option<f64>)> {
+        let traction = &self.solver.solution()?.traction;
+        Some(self.coupled.as_mut()?.distance(traction, state))
+    }
+
+    /// Both problems of unlike bodies, linear: see [`Coupled`] and [`Solver::change`]. None where bodies are alike.
+    pub fn both(&mut self) -> Option<(&mut Solver, &mut Coupled)> {
+        Some((&mut self.solver, self.coupled.as_mut()?))
     }
 
     /// The step is done: the next one may continue from its pressures.
     pub fn keep_pressures(&mut self, p: &[f64]) {
         if let Some(coupled) = &mut self.coupled {
-            coupled.last_pressure.copy_from_slice(p);
+            coupled.keep_pressures(p);
+        }
+    }
+
+    /// The last result, to [go back](Tangent::go_back) to; of like bodies nothing: it is replaced only when a solve has come to its end.
+    pub fn last(&self) -> Result<Option<Last>> {
+        match self.coupled {
+            Some(_) => self.solver.last(),
+            None => Ok(None),
+        }
+    }
+
+    /// Several turns ended without a result: there is the last one.
+    pub fn go_back(&mut self, last: Option<Last>) {
+        if self.coupled.is_some() {
+            self.solver.go_back(last);
         }
     }
 }
@@ -213,7 +202,7 @@ pub fn solve_tangential(
     let Some(friction) = &scene.friction else {
         return invalid("friction is not given: there is nothing to solve".into());
     };
-    check_pressures(&scene.grid, pressure)?;
+    let pressure = &*positive(&scene.grid, pressure)?;
     let threads = Threads::new(options.threads)?;
     let mut monitor = Monitor::new(progress, Vec::new(), false);
     let mut tangent = Tangent::new(scene, options, &threads)?;
@@ -225,8 +214,8 @@ pub fn solve_tangential(
     Ok((stop, tangent.into_solution(), report))
 }
 
-/// Refuses pressures that are not one finite value per element.
-pub(super) fn check_pressures(grid: &Grid, pressure: &[f64]) -> Result<()> {
+/// The pressures of what is in contact: negative ones are 0. Refuses those that are not one finite value per element.
+pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [f64]>> {
     if pressure.len() != grid.len() {
         let (values, elements) = (pressure.len(), grid.len());
         return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
@@ -235,64 +224,21 @@ pub(super) fn check_pressures(grid: &Grid, pressure: &[f64]) -> Result<()> {
         let (element, p) = (grid.element(i), pressure[i]);
         return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
     }
-    Ok(())
+    if pressure.iter().all(|p| *p >= 0.0) {
+        return Ok(Cow::Borrowed(pressure));
+    }
+    let mut positive: Vec<f64> = zeros(pressure.len(), "the pressures of what is in contact")?;
+    positive.iter_mut().zip(pressure).for_each(|(to, p)| *to = p.max(0.0));
+    Ok(Cow::Owned(positive))
 }
 
 /// What is to be said of pressures that are given.
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
-    let positive = || pressure.iter().filter(|p| **p > 0.0);
+    let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {
-        force: positive().sum::<f64>() * grid.element_area(),
-        max_pressure: positive().copied().fold(0.0, f64::max),
-        contact_count: positive().count(),
+        force: pressing().sum::<f64>() * grid.element_area(),
+        max_pressure: pressing().copied().fold(0.0, f64::max),
+        contact_count: pressing().count(),
         ..Measures::default()
-    }
-}
-
-impl Coupled {
-    fn new(grid: &Grid, source: Source, threads: &Threads) -> Result<Coupled> {
-        let n = grid.len();
-        Ok(Coupled {
-            here: Coupling::new(grid, &source, (0.0, 0.0), threads)?,
-            source,
-            there: None,
-            sideways: zeros(n, FIELDS)?,
-            along_normal: zeros(n, FIELDS)?,
-            own: zeros(n, FIELDS)?,
-            displaced: zeros(n, FIELDS)?,
-            last_pressure: zeros(n, FIELDS)?,
-        })
-    }
-
-    /// Bytes held.
-    fn bytes(&self) -> usize {
-        let there = self.there.as_ref().map_or(0, |(_, there)| there.bytes());
-        let fields = size_of::<Vector>() + 4 * size_of::<f64>();
-        self.source.bytes() + self.here.bytes() + there + self.own.len() * fields
-    }
-
-    /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures
-    /// before were the same.
-    fn displace(&mut self, turn: &Turn<'_>, p: &[f64]) -> Result<()> {
-        let Turn { scene, friction, threads, .. } = turn;
-        self.sideways.fill([0.0; 2]);
-        self.here.add_sideways(p, 1.0, &mut self.sideways);
-        let before = match (friction.motion, friction.previous) {
-            (Motion::SteadyRolling, _) | (_, Previous::Given(_)) => p,
-            (_, Previous::None) => return Ok(()),
-            (_, Previous::Kept) => &self.last_pressure,
-        };
-        if friction.motion == Motion::Shift {
-            self.here.add_sideways(before, -1.0, &mut self.sideways);
-            return Ok(());
-        }
-        let by = friction.elements_rolled(&scene.grid);
-        if !self.there.as_ref().is_some_and(|(known, _)| *known == by) {
-            self.there = Some((by, Coupling::new(&scene.grid, &self.source, by, threads)?));
-        }
-        if let Some((_, there)) = &mut self.there {
-            there.add_sideways(before, -1.0, &mut self.sideways);
-        }
-        Ok(())
     }
 }

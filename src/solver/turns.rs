@@ -8,7 +8,7 @@ use crate::contact::{lowest, Fixed, NonNegative, Survey};
 use crate::error::Result;
 use crate::friction::{self, Start};
 use crate::progress::{Monitor, Outcome};
-use crate::scene::Scene;
+use crate::scene::{Friction, Scene};
 
 /// Turns of the normal and the tangential problem of unlike bodies at most: each brings them together by 4 to 30 times.
 const MOST_TURNS: u32 = 50;
@@ -23,27 +23,52 @@ impl Solver {
         stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<friction::Report>)> {
-        let mut kept = self.friction.take();
         let Some(friction) = scene.friction.as_ref() else {
-            if let Some(before) = &mut kept {
-                before.forget();
-            }
-            self.friction = kept;
+            self.friction.iter_mut().for_each(|before| before.forget());
             return Ok((stop, None));
         };
         let threads = self.problem.threads.clone();
-        let mut tangent = match kept {
-            Some(kept) if kept.suits(friction) => kept,
-            _ => Box::new(Tangent::new(scene, options, &threads)?),
+        let (mut tangent, replaced) = match self.friction.take() {
+            Some(before) if before.suits(friction) => (before, None),
+            before => match Tangent::new(scene, options, &threads) {
+                Ok(new) => (Box::new(new), before),
+                Err(error) => {
+                    self.friction = before;
+                    return Err(error);
+                }
+            },
         };
         let turn = Turn { scene, friction, options, threads: &threads };
-        tangent.take_distance(&self.state.h);
-        let outcome = self.take_turns(&mut tangent, &turn, stop, monitor);
-        if outcome.is_ok() {
-            tangent.keep_pressures(&self.state.p);
-        }
-        self.friction = Some(tangent);
+        let outcome = tangent.last().and_then(|last| {
+            let outcome = self.solve_step(&mut tangent, &turn, stop, monitor);
+            match outcome.is_ok() {
+                true => tangent.keep_pressures(&self.state.p),
+                false => tangent.go_back(last),
+            }
+            outcome
+        });
+        // What was replaced has the last result, if this is none.
+        self.friction = replaced.filter(|_| outcome.is_err()).or(Some(tangent));
         outcome.map(|(stop, found)| (stop, Some(found)))
+    }
+
+    /// Both problems, and what was asked for beside. What was cancelled stays so.
+    fn solve_step(
+        &mut self,
+        tangent: &mut Tangent,
+        turn: &Turn<'_>,
+        stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, friction::Report)> {
+        tangent.take_distance(&self.state.h);
+        // Of unlike bodies derivatives follow when the turns are over.
+        let follow = turn.friction.sensitivities && !tangent.is_of_like_bodies();
+        let friction = &Friction { sensitivities: turn.friction.sensitivities && !follow, ..*turn.friction };
+        let (stop, mut found) = self.take_turns(tangent, &Turn { friction, ..*turn }, stop, monitor)?;
+        if follow && !monitor.is_cancelled() {
+            self.add_sensitivities(tangent, turn, &mut found, monitor)?;
+        }
+        Ok((if monitor.is_cancelled() { Outcome::Cancelled } else { stop }, found))
     }
 
     fn take_turns(
@@ -62,6 +87,10 @@ impl Solver {
             }
             (found.products, found.seconds) = (found.products + smaller.products, found.seconds + smaller.seconds);
         }
+        if turn.options.initial_guess != InitialGuess::Previous {
+            // Turns go on from each other, not from what was solved before.
+            self.methods.projected_cg.forget_solutions();
+        }
         let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
         for solved in 0..=MOST_TURNS {
             let so_far = worse(stop, tangential_stop);
@@ -69,7 +98,10 @@ impl Solver {
                 return Ok((so_far, found));
             };
             // Tractions that displace nothing leave the normal problem as it was found.
-            if change == 0.0 || self.holds_with(distance, change, turn, monitor) || so_far != Outcome::Converged {
+            let Some(change) = change else {
+                return Ok((so_far, found));
+            };
+            if self.holds_with(distance, change, turn, monitor) || so_far != Outcome::Converged {
                 return Ok((so_far, found));
             }
             if solved == MOST_TURNS {

@@ -238,6 +238,26 @@ fn elements_at_the_limit_are_in_contact_with_2() {
     assert_eq!(call.report.known.max_pressure, 1000.0);
 }
 
+/// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
+#[test]
+fn a_batch_refuses_friction_that_continues() {
+    let mut call = Call::new();
+    call.use_friction();
+    let handle = call.new_handle();
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()));
+    }
+    call.use_friction().continues = 1;
+    let before = call.outputs();
+    let (status, message) = call.run(Through::SolverSolveBatch, handle);
+    assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(["problem 0", "friction->continues is 1", "batch"].iter().all(|word| message.contains(word)), "{message}");
+    assert!(call.outputs() == before, "outputs were written");
+    assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()));
+    // SAFETY: a handle, not used any more.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
 /// A name, and what is changed in a good call.
 type Change = (&'static str, fn(&mut Call));
 

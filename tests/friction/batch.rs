@@ -244,3 +244,34 @@ fn progress_is_told_on_the_calling_thread_and_may_cancel() {
         }
     }
 }
+
+/// Negative pressures count as no contact: of unlike bodies they displace nothing sideways either.
+#[test]
+fn pressures_that_pull_are_none() {
+    let h = vec![0.0; M * M];
+    let positive = pressure();
+    let pulls: Vec<f64> =
+        positive.iter().enumerate().map(|(i, p)| if *p > 0.0 { *p } else { -((i % 7) as f64) * 100.0 }).collect();
+    let unlike = Bodies { shear_modulus: [82000.0, 20000.0], poisson_ratio: [0.1, 0.4] };
+    for (friction, bodies) in frictions().into_iter().flat_map(|friction| [(friction, BODIES), (friction, unlike)]) {
+        let entries = &table(&friction)[..3];
+        let scene = Scene { bodies, ..scene(&h, friction) };
+        let alone = |p: &[f64]| {
+            let (_, solution, report) = solve_tangential(&scene, p, &options(1), None).unwrap();
+            let force = report.friction.unwrap().force.map(f64::to_bits);
+            (force, solution.traction, solution.slip, report.measures)
+        };
+        assert!(alone(&pulls) == alone(&positive), "{friction:?}");
+        let all = |p: &[f64]| -> Vec<_> {
+            let (_, found) = batch(&scene, Some(p), entries, &options(1), None);
+            found.into_iter().map(|(ended, tractions)| (report(&ended).force.map(f64::to_bits), tractions)).collect()
+        };
+        assert!(all(&pulls) == all(&positive), "{friction:?}");
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut wrong = pulls.clone();
+            wrong[5] = bad;
+            let refusal = solve_tangential(&scene, &wrong, &options(1), None).map(|_| ());
+            assert!(matches!(refusal, Err(Error::NotFinite(_))), "{bad}");
+        }
+    }
+}

@@ -3,7 +3,8 @@
 use contact_normal::error::Error;
 use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{
-    Bodies, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene,
+    Bodies, Coating, CoatingLayer, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit,
+    Scene,
 };
 use contact_normal::solver::{solve, ActiveSet, Guess, Options, Outcome, Progress, Solver};
 
@@ -75,6 +76,64 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         // Of pressures of some 1000.
         assert!(change > 1.0, "{name}: {change}");
         assert!(name != "fixed contact area" || solver.state().p.iter().any(|p| *p < 0.0), "no element pulls");
+    }
+}
+
+/// A coating of no thickness, or of its body's own material, is none: beside friction, tables, a period, and on a handle.
+#[test]
+fn a_coating_that_is_none_is_beside_everything() {
+    let (grid, h) = ball(24, 0.08);
+    let bodies = Bodies { shear_modulus: [82000.0, 40000.0], poisson_ratio: [0.28, 0.35] };
+    let plain = Scene::new(grid, &h, bodies, Load::Force(1000.0));
+    let table: Vec<f64> = (0..4 * grid.len())
+        .map(|i| 1e-6 * (-((i % 48) as f64 - 24.0).hypot((i / 48) as f64 - 24.0) / 4.0).exp())
+        .collect();
+    let scenes = [
+        Scene { friction: Some(pushed()), ..plain.clone() },
+        Scene { influence: Some(Table::new(24, 24, &table, &grid).unwrap()), ..plain.clone() },
+        Scene { period: Some(Period { x: true, y: false }), ..plain.clone() },
+        plain,
+    ];
+    let layer =
+        |thickness, shear_modulus, poisson_ratio| Some(CoatingLayer { thickness, shear_modulus, poisson_ratio });
+    let none = [
+        [layer(0.0, 5.0, 0.3), None],
+        [None, layer(1.0, 40000.0, 0.35)],
+        [layer(2.0, 82000.0, 0.28), layer(0.0, 1e9, 0.1)],
+        [None, None],
+    ];
+    for scene in &scenes {
+        let options = Options::default();
+        let mut handle = Solver::new(scene, &options).unwrap();
+        let bits = |solver: &Solver| {
+            let q = solver.friction().map(|found| found.traction.clone());
+            (solver.state().p.clone(), solver.state().u.clone(), q)
+        };
+        handle.solve(scene, &options, None, None).unwrap();
+        let expected = bits(&handle);
+        for layers in none {
+            let coated = Scene { coating: Some(Coating { layers }), ..scene.clone() };
+            let (new, stop, _) = solve(&coated, &options).unwrap();
+            assert!(stop == Outcome::Converged && bits(&new) == expected, "{layers:?}");
+            handle.solve(&coated, &options, None, None).unwrap();
+            assert!(bits(&handle) == expected, "{layers:?}");
+        }
+        // What is no coating is refused all the same, and so is one that is there.
+        for (layers, word) in [
+            ([layer(-1.0, 82000.0, 0.28), None], "thickness"),
+            ([layer(0.0, -1.0, 0.28), None], "shear_modulus"),
+            ([layer(1.0, 82000.0, 0.28), layer(0.0, 1.0, 0.7)], "poisson_ratio"),
+        ] {
+            let refused = solve(&Scene { coating: Some(Coating { layers }), ..scene.clone() }, &options).map(|_| ());
+            assert!(refused.unwrap_err().to_string().contains(word), "{layers:?}");
+        }
+        if scene.friction.is_some() {
+            let coating = Some(Coating { layers: [layer(0.1, 1e5, 0.28), None] });
+            let Err(Error::Unsupported(message)) = solve(&Scene { coating, ..scene.clone() }, &options) else {
+                panic!("a coating beside friction")
+            };
+            assert!(message.contains("coating") && message.contains("friction"), "{message}");
+        }
     }
 }
 

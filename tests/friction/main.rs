@@ -1,6 +1,7 @@
 //! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
 
 mod batch;
+mod cancelling;
 mod cattaneo;
 mod coefficients;
 mod conditions;
@@ -10,7 +11,9 @@ mod estimates;
 mod hard;
 mod linear_theory;
 mod onset_of_rolling;
+mod refusals;
 mod rolling;
+mod same_bits;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]
 mod scenes;
@@ -25,5 +28,7 @@ mod support;
 mod tables;
 mod threads;
 mod unlike;
+mod unlike_at_limit;
+mod unlike_sensitivities;
 mod wheel_on_rail;
 mod wheel_rail;

@@ -56,7 +56,7 @@ fn coupling_coefficients_are_those_of_quadrature() {
 }
 
 /// A ball of radius 100 on m x m elements of 0.25.
-fn ball(m: usize) -> (Grid, Vec<f64>) {
+pub fn ball(m: usize) -> (Grid, Vec<f64>) {
     let grid = Grid::new(m, m, 0.25, 0.25).unwrap();
     let centre = 0.5 * (m as f64 - 1.0);
     let h = (0..grid.len())
@@ -68,17 +68,17 @@ fn ball(m: usize) -> (Grid, Vec<f64>) {
     (grid, h)
 }
 
-const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
+pub const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
 
 /// The coefficients of a pair of bodies on m x m elements of 0.25, for all offsets.
-struct Sums {
+pub struct Sums {
     m: usize,
     /// Azz, Axx, Axy, Ayy, Axz, Ayz.
     coefficients: Vec<[f64; 6]>,
 }
 
 impl Sums {
-    fn new(m: usize, bodies: &Bodies) -> Sums {
+    pub fn new(m: usize, bodies: &Bodies) -> Sums {
         let compliance = Compliance::of(bodies);
         let (normal, tangential) =
             (HalfSpace::new(0.25, 0.25, bodies.compliance()), Tangential::new(0.25, 0.25, compliance));
@@ -94,7 +94,7 @@ impl Sums {
     }
 
     /// The displacements [ux, uy, uz] of an element by tractions q, and those by pressures p.
-    fn displacements(&self, i: usize, q: &[[f64; 2]], p: &[f64]) -> [[f64; 3]; 2] {
+    pub fn displacements(&self, i: usize, q: &[[f64; 2]], p: &[f64]) -> [[f64; 3]; 2] {
         let m = self.m;
         let [mut by_tractions, mut by_pressures] = [[0.0; 3]; 2];
         for (j, ([qx, qy], p)) in q.iter().zip(p).enumerate() {

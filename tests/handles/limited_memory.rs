@@ -11,6 +11,8 @@ thread_local! {
     static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
     /// Of those, how many succeed.
     static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
+    /// Bytes that may be held where another one that counts is asked for.
+    static ROOM: Cell<i64> = const { Cell::new(i64::MAX) };
     /// Bytes held.
     static HELD: Cell<i64> = const { Cell::new(0) };
 }
@@ -19,7 +21,7 @@ fn may_have(bytes: usize) -> bool {
     if bytes >= LARGE.get() {
         let allowed = ALLOWED.get();
         ALLOWED.set(allowed.saturating_sub(1));
-        if allowed == 0 {
+        if allowed == 0 || HELD.get() + bytes as i64 > ROOM.get() {
             return false;
         }
     }
@@ -71,6 +73,15 @@ pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     let result = run();
     LARGE.set(usize::MAX);
     ALLOWED.set(u64::MAX);
+    result
+}
+
+/// Calls `run` with room for so many bytes more: allocations of `large` bytes or more beyond it fail.
+#[allow(dead_code)] // tests/handles asks; tests/memory.rs does not.
+pub fn within<R>(large: usize, bytes: i64, run: impl FnOnce() -> R) -> R {
+    ROOM.set(HELD.get() + bytes);
+    let result = with(large, u64::MAX, run);
+    ROOM.set(i64::MAX);
     result
 }
 

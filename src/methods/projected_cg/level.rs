@@ -40,8 +40,8 @@ pub struct Level {
     windowed: Option<Windowed>,
     /// Of the window's pressures, in its units, while a scene has limits.
     limits: Vec<f64>,
-    /// Whether the next window is chosen without regard to the one there is.
-    choose_anew: bool,
+    /// The window that the next one is to be like, if it serves; none: it is chosen by itself.
+    current: Option<Window>,
 }
 
 impl Level {
@@ -55,7 +55,7 @@ impl Level {
             threads: threads.clone(),
             windowed: None,
             limits: Vec::new(),
-            choose_anew: true,
+            current: None,
         }
     }
 
@@ -94,7 +94,17 @@ impl Level {
 
     /// The next window is chosen by itself, so that a result does not depend, in the last bits, on the solve before.
     pub fn forget_window(&mut self) {
-        self.choose_anew = true;
+        self.current = None;
+    }
+
+    /// The window of the last iteration.
+    pub fn current_window(&self) -> Option<Window> {
+        self.current.clone()
+    }
+
+    /// The next window is chosen as after an iteration on this one.
+    pub fn go_back_to(&mut self, window: Option<Window>) {
+        self.current = window;
     }
 
     /// Bytes held.
@@ -196,9 +206,8 @@ impl Level {
 
     /// The window that an iteration from `state` works on.
     pub fn window(&self, state: &State) -> Window {
-        let current = self.windowed.as_ref().map(|windowed| &windowed.window).filter(|_| !self.choose_anew);
         match self.influence.depends_on_place() {
-            false => Window::around(state, current, self.influence.is_even(&self.grid), &self.threads),
+            false => Window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
             true => Window::full(&self.grid),
         }
     }
@@ -211,7 +220,7 @@ impl Level {
 
     fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
         let window = self.window(state);
-        self.choose_anew = false;
+        self.current = Some(window.clone());
         let grid = window.grid(&self.grid);
         let units = match self.precision {
             Precision::Double => Scaling::SAME,

@@ -28,6 +28,7 @@ mod vectors;
 mod window;
 
 pub use iteration::{Cycle, End};
+pub use predictor::Predictor;
 pub use step::ProjectedCg;
 pub use vectors::Iteration;
 pub use window::Window;

@@ -36,6 +36,16 @@ impl Predictor {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
+    /// A copy.
+    pub fn copy(&self) -> Result<Predictor> {
+        let copy = |values: &[f64]| -> Result<Vec<f64>> {
+            let mut copy = zeros(values.len(), "the solution before")?;
+            copy.copy_from_slice(values);
+            Ok(copy)
+        };
+        Ok(Predictor { p: copy(&self.p)?, u: copy(&self.u)?, is_of_others: self.is_of_others })
+    }
+
     /// The coefficients are others from now on: u is near A p.
     pub fn forget_coefficients(&mut self) {
         self.is_of_others = true;

@@ -7,7 +7,7 @@
 use super::coarse_grids::CoarseGrids;
 use super::level::Level;
 use super::predictor::Predictor;
-use super::End;
+use super::{End, Window};
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::{release, reserve, rests};
@@ -74,6 +74,27 @@ impl ProjectedCg {
     pub fn forget_windows(&mut self) {
         self.finest.forget_window();
         self.coarse.iter_mut().for_each(CoarseGrids::forget_windows);
+    }
+
+    /// A copy of what a step in time goes on from, beside the last solution itself.
+    pub fn last(&self) -> Result<(Predictor, Option<Window>)> {
+        Ok((self.predictor.copy()?, self.finest.current_window()))
+    }
+
+    /// The window of the last iteration.
+    pub fn current_window(&self) -> Option<Window> {
+        self.finest.current_window()
+    }
+
+    /// The next one is chosen as after an iteration on this one.
+    pub fn go_back_to(&mut self, window: Option<Window>) {
+        self.finest.go_back_to(window);
+    }
+
+    /// A step in time goes on from there.
+    pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Window>)) {
+        self.predictor = predictor;
+        self.finest.go_back_to(window);
     }
 
     /// Lets go of the problem's operator.

@@ -1,0 +1,94 @@
+//! Derivatives of the last result by what moves it, on the whole grid.
+//!
+//! While the elements that slip stay the same, their tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see
+//! [`sensitivity`]), and a change dw of the slip, which holds that of the sideways displacements by pressures, gives
+//!
+//! ```text
+//! (P A P + D) z = -P (dw + A mu dp n)
+//! ```
+
+use super::sensitivity;
+use super::shift::Memory;
+use super::solution::resultant;
+use super::solver::Solver;
+use super::tangent::Side;
+use super::Vector;
+use crate::effects::Friction;
+use crate::error::Result;
+
+impl Solver {
+    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are held.
+    pub(super) fn sensitivities(&mut self, friction: &Friction<'_>) -> Result<[[f64; 3]; 3]> {
+        let mut derivatives = [[0.0; 3]; 3];
+        let (Some(window), Some(level)) = (self.window, self.levels.first_mut()) else { return Ok(derivatives) };
+        level.be_ready()?;
+        for by in 0..3 {
+            let Memory { tangent, fields, .. } = &mut level.memory;
+            if by == 0 {
+                sensitivity::predict(&mut level.problem, &level.state, tangent)?;
+            }
+            let mut change = fields.take(level.state.q.len())?;
+            for (k, i) in window.elements(&self.grid) {
+                change[k] = self.scales.change(friction.rigid_slip_by(&self.grid, i, by));
+            }
+            sensitivity::solve(&mut level.problem, tangent, (fields, &mut change), sensitivity::TOLERANCE)?;
+            let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
+            let (force, moment) = {
+                let threads = level.problem.threads();
+                resultant(&self.grid, threads, friction.spin_centre, changes, &mut self.sums)
+            };
+            for (row, value) in derivatives.iter_mut().zip([force[0], force[1], moment]) {
+                row[by] = value;
+            }
+            fields.give(change);
+        }
+        Ok(derivatives)
+    }
+
+    /// How the tractions of the last result change with its pressures, by `dp`, and with the slip that is not theirs: `change` is dw on entry and
+    /// dq on return. All on the whole grid.
+    pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
+        let (Some(window), Some(level)) = (self.window, self.levels.first_mut()) else {
+            change.fill([0.0; 2]);
+            return Ok(());
+        };
+        level.be_ready()?;
+        let (problem, Memory { tangent, fields, .. }) = (&mut level.problem, &mut level.memory);
+        sensitivity::predict(problem, &level.state, tangent)?;
+        let n = level.state.q.len();
+        let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
+        for (k, i) in window.elements(&self.grid) {
+            let g = match tangent.side[k] {
+                Side::Slip => friction.coefficient.at(i) * dp[i],
+                _ => 0.0,
+            };
+            (slip[k], along[k]) =
+                (self.scales.change(change[i]), tangent.normal[k].map(|n| if g == 0.0 { 0.0 } else { g * n }));
+        }
+        let largest = along.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
+        if largest > 0.0 {
+            problem.operators.multiply(&along, largest, &mut displaced);
+            slip.iter_mut().zip(&displaced).for_each(|(w, u)| *w = [w[0] + u[0], w[1] + u[1]]);
+        }
+        sensitivity::solve(problem, tangent, (fields, &mut slip), sensitivity::TOLERANCE)?;
+        change.fill([0.0; 2]);
+        for (k, i) in window.elements(&self.grid) {
+            change[i] = [slip[k][0] + along[k][0], slip[k][1] + along[k][1]];
+        }
+        [slip, along, displaced].into_iter().for_each(|field| fields.give(field));
+        Ok(())
+    }
+
+    /// Products on the finest grid since it was asked last.
+    pub fn take_products(&mut self) -> f64 {
+        self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64
+    }
+
+    /// The force of a field of tractions on the whole grid, and its moment about `centre`.
+    pub fn resultant(&mut self, centre: Vector, field: &[Vector]) -> [f64; 3] {
+        let (grid, threads) = (&self.grid, &self.threads.suited_to(self.grid.len()));
+        let row = |iy: usize| field[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
+        let (force, moment) = resultant(grid, threads, centre, row, &mut self.sums);
+        [force[0], force[1], moment]
+    }
+}

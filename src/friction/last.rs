@@ -1,0 +1,46 @@
+//! The last result, copied, to go back to where a step of several solves comes to no end.
+
+use super::solution::Solution;
+use super::solver::Solver;
+use super::Vector;
+use crate::error::Result;
+use crate::memory::{blank, keep};
+
+/// A copy of the last result.
+pub struct Last {
+    solution: Solution,
+    offset: Vector,
+}
+
+impl Drop for Last {
+    fn drop(&mut self) {
+        let Solution { traction, slip, adhesion } = &mut self.solution;
+        keep([traction, slip]);
+        keep([adhesion]);
+    }
+}
+
+impl Solver {
+    /// A copy of the last result, if there is one.
+    pub fn last(&self) -> Result<Option<Last>> {
+        let Some(Solution { traction, slip, adhesion }) = self.solution() else { return Ok(None) };
+        let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
+            let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
+            copy.copy_from_slice(field);
+            Ok(copy)
+        };
+        let mut sides = blank(adhesion.len(), 0, "the tractions before")?;
+        sides.copy_from_slice(adhesion);
+        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, adhesion: sides };
+        Ok(Some(Last { solution, offset: self.offset }))
+    }
+
+    /// What was found since is gone.
+    pub fn go_back(&mut self, last: Option<Last>) {
+        self.has_solution = last.is_some();
+        if let Some(mut last) = last {
+            std::mem::swap(&mut self.solution, &mut last.solution);
+            self.offset = last.offset;
+        }
+    }
+}
