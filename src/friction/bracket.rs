@@ -81,9 +81,6 @@ pub fn solve(
         let sum = sum_of(problem, &state.q);
         let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
         let missing = square(excess).sqrt() / bounds;
-        if std::env::var("FDEBUG").is_ok() {
-            eprintln!("   trial offset {:?} excess {excess:?} missing {missing:e} inner {inner:e} {end:?} residual {residual:e} products {}", problem.offset, problem.operators.products);
-        }
         best.see(problem, state, missing.max(tolerance), &mut memory.fields)?;
         if missing < tolerance {
             return Ok(Outcome::Converged);

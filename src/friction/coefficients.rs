@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use super::series::{Series, Shape};
 use super::tables::Tables;
-use super::toeplitz::unit_of;
+use super::unit::unit_of;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::influence::gauss;

@@ -15,7 +15,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::toeplitz::unit_of;
+use super::unit::unit_of;
 use super::Vector;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;

@@ -13,7 +13,7 @@
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `request`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
+//! | `levels`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
 
 mod balance;
 mod best;
@@ -55,6 +55,7 @@ mod tables;
 mod take_over;
 mod tangent;
 mod toeplitz;
+mod unit;
 mod vectors;
 mod window;
 mod workspace;

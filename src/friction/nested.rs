@@ -150,14 +150,6 @@ fn one(
                 shift::solve(problem, state, memory, Goal { limit, ..goal })?
             }
         };
-        if std::env::var("FDEBUG").is_ok() {
-            eprintln!(
-                "{way:?} n {} {end:?} products {} limit {limit} offset {:?}",
-                problem.grid.len(),
-                problem.operators.products,
-                problem.offset
-            );
-        }
         work.products += part * problem.take_products() as f64;
         if end != Outcome::Stagnated && !(end == Outcome::IterationLimit && certified) {
             break;

@@ -3,7 +3,8 @@
 use super::coefficients::Tangential;
 use super::march::{March, Rolling};
 use super::quadrant::Quadrant;
-use super::toeplitz::{unit_of, Toeplitz};
+use super::toeplitz::Toeplitz;
+use super::unit::unit_of;
 use super::workspace::Workspace;
 use super::Vector;
 use crate::error::Result;

@@ -1,7 +1,7 @@
 //! Units of the iterations: powers of two, so that no bit changes. In them element sizes, coefficients and traction bounds are of order 1,
 //! whatever the caller's units are: squares, and what is in single precision, stay within range.
 
-use super::toeplitz::unit_of;
+use super::unit::unit_of;
 use super::{Tangential, Vector};
 use crate::grid::Grid;
 

@@ -19,6 +19,7 @@ use std::ops::Range;
 use super::coefficients::{Entry, Tangential};
 use super::quadrant::Quadrant;
 use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
+use super::unit::unit_of;
 use super::workspace::{Piece, Workspace};
 use super::Vector;
 use crate::error::Result;
@@ -54,15 +55,6 @@ impl<T: Real> Drop for Toeplitz<T> {
             Spectrum::Even(waves) => keep([waves]),
             Spectrum::General(waves) => keep([waves]),
         }
-    }
-}
-
-/// The power of two next to a value.
-pub fn unit_of(value: f64) -> f64 {
-    if value.is_normal() {
-        value.abs().log2().round().exp2()
-    } else {
-        1.0
     }
 }
 

@@ -3,7 +3,7 @@
 use super::super::disc::Units;
 use super::super::problem::{add, Problem, State};
 use super::super::tangent::rho_of;
-use super::super::toeplitz::unit_of;
+use super::super::unit::unit_of;
 use super::super::vectors::over;
 use super::{Discs, Way};
 use crate::error::Result;
