@@ -137,11 +137,16 @@ impl Methods {
         Ok(Some(false))
     }
 
-    /// The next method goes on from the best iterate; from what the direct solve leaves, having done nothing, as it is.
+    /// The next method goes on from the best iterate, or from nothing where that is worth nothing; from what the direct solve leaves, having done
+    /// nothing, as it is.
     fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
             self.best.restore(task)?;
+            let worthless = !(task.survey().violation(task.set) <= WORTHLESS);
+            if worthless && !S::FIXED && stage == Stage::Norm {
+                self.start(stage, task, Start::Nothing, 0.0)?;
+            }
         }
         Ok(())
     }
