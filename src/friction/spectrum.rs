@@ -95,9 +95,7 @@ pub fn even<T: Real>(
     let (rows, columns) = (ColumnTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
     let (nb, half) = (px / 2 + 1, py / 2 + 1);
     let of_transforms = rows.scratch_length().max(columns.scratch_length());
-    let piece = |_| -> Result<(Vec<Complex<f64>>, Vec<Complex<f64>>)> {
-        Ok((zeros(px.max(py), SPECTRUM)?, zeros(of_transforms, SPECTRUM)?))
-    };
+    let piece = |_| -> Result<(Vec<_>, Vec<_>)> { Ok((zeros(px.max(py), SPECTRUM)?, zeros(of_transforms, SPECTRUM)?)) };
     let mut scratch = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
     let mut in_x: Vec<Entry> = blank(given.1 * nb, [f64::NAN; 3], SPECTRUM)?;
     threads.for_each_row(&mut in_x, nb, &mut scratch, |ky, out, (row, scratch)| {

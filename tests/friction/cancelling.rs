@@ -47,7 +47,11 @@ fn pushed(motion: Motion, by_force: bool) -> Friction<'static> {
 }
 
 /// A solve on a handle, whose result must be whole: finite, and within its bounds.
-fn on_a_handle(scene: &Scene<'_>, options: &Options, fixed: bool) -> impl FnMut(ProgressCallback<'_>) -> Outcome {
+fn on_a_handle<'s>(
+    scene: &Scene<'s>,
+    options: &Options,
+    fixed: bool,
+) -> impl FnMut(ProgressCallback<'_>) -> Outcome + use<'s> {
     let n = scene.grid.len();
     let scene = scene.clone();
     let options = *options;
@@ -199,7 +203,7 @@ fn a_wanted_accuracy_its_price_list_and_stresses() {
     }
     let body = Body { grid, poisson_ratio: 0.3, periodic: false };
     let pressure = vec![1.0; grid.len()];
-    let loads = Loads { pressure: Some(&pressure), traction_x: None, traction_y: None };
+    let loads = Loads { pressure: Some(&pressure), traction_x: None, traction_y: None, patches: None };
     let depths = [0.1, 0.2, 0.3, 0.4];
     cancelled_once("stresses", |progress| {
         let all =
