@@ -7,6 +7,7 @@ mod batch;
 mod best;
 mod by_approach;
 mod check;
+mod compressible;
 mod compression;
 mod estimates;
 mod friction_batch;
@@ -48,7 +49,7 @@ use crate::influence::{Coefficients, Table};
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
-use compression::Compressible;
+use compressible::Compressible;
 use methods::Methods;
 use tangential::Tangent;
 
