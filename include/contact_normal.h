@@ -652,7 +652,7 @@ typedef struct contact_normal_scene {
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0; default 0. Not read when the approach is prescribed.
+   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
    */
   double force;
   /*
@@ -783,7 +783,7 @@ typedef struct contact_normal_options {
    */
   int32_t criterion;
   /*
-   Of the criterion; default 1e-6.
+   Of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
    */
   double tolerance;
   /*
@@ -1210,7 +1210,7 @@ typedef struct contact_normal_accuracy {
    */
   int64_t struct_size;
   /*
-   Estimated relative error of the force (of the approach, when the force is prescribed) at most; default 1e-3.
+   Estimated relative error of the force (of the approach, when the force is prescribed) at most, between 0 and 1; default 1e-3.
    */
   double target;
   /*
@@ -1259,11 +1259,11 @@ typedef struct contact_normal_accuracy {
    */
   double seconds;
   /*
-   Estimated relative error of the largest pressure at most; 0 (default): not asked for.
+   Estimated relative error of the largest pressure at most, below 1; 0 (default): not asked for.
    */
   double max_pressure_target;
   /*
-   Estimated relative error of the corrected contact area at most; 0 (default): not asked for.
+   Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
    */
   double contact_area_target;
 } contact_normal_accuracy;
@@ -1273,7 +1273,7 @@ typedef struct contact_normal_accuracy {
  */
 typedef struct contact_normal_price {
   /*
-   The relative error that is wanted.
+   The relative error that is wanted, between 0 and 1.
    */
   double target;
   /*
@@ -1720,12 +1720,12 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
 void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *outputs);
 
 /*
- Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
- tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
- this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, and a
- `period` in both directions matter. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED.
- Of the options (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written,
- others are left alone. Since 0.2.
+ Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
+ `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
+ and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
+ and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this
+ body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads` and `progress`
+ matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,
@@ -1738,10 +1738,11 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
                                                        struct contact_normal_stress_outputs *outputs);
 
 /*
- Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
- element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
- point. A point at z = 0 on the edge of an element is refused: stresses jump there or are infinite. Time grows with n times the
- number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
+ Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so
+ that element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
+ yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
+ `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
+ Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
  */
 contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
                                                       int32_t body,

@@ -44,7 +44,7 @@ class SolveOptions(TypedDict, total=False):
     criterion : str or int
         "RESIDUAL" (default) or "UPDATE".
     tolerance : float
-        Of the criterion; default 1e-6.
+        Of the criterion, between 0 and 1; default 1e-6.
     error_ratio : float
         If > 0, the solve may stop once the residual is below this part of the estimated discretisation error; default 0.
     max_cycles : int

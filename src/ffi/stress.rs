@@ -19,12 +19,12 @@ use crate::scene::Period;
 use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
 
-/// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and
-/// tractions `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on
-/// this body, in +x and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in
-/// both directions, and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED.
-/// Of the options (NULL: the defaults) `threads` and `progress` matter; a cycle is a depth. CANCELLED: the depths done so far are written,
-/// others are left alone. Since 0.2.
+/// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
+/// `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
+/// and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
+/// and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this
+/// body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads` and `progress`
+/// matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are left alone. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(
     scene: *const contact_normal_scene,
@@ -55,11 +55,11 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
     })
 }
 
-/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so that
-/// element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz, yz of each
-/// point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With `patches` a point
-/// must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index. Time grows with n times the
-/// number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
+/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so
+/// that element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
+/// yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
+/// `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
+/// Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_at_points(
     scene: *const contact_normal_scene,

@@ -6,35 +6,11 @@
 use super::{Guess, InitialGuess, Options, Solver};
 use crate::contact::{Fixed, Freshness, NonNegative, Survey};
 use crate::error::Result;
-use crate::influence::Coefficients;
 use crate::progress::{Measures, Monitor, Outcome};
 use crate::scene::{Load, Scene};
 
 /// Of the tolerance, where it has to be met once more.
 const SAFETY: f64 = 0.5;
-
-/// Coefficients that have a constant, and whether the solver is set up without it.
-#[derive(Clone)]
-pub struct Compressible {
-    coefficients: Coefficients,
-    /// None: neither, an attempt to change failed.
-    is_without: Option<bool>,
-}
-
-impl Compressible {
-    /// The coefficients that a load is solved with, and this if they are not the only ones.
-    pub fn of(coefficients: Coefficients, load: Load) -> (Coefficients, Option<Compressible>) {
-        let Some(without) = coefficients.without_constant() else { return (coefficients, None) };
-        let is_without = matches!(load, Load::Force(_));
-        let used = if is_without { without } else { coefficients.clone() };
-        (used, Some(Compressible { coefficients, is_without: Some(is_without) }))
-    }
-
-    /// The compression by a uniform pressure that adds up to this over all elements.
-    fn by(&self, sum: f64) -> f64 {
-        self.coefficients.kernel().constant() * sum
-    }
-}
 
 impl Solver {
     /// Takes the coefficients that a load is solved with.

@@ -7,6 +7,7 @@ mod batch;
 mod best;
 mod by_approach;
 mod check;
+mod compressible;
 mod compression;
 mod coupled;
 mod estimates;
@@ -52,7 +53,7 @@ use crate::influence::{Coefficients, Table};
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
-use compression::Compressible;
+use compressible::Compressible;
 use methods::Methods;
 use tangential::Tangent;
 

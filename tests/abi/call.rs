@@ -68,7 +68,7 @@ pub struct Call {
     pub each: Vec<f64>,
     /// Of two patches.
     pub patch: Vec<i32>,
-    pub factors: [f64; 4],
+    pub factors: Box<[f64; 4]>,
     pub pressure: Vec<f64>,
     pub contact: Vec<i32>,
     /// The argument that is NULL instead.
@@ -113,7 +113,7 @@ impl Call {
             tables: Vec::new(),
             each: vec![1.0; N],
             patch: (0..N).map(|i| (2 * (i % MX) / MX) as i32).collect(),
-            factors: [1.0, 0.5, 0.5, 1.0],
+            factors: Box::new([1.0, 0.5, 0.5, 1.0]),
             pressure: vec![SENTINEL; N],
             contact: vec![SENTINEL_CONTACT; N],
             without: "",
@@ -205,7 +205,8 @@ impl Call {
 
     /// Two patches side by side, with these factors.
     pub fn use_patches(&mut self, factors: [f64; 4]) -> &mut contact_normal_patches {
-        self.factors = factors;
+        // On the heap: a call may be moved.
+        *self.factors = factors;
         let patches = &mut self.patches.known;
         (patches.count, patches.patch, patches.factors) = (2, self.patch.as_ptr(), self.factors.as_ptr());
         self.scene.known.patches = &raw const self.patches.known;

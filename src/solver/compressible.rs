@@ -1,0 +1,27 @@
+//! Coefficients of which a given force is solved without the constant that they have: see [`compression`](super::compression).
+
+use crate::influence::Coefficients;
+use crate::scene::Load;
+
+/// Coefficients that have a constant, and whether the solver is set up without it.
+#[derive(Clone)]
+pub struct Compressible {
+    pub coefficients: Coefficients,
+    /// None: neither, an attempt to change failed.
+    pub is_without: Option<bool>,
+}
+
+impl Compressible {
+    /// The coefficients that a load is solved with, and this if they are not the only ones.
+    pub fn of(coefficients: Coefficients, load: Load) -> (Coefficients, Option<Compressible>) {
+        let Some(without) = coefficients.without_constant() else { return (coefficients, None) };
+        let is_without = matches!(load, Load::Force(_));
+        let used = if is_without { without } else { coefficients.clone() };
+        (used, Some(Compressible { coefficients, is_without: Some(is_without) }))
+    }
+
+    /// The compression by a uniform pressure that adds up to this over all elements.
+    pub fn by(&self, sum: f64) -> f64 {
+        self.coefficients.kernel().constant() * sum
+    }
+}
