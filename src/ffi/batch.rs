@@ -15,7 +15,7 @@ use super::status::{
 };
 use super::structs::{self, Versioned};
 use crate::memory::collected;
-use crate::solver::{check_problem, Options, Solver};
+use crate::solver::{Options, Solver};
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
 /// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
@@ -163,7 +163,7 @@ impl Batch {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
-            check_problem(&scene)?;
+            Solver::check_problem(&scene)?;
             run(worker, (&scene, None), options, None, outputs, &mut Buffers::default())
         };
         let outcome = solved().unwrap_or_else(Conclusion::from);

@@ -19,15 +19,6 @@ pub struct Problem<'a> {
     pub guess: Option<Guess<'a>>,
 }
 
-/// Refuses a problem that would go on from whatever its worker solved last.
-pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
-    if scene.friction.is_some_and(|friction| friction.previous == Previous::Kept) {
-        let message = "friction->continues is 1; in a batch it must be 0, for the order of the solves is not known";
-        return invalid(format!("{message}: give previous_traction"));
-    }
-    Ok(())
-}
-
 impl Solver {
     /// Solves many problems with the same options, as many at a time as the solver was set up with threads; each solve runs on
     /// one thread. `found(i, outcome, state)` is called for each problem, on the thread that solved it and in no particular
@@ -47,7 +38,7 @@ impl Solver {
         let results: Vec<Mutex<Option<R>>> = problems.iter().map(|_| Mutex::new(None)).collect();
         self.distribute(problems.len(), |i, worker| {
             let Problem { scene, guess } = &problems[i];
-            let outcome = check_problem(scene).and_then(|()| worker.solve(scene, options, *guess, None));
+            let outcome = Solver::check_problem(scene).and_then(|()| worker.solve(scene, options, *guess, None));
             let result = found(i, outcome, worker.state());
             *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
         })?;
@@ -64,6 +55,15 @@ impl Solver {
                 "initial_guess is PREVIOUS; in a batch it must be NONE or GIVEN, for the order of the solves is not known"
                     .into(),
             );
+        }
+        Ok(())
+    }
+
+    /// Refuses a problem that would go on from whatever its worker solved last.
+    pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
+        if scene.friction.is_some_and(|friction| friction.previous == Previous::Kept) {
+            let message = "friction->continues is 1; in a batch it must be 0, for the order of the solves is not known";
+            return invalid(format!("{message}: give previous_traction"));
         }
         Ok(())
     }

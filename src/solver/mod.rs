@@ -34,7 +34,6 @@ pub use crate::operator::Precision;
 pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
-pub(crate) use batch::check_problem;
 pub use batch::Problem;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use options::{ActiveSet, InitialGuess, Method, Options};
