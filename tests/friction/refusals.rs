@@ -13,6 +13,9 @@ use super::support::ball;
 const LIKE: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 3.0], poisson_ratio: [0.2, 0.4] };
 
+/// Tractions and slips by their bits, and the side of each element.
+type Tractions = (Vec<[u64; 2]>, Vec<[u64; 2]>, Vec<i32>);
+
 /// Everything that a handle shows of its last result.
 #[derive(Debug, PartialEq)]
 struct Shown {
@@ -20,7 +23,7 @@ struct Shown {
     numbers: Vec<u64>,
     contact: Vec<bool>,
     at_limit: Vec<bool>,
-    traction: Option<(Vec<[u64; 2]>, Vec<[u64; 2]>, Vec<i32>)>,
+    traction: Option<Tractions>,
     rows: usize,
 }
 
