@@ -523,7 +523,7 @@ typedef struct contact_normal_friction {
    */
   int32_t motion;
   /*
-   1: the tractions before are those that this handle found last; 0 (default): `previous_traction`.
+   1: the tractions before are those that this handle found last (not in a batch); 0 (default): `previous_traction`.
    */
   int32_t continues;
   /*
@@ -1121,7 +1121,8 @@ typedef struct contact_normal_report {
   double tangential_seconds;
   /*
    If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-   creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given.
+   creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow
+   the tractions, but those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
    */
   double sensitivities[9];
   /*
@@ -1572,7 +1573,8 @@ contact_normal_status contact_normal_solver_set_influence(struct contact_normal_
 /*
  Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
  with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
- leaves the result before as it is, or none. INVALID_ARGUMENT if there is none. Since 0.1.
+ leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it.
+ INVALID_ARGUMENT if there is none. Since 0.1.
  */
 contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
                                                    struct contact_normal_fields *fields);
@@ -1639,7 +1641,7 @@ contact_normal_status contact_normal_friction_batch(const struct contact_normal_
  counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 
  Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
- `initial_guess` may be NONE or GIVEN, not PREVIOUS; what the solver itself solved last stays as it is, for later ones.
+ `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused; what the solver itself solved last stays as it is, for later ones.
  `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
  messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
  */
