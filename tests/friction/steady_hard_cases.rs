@@ -139,7 +139,12 @@ fn short_steps_on_long_elements_are_solved() {
             .collect();
         let (rolling_distance, rolling_direction) = (0.25, PI / 2.0);
         let friction = Friction { rolling_distance, rolling_direction, ..rolling(creepage, 0.0) };
-        let found = run(&mut solver(&grid, nu), &g, &friction, 1e-6);
+        // One of them takes more than the 1000 products that are allowed by default.
+        let request = Request { limit: 20_000, ..Request::new(&g, &friction, 1e-6) };
+        let mut solver = solver(&grid, nu);
+        let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
+        assert_eq!(end, Outcome::Converged, "{nu} {creepage:?} {report:?}");
+        let found = (report, solver.solution().unwrap().clone());
         let left = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
         assert!(left <= 1.001e-6, "{nu} {creepage:?}: {left}");
     }
