@@ -40,7 +40,7 @@ pub struct Outline {
     pub rows: usize,
 }
 
-/// Rows, one after the other, with the same contact.
+/// Rows, one after the other, with the same contact and as many of its ends at holes.
 #[derive(Default)]
 struct Same {
     rows: usize,
@@ -78,10 +78,11 @@ impl Outline {
                     outline.straight.1 += across - ends_across;
                     outline.straight_edges += ends_across;
                 }
-                if across > 0 || above.is_empty() {
+                let (changes, edges) = (along - ends_along, ends_along);
+                if across > 0 || above.is_empty() || (changes, edges) != (same.changes, same.edges) {
                     outline.close(&mut same, my);
                 }
-                same = Same { rows: same.rows + 1, changes: along - ends_along, edges: ends_along };
+                same = Same { rows: same.rows + 1, changes, edges };
                 outline.add_border(row, iy, my);
             }
             outline.rows += usize::from(touches);

@@ -130,12 +130,8 @@ impl Effect for Coating {
     fn mean_response(&self, scene: &Plain<'_>) -> f64 {
         // 1/M of a modulus and a ratio.
         let of = |g: f64, nu: f64| (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu));
-        let of_body = |b: usize| {
-            let below = of(scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
-            let layer = self.in_effect(b, scene);
-            layer.map_or(0.0, |layer| layer.thickness * (of(layer.shear_modulus, layer.poisson_ratio) - below))
-        };
-        of_body(0) + of_body(1)
+        let layers = (0..2).filter_map(|b| self.in_effect(b, scene));
+        layers.map(|layer| layer.thickness * of(layer.shear_modulus, layer.poisson_ratio)).sum()
     }
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {

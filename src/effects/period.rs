@@ -9,6 +9,7 @@ use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
+use crate::sums::in_blocks;
 
 /// In which directions the scene repeats itself, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +42,7 @@ impl Effect for Period {
             return Ok(());
         }
         let h = scene.undeformed_distance;
-        let mean = h.iter().sum::<f64>() / h.len() as f64;
+        let mean = in_blocks(h.iter().copied()) / h.len() as f64;
         if approach >= mean {
             return Err(Error::Infeasible(format!(
                 "approach is {approach}, the mean of undeformed_distance {mean}; with two periods the approach is relative to the \

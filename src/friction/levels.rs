@@ -24,7 +24,7 @@ use super::shift::Memory;
 use super::{Tangential, Vector};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{collected, zeros};
+use crate::memory::{collected, sparse, zeros};
 use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
@@ -118,7 +118,9 @@ pub fn levels(
     let mut quadrant = Quadrant::new(tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
     let mut finest = Level::new(grid, Operators::new(&quadrant, &grid, rolling, false, threads)?)?;
     finest.prepare(&quadrant, single)?;
-    let mut levels = vec![finest];
+    let coarser_grids = std::iter::successors(coarser(&grid), coarser).count();
+    let mut levels = sparse(1 + coarser_grids, "the grids of friction")?;
+    levels.push(finest);
     let (mut last, mut rolling) = (grid, rolling);
     while let Some(grid) = coarser(&last) {
         let tangential = quadrant.tangential().for_element(grid.dx, grid.dy)?;

@@ -49,7 +49,7 @@ impl<T: Real> Operator<T> {
             }
             1.0 / (factor * value)
         };
-        let mut inverse = Operator::of_period(grid, period, threads);
+        let mut inverse = Operator::of_period(grid, period, threads)?;
         if coefficients.wave(grid, 1.0 / grid.dx, 0.0).is_some() {
             inverse.set_values(|x, y| finish(wave_of(coefficients, grid, period, (x, y))))?;
             return Ok(positive.into_inner().then_some(inverse));

@@ -52,17 +52,14 @@ impl<T: Real> Operator<T> {
 
     /// Of coefficients times a factor, a power of two: no digit changes.
     pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
-        let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads);
+        let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads)?;
         operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
         Ok(operator)
     }
 
     /// For products with pressures within a reach.
     pub fn within(reach: Reach, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
-        let (px, py) = periods(coefficients, grid, reach);
-        room_for_plans::<T>(&[px, py])?;
-        room_for_plans::<f64>(&[px, py])?;
-        let mut operator = Operator::of_period(grid, (px, py), threads);
+        let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads)?;
         operator.reach = reach;
         operator.renew(coefficients, 1.0, grid, &mut SetUp::default())?;
         Ok(operator)
@@ -74,14 +71,16 @@ impl<T: Real> Operator<T> {
     }
 
     /// Plans of a period; the spectrum is still to be computed.
-    pub(super) fn of_period(grid: &Grid, (px, py): (usize, usize), threads: &Threads) -> Operator<T> {
-        Operator {
+    pub(super) fn of_period(grid: &Grid, (px, py): (usize, usize), threads: &Threads) -> Result<Operator<T>> {
+        room_for_plans::<T>(&[px, py])?;
+        room_for_plans::<f64>(&[px, py])?;
+        Ok(Operator {
             rows: Rows::new(grid.mx, grid.my, px, threads),
             columns: Columns::Convolution(Convolution::new((px, py))),
             reach: full_reach(grid),
             diagonal: Vec::new(),
             coupling: None,
-        }
+        })
     }
 
     /// The threads of its products.

@@ -16,6 +16,7 @@ use crate::friction::{self, Solution};
 use crate::memory::collected;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
+use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// Entries of a run.
@@ -95,7 +96,7 @@ pub fn solve_friction_batch(
         }
     };
     let bounds = pressure.iter().enumerate().map(|(i, p)| friction.coefficient.at(i) * p.max(0.0));
-    let near_force = NEAR_FORCE * bounds.sum::<f64>() * scene.grid.element_area();
+    let near_force = NEAR_FORCE * in_blocks(bounds) * scene.grid.element_area();
     let contact = pressure.iter().filter(|p| **p > 0.0).count() as f64 * scene.grid.element_area();
     let radius = (contact / std::f64::consts::PI).sqrt();
     let table = Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() };

@@ -12,6 +12,7 @@ use crate::memory::zeros;
 use crate::operator::Precision;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
+use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// What a solver keeps for scenes with friction.
@@ -236,7 +237,7 @@ pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
     let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {
-        force: pressing().sum::<f64>() * grid.element_area(),
+        force: in_blocks(pressing().copied()) * grid.element_area(),
         max_pressure: pressing().copied().fold(0.0, f64::max),
         contact_count: pressing().count(),
         ..Measures::default()

@@ -9,8 +9,8 @@ use contact_normal::ffi::*;
 
 /// Elements of a line.
 const N: usize = 6000;
-/// Allocations that count: a tenth of one number an element.
-const LARGE: usize = 8 * N / 10;
+/// Allocations that count: half a number an element. The lists of coarser grids are smaller.
+const LARGE: usize = 8 * N / 2;
 
 /// Elastic cylinders, along x or along y; the tangential problem with pressures that are given, or both problems.
 fn solve((mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {

@@ -43,3 +43,40 @@ fn a_circle_has_eight_changes_a_radius() {
         assert_eq!(outline.edges, 0);
     }
 }
+
+/// Small random contact areas with holes: sides are counted as by definition, and no more of them are straight than there are.
+#[test]
+fn sides_at_holes_are_those_of_pairs_of_neighbours() {
+    let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut draw = |of: u64| {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (bits >> 33) % of
+    };
+    for (mx, my) in [(3, 2), (2, 3), (1, 9), (9, 1), (12, 10), (3, 16)] {
+        let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
+        for _ in 0..200 {
+            let mut state = State::new(grid, (Load::Approach(0.0), 0.0), &Threads::One).unwrap();
+            // Rows are often like the one above.
+            for i in 0..mx * my {
+                state.h[i] = if draw(4) == 0 { f64::INFINITY } else { 0.0 };
+                let as_above = i >= mx && draw(8) != 0;
+                state.contact[i] = state.h[i] == 0.0 && if as_above { state.contact[i - mx] } else { draw(2) == 0 };
+            }
+            let (mut changes, mut edges) = (0, 0);
+            for i in 0..mx * my {
+                let right = (i % mx + 1 < mx).then_some(i + 1);
+                let below = (i + mx < mx * my).then_some(i + mx);
+                for j in [right, below].into_iter().flatten().filter(|&j| state.contact[i] != state.contact[j]) {
+                    match state.h[i].max(state.h[j]).is_infinite() {
+                        true => edges += 1,
+                        false => changes += 1,
+                    }
+                }
+            }
+            let outline = Outline::of(&state);
+            assert_eq!((outline.changes, outline.edges), (changes, edges), "{mx} x {my}");
+            let straight = outline.straight.0 + outline.straight.1;
+            assert!(straight <= changes && outline.straight_edges <= edges, "{mx} x {my}: {outline:?}");
+        }
+    }
+}

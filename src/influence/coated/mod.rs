@@ -160,7 +160,7 @@ impl CoatedBody {
         self.layer.as_ref().map_or(grid.mx, |(t, _)| first_beyond(*t, grid, ky))
     }
 
-    /// `u/p` of a uniform pressure under which nothing stretches sideways: what the layer is compressed by more than as much of the substrate.
+    /// `u/p` of a uniform pressure under which nothing stretches sideways: the compression of the layer.
     fn of_mean(&self) -> f64 {
         self.layer.as_ref().map_or(0.0, |(t, radial)| 2.0 * PI * self.compliance * t * radial.transfer.of_mean)
     }

@@ -3,9 +3,9 @@
 //! The half-space of the layer's material has its coefficients of [`Periodic`]. To them come the sums over [`waves`](super::waves) of what the
 //! coating changes.
 //!
-//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A coating adds what a uniform pressure p, under
-//! which nothing stretches sideways, compresses it by, less what as much of the substrate would have given way: with the oedometric moduli
-//! `M = 2 G (1 - nu)/(1 - 2 nu)` that is `p t (1/M1 - 1/M2)`. All coefficients have it in common ([`Kernel::constant`]).
+//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A uniform pressure p, under which nothing stretches
+//! sideways, compresses the layer by `p t/M`, with the oedometric modulus `M = 2 G (1 - nu)/(1 - 2 nu)`. All coefficients have it in common
+//! ([`Kernel::constant`]).
 //!
 //! *Coarser grids.* Where elements become too long for sums over waves, coefficients are means of those of the finer grid: the displacement of
 //! four elements, in the mean, by a pressure on four.
@@ -136,9 +136,8 @@ impl Kernel for CoatedPeriodic {
         !self.has_mean
     }
 
-    // A response that is negative is none to precondition with.
     fn constant_for(&self, response: f64) -> f64 {
-        self.share(response) - self.constant().min(0.0)
+        self.share(response)
     }
 
     // The mean counts as no stiffer than the longest wave: it is a wave that is not alone in a contact area.

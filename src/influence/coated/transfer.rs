@@ -35,7 +35,7 @@ pub struct Transfer {
     less_both: f64,
     /// B(0).
     pub substrate: f64,
-    /// `(G1/(1 - nu1)) (1/M1 - 1/M2)`, with the oedometric moduli `M = 2 G (1 - nu)/(1 - 2 nu)`.
+    /// `(G1/(1 - nu1))/M`, with the oedometric modulus `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
     pub of_mean: f64,
 }
 
@@ -53,10 +53,7 @@ impl Transfer {
             more_lambda: (2.0 * mu * (3.0 - 4.0 * nu2) - 2.0 * (1.0 - 2.0 * nu1)) / one,
             less_both: substrate * less_lambda * less_kappa,
             substrate,
-            of_mean: {
-                let of = |nu: f64| (1.0 - 2.0 * nu) / (1.0 - nu);
-                0.5 * (of(nu1) - mu * of(nu2)) / (1.0 - nu1)
-            },
+            of_mean: 0.5 * (1.0 - 2.0 * nu1) / ((1.0 - nu1) * (1.0 - nu1)),
         }
     }
 

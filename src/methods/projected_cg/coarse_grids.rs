@@ -7,6 +7,7 @@
 //! is larger than that of p = 0 (that is 1): then the next grid starts without it.
 
 use std::f64::consts::PI;
+use std::iter::successors;
 use std::ops::Range;
 
 use super::level::Level;
@@ -16,12 +17,14 @@ use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::sparse;
 use crate::methods::multigrid::{coarsen, transfer};
 use crate::methods::Task;
 use crate::operator::reserve;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
+use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -60,7 +63,8 @@ pub struct CoarseGrids {
 impl CoarseGrids {
     /// The grids below `grid`; their operators follow when they are needed.
     pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
-        let mut grids = Vec::new();
+        let count = successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST)).count();
+        let mut grids = sparse(count, "coarser grids")?;
         let (mut fine, mut influence) = (*grid, influence.clone());
         while let Some(coarse) = coarsen(&fine, COARSEST) {
             influence = influence.coarsen(&fine, &coarse)?;
@@ -258,7 +262,7 @@ fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
 
 /// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
 fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
-    let mean = |h: &[f64]| h.iter().sum::<f64>() / h.len() as f64;
+    let mean = |h: &[f64]| in_blocks(h.iter().copied()) / h.len() as f64;
     let shift = mean(fine) - mean(coarse);
     if shift.is_finite() {
         coarse.iter_mut().for_each(|h| *h += shift);

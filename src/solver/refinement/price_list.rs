@@ -139,10 +139,10 @@ pub fn cost_of_accuracy(
     // How much faster more threads are.
     let mut speed_up = 1.0;
     if let Some(last) = samples.last().filter(|last| options.threads != 1 && last.seconds < SECONDS) {
-        if let Taken::Sample(again) =
-            Sample::take(scene, &options, (last.doublings, last.seconds), quantity, &mut surface)?
-        {
-            speed_up = (last.seconds / again.seconds).max(1.0);
+        match Sample::take(scene, &options, (last.doublings, last.seconds), quantity, &mut surface)? {
+            Taken::Sample(again) => speed_up = (last.seconds / again.seconds).max(1.0),
+            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
+            Taken::Unsolved => {}
         }
     }
     Ok((Outcome::Converged, list(&samples, speed_up)))
@@ -170,10 +170,10 @@ impl Sample {
             if spent + 2.0 * best.seconds > spare {
                 break;
             }
-            if let Taken::Sample(again) = Sample::take_once(scene, options, doublings, quantity, surface)? {
-                if again.seconds < best.seconds {
-                    *best = again;
-                }
+            match Sample::take_once(scene, options, doublings, quantity, surface)? {
+                Taken::Sample(again) if again.seconds < best.seconds => *best = again,
+                Taken::Cancelled => return Ok(Taken::Cancelled),
+                _ => {}
             }
             spent = began.elapsed().as_secs_f64();
         }
