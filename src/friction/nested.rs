@@ -96,6 +96,15 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     }
 }
 
+/// Products that a grid may make, if it is the finest or all coarser ones together.
+fn products_of(limit: u64, certified: bool) -> f64 {
+    if certified {
+        limit.saturating_sub(KEPT_BACK).max(limit / 2) as f64
+    } else {
+        COARSE_SHARE * limit as f64
+    }
+}
+
 /// Solves one grid from what it holds; `part`: its products, in products on the finest.
 fn one(
     level: &mut Level,
@@ -114,11 +123,7 @@ fn one(
     problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
     let certified = part == 1.0;
     let (mut end, mut best) = (Outcome::Stagnated, Best::none());
-    let all = if certified {
-        work.limit.saturating_sub(KEPT_BACK).max(work.limit / 2) as f64
-    } else {
-        COARSE_SHARE * work.limit as f64
-    };
+    let all = products_of(work.limit, certified);
     let ways = ways(forces, newton_first, (problem.operators.rolling.is_some(), certified));
     for (k, &way) in ways.iter().enumerate() {
         let left = ((all - work.products) / part).max(0.0);

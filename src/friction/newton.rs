@@ -67,6 +67,55 @@ pub enum Manner {
     InTurns,
 }
 
+/// What the steps have brought so far, and how the next one is made.
+struct Course {
+    /// Of rho.
+    factor: f64,
+    /// The inner residual.
+    inner: f64,
+    /// What is missing: the least of it, and steps since then; cuts since then.
+    least: f64,
+    since: u32,
+    cuts: u32,
+    /// The last of it, and steps that left it as it is.
+    last: f64,
+    still: u32,
+}
+
+impl Course {
+    fn new(inner: f64) -> Course {
+        Course { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
+    }
+
+    /// Takes what is missing now. Says whether steps go on.
+    fn goes_on(&mut self, worst: f64, by_force: bool) -> bool {
+        // Nothing moves any more: the system holds no creepages, whatever rho is.
+        self.still = if worst == self.last { self.still + 1 } else { 0 };
+        self.last = worst;
+        if by_force && self.still > PATIENCE {
+            return false;
+        }
+        self.since += 1;
+        if worst < PROGRESS * self.least {
+            (self.least, self.since, self.cuts) = (worst, 0, 0);
+        }
+        if self.since > PATIENCE {
+            (self.factor, self.inner) = (self.factor * CUT, f64::max(self.inner * CUT, LEAST_INNER));
+            (self.since, self.cuts) = (0, self.cuts + 1);
+        }
+        self.cuts <= MOST_CUTS
+    }
+
+    /// The part of its way that the next step goes.
+    fn length(&self) -> f64 {
+        if self.cuts % 2 == 1 {
+            PART
+        } else {
+            1.0
+        }
+    }
+}
+
 /// Iterates from what the state and the offset hold.
 pub fn solve(
     problem: &mut Problem,
@@ -83,15 +132,11 @@ pub fn solve(
     let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
     let made = problem.operators.products;
     let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
-    let (mut factor, mut inner) = (1.0, if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
-    let (mut least, mut since, mut cuts, mut iterations) = (f64::INFINITY, 0, 0, 0);
-    let (mut last, mut still) = (f64::INFINITY, 0);
+    let mut course = Course::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
+    let mut iterations = 0;
     loop {
-        let rho = factor
-            * match manner {
-                Manner::Plain => rho_of((problem.rms_bound(), problem.rms_slip()), cap),
-                Manner::Bold | Manner::Balanced | Manner::InTurns => cap,
-            };
+        let rho = course.factor
+            * if manner == Manner::Plain { rho_of((problem.rms_bound(), problem.rms_slip()), cap) } else { cap };
         if matches!(manner, Manner::Balanced | Manner::InTurns) {
             problem.offset = balanced(problem, state, rho, forces);
         }
@@ -115,20 +160,7 @@ pub fn solve(
         if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
             return Ok(Outcome::Stagnated);
         }
-        // Nothing moves any more: the system holds no creepages, whatever rho is.
-        still = if worst == last { still + 1 } else { 0 };
-        last = worst;
-        if forces.any() && still > PATIENCE {
-            return Ok(Outcome::Stagnated);
-        }
-        since += 1;
-        if worst < PROGRESS * least {
-            (least, since, cuts) = (worst, 0, 0);
-        }
-        if since > PATIENCE {
-            (factor, inner, since, cuts) = (factor * CUT, f64::max(inner * CUT, LEAST_INNER), 0, cuts + 1);
-        }
-        if cuts > MOST_CUTS {
+        if !course.goes_on(worst, forces.any()) {
             return Ok(Outcome::Stagnated);
         }
         let left = limit.saturating_sub(problem.operators.products - made);
@@ -136,10 +168,9 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
-        let enough = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
-        let most = if factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
-        let effort =
-            Effort { inner: enough, most, left: sight.residual, length: if cuts % 2 == 1 { PART } else { 1.0 } };
+        let enough = course.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
+        let most = if course.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
+        let effort = Effort { inner: enough, most, left: sight.residual, length: course.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);

@@ -156,30 +156,7 @@ impl Solver {
         if let Some(window) = window {
             self.scales.fit(self.largest_bound(window, bound));
             let forces = forces.in_units_of(&self.scales);
-            let mut near = Near::default();
-            if let Start::Superposed(_) = request.start {
-                self.set_up_finest(window)?;
-                self.begin(request, from_rest, window, bound)?;
-                near = self.look(forces, request.tolerance);
-            }
-            report.products = near.products;
-            report.certificate = near.certificate;
-            if !near.is_solution {
-                let had_slip = if near.is_worth_something {
-                    self.levels[0].be_ready().map(|()| false)?
-                } else {
-                    self.set_up(window, rolling)?;
-                    let request = Request { start: request.start.or_before(), ..*request };
-                    self.begin(&request, from_rest, window, bound)?
-                };
-                let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
-                end = match request.is_cancelled {
-                    true => Outcome::Cancelled,
-                    false => self.iterate(request, forces, (nested, had_slip), watch, &mut report)?,
-                };
-                let Level { problem, state, .. } = &self.levels[0];
-                report.certificate = Certificate::of(problem, state);
-            }
+            end = self.solve_in((window, rolling), request, forces, watch, &mut report)?;
             let Problem { bound, operators, .. } = &self.levels[0].problem;
             let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
@@ -195,6 +172,45 @@ impl Solver {
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
+    }
+
+    /// Solves in a window, in the solver's units. The report gets the certificate, and what that took.
+    fn solve_in(
+        &mut self,
+        (window, rolling): (Window, Option<Rolling>),
+        request: &Request<'_>,
+        forces: Forces,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<Outcome> {
+        let Request { pressure, friction, .. } = *request;
+        let bound = |i: usize| friction.coefficient.at(i) * pressure[i].max(0.0);
+        let from_rest = report.from_rest;
+        let mut near = Near::default();
+        if let Start::Superposed(_) = request.start {
+            self.set_up_finest(window)?;
+            self.begin(request, from_rest, window, bound)?;
+            near = self.look(forces, request.tolerance);
+        }
+        (report.products, report.certificate) = (near.products, near.certificate);
+        if near.is_solution {
+            return Ok(Outcome::Converged);
+        }
+        let had_slip = if near.is_worth_something {
+            self.levels[0].be_ready().map(|()| false)?
+        } else {
+            self.set_up(window, rolling)?;
+            let request = Request { start: request.start.or_before(), ..*request };
+            self.begin(&request, from_rest, window, bound)?
+        };
+        let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
+        let end = match request.is_cancelled {
+            true => Outcome::Cancelled,
+            false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
+        };
+        let Level { problem, state, .. } = &self.levels[0];
+        report.certificate = Certificate::of(problem, state);
+        Ok(end)
     }
 
     /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.

@@ -87,10 +87,8 @@ impl Solver {
         threads.for_each_row_pair((&mut problem.bound, width), (&mut problem.rigid, width), |iy, bounds, rigid| {
             let places = window.row(grid, iy);
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
-                *g = scales.traction(bound(i));
-                if *g < NEGLIGIBLE {
-                    *g = 0.0;
-                }
+                let traction = scales.traction(bound(i));
+                *g = if traction < NEGLIGIBLE { 0.0 } else { traction };
                 let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
                 *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }

@@ -16,7 +16,7 @@ use super::even_plan::EvenPlan;
 use super::lane_rows::RowPlan;
 use super::lanes::Lanes;
 use crate::error::Result;
-use crate::memory::sparse;
+use crate::memory::{reserve, sparse};
 use crate::sums::Value;
 
 /// `f32` or `f64`.
@@ -166,15 +166,18 @@ impl<T: Real> ColumnTransform<T> {
     }
 
     /// Scratch that both directions need.
-    pub fn scratch(&self) -> Vec<Complex<T>> {
+    pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         let mut scratch = Vec::new();
-        self.fit(&mut scratch);
-        scratch
+        self.fit(&mut scratch)?;
+        Ok(scratch)
     }
 
     /// Makes scratch long enough.
-    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
-        scratch.resize(scratch.len().max(self.scratch_length()), Complex::default());
+    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
+        let length = scratch.len().max(self.scratch_length());
+        reserve(scratch, length, "the scratch of transforms")?;
+        scratch.resize(length, Complex::default());
+        Ok(())
     }
 
     /// Its length.

@@ -89,7 +89,8 @@ impl<T: Real> PerRow<T> {
         }
         let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
-        let mut pieces: Vec<_> = (0..threads.count()).map(|_| (vec![0.0; px], rows.scratch())).collect();
+        let piece = |_| Ok((zeros(px, MATRICES)?, rows.scratch()?));
+        let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {

@@ -14,6 +14,8 @@ use std::sync::Arc;
 
 use super::columns::{parts, parts_mut};
 use super::fft::{twiddles, ColumnTransform, Complex, Real};
+use crate::error::Result;
+use crate::memory::reserve;
 
 /// Lengths of short rows, and how many are transformed together.
 const SHORT: usize = 256;
@@ -63,15 +65,18 @@ impl<T: Real> RowTransform<T> {
     }
 
     /// Scratch that both directions need.
-    pub fn scratch(&self) -> Vec<Complex<T>> {
+    pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         let mut scratch = Vec::new();
-        self.fit(&mut scratch);
-        scratch
+        self.fit(&mut scratch)?;
+        Ok(scratch)
     }
 
     /// Makes scratch long enough.
-    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) {
-        scratch.resize(scratch.len().max(self.scratch_length()), Complex::default());
+    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
+        let length = scratch.len().max(self.scratch_length());
+        reserve(scratch, length, "the scratch of transforms")?;
+        scratch.resize(length, Complex::default());
+        Ok(())
     }
 
     /// Its length.

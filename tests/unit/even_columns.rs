@@ -12,7 +12,8 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     let s = |column: usize, bin: usize| T::of(((column * 31 + bin * 17) % 97) as f64 / 97.0 + 0.1);
     let matrix: Vec<Complex<T>> = (0..my * width).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
 
-    let (transform, mut scratch) = (ColumnTransform::<f64>::new(length), ColumnTransform::<f64>::new(length).scratch());
+    let (transform, mut scratch) =
+        (ColumnTransform::<f64>::new(length), ColumnTransform::<f64>::new(length).scratch().unwrap());
     let mut expected = Vec::new();
     for x in 0..width {
         let double = |z: Complex<T>| Complex::new(z.re.to_double(), z.im.to_double());

@@ -192,8 +192,8 @@ impl Direction {
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     let (mx, my, (row, rows)) = (grid.mx, grid.my, bins(grid));
     let (x, y) = (ColumnTransform::<f64>::new(mx), ColumnTransform::<f64>::new(my));
-    let mut scratch = x.scratch();
-    y.fit(&mut scratch);
+    let mut scratch = x.scratch()?;
+    y.fit(&mut scratch)?;
     let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;
     // What is even has a real transform: two rows, or columns, are one complex one.
     let mut line: Vec<Complex<f64>> = zeros(mx, WAVES)?;

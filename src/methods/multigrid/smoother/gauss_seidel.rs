@@ -61,7 +61,7 @@ impl GaussSeidel {
         let rows = RowTransform::new(px);
         let nb = rows.bins();
         let mut row = vec![0.0; px];
-        let mut scratch = rows.scratch();
+        let mut scratch = rows.scratch()?;
 
         // Transform of the coefficients between rows d apart, for every d.
         let mut kernels: Vec<Complex<f64>> = zeros(my * nb, "the smoother")?;
@@ -78,7 +78,7 @@ impl GaussSeidel {
         let mut block = 2 * STRIP;
         while block < 2 * my && my > STRIP {
             let transform = ColumnTransform::new(block);
-            transform.fit(&mut scratch);
+            transform.fit(&mut scratch)?;
             let mut kernel: Vec<Complex<f64>> = zeros(nb * block, "the smoother")?;
             for (bin, column) in kernel.chunks_exact_mut(block).enumerate() {
                 for d in 1..block.min(my) {

@@ -45,10 +45,7 @@ impl LongRows {
             row = zeros(block, "the smoother")?;
             let known = block.min(mx);
             row[1..known].iter_mut().zip(&within_row[1..]).for_each(|(to, c)| *to = c / block as f64);
-            let needed = transform.scratch();
-            if needed.len() > scratch.len() {
-                scratch = needed;
-            }
+            transform.fit(&mut scratch)?;
             transform.forward(&row, &mut kernel, &mut scratch);
             halves.push(Half { transform, kernel });
             block *= 2;

@@ -1,0 +1,111 @@
+//! What looks odd but is allowed, and what elements at their limit and batches with friction report.
+
+use std::ptr::{null, null_mut};
+
+use crate::call::{initialised, Call, Through, CX, CY};
+use crate::rows::*;
+use contact_normal::ffi::*;
+
+#[test]
+fn elements_at_the_limit_are_in_contact_with_2() {
+    let mut call = Call::new();
+    call.use_limit().limit = 1000.0;
+    assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
+    assert!(call.contact.contains(&2) && call.contact.contains(&0));
+    for (p, contact) in call.pressure.iter().zip(&call.contact) {
+        assert!((*contact == 2) == (*p == 1000.0) && (*contact == 0) == (*p == 0.0), "{p} {contact}");
+    }
+    assert_eq!(call.report.known.max_pressure, 1000.0);
+}
+
+/// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
+#[test]
+fn a_batch_refuses_friction_that_continues() {
+    let mut call = Call::new();
+    call.use_friction();
+    let handle = call.new_handle();
+    for through in [Through::SolverSolve, Through::SolverSolveBatch] {
+        assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()));
+    }
+    call.use_friction().continues = 1;
+    let before = call.outputs();
+    let (status, message) = call.run(Through::SolverSolveBatch, handle);
+    assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(["problem 0", "friction->continues is 1", "batch"].iter().all(|word| message.contains(word)), "{message}");
+    assert!(call.outputs() == before, "outputs were written");
+    assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()));
+    // SAFETY: a handle, not used any more.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
+/// A name, and what is changed in a good call.
+type Change = (&'static str, fn(&mut Call));
+
+/// Everything that looks odd but is allowed.
+#[rustfmt::skip]
+const ACCEPTED: &[Change] = &[
+    ("default options", |c| c.without = "options"),
+    ("no report", |c| c.without = "report"),
+    ("no fields", |c| c.without = "fields"),
+    ("no fields wanted", |c| c.fields.known = initialised(contact_normal_fields_init)),
+    ("no ledger", |c| (c.report.known.ledger, c.report.known.ledger_capacity) = (null_mut(), 0)),
+    ("an element without surface", |c| c.h[3] = INF),
+    ("one rigid body", |c| c.scene.known.shear_modulus[1] = INF),
+    ("incompressible", |c| c.scene.known.poisson_ratio = [0.5; 2]),
+    ("a force that is not the load", |c| c.scene.known.force = NAN),
+    ("an approach that is not the load", |c| (c.scene.known.load, c.scene.known.approach) = (1, NAN)),
+    ("a table larger than the grid", |c| { c.use_table(); }),
+    ("a layer of nothing", |c| { c.use_layer(); }),
+    ("a layer, and a uniform one that is not read", |c| { c.set_compliance(0, 0.0); c.layer.known.compliance = NAN; }),
+    ("no limit", |c| { c.use_limit(); }),
+    ("a period", |c| c.use_period(0, 1)),
+    ("patches", |c| { c.use_patches(HALF); }),
+    ("row tables", |c| { c.use_row_tables(); }),
+    ("elastic constants beside row tables", |c| { c.use_row_tables(); c.scene.known.shear_modulus = [NAN; 2]; }),
+    ("garbage in column -cx of row tables", |c| c.set_in_row(2, 1, -(CX as i64), NAN)),
+    ("elastic constants beside a table", |c| { c.use_table(); c.scene.known.shear_modulus = [NAN; 2]; }),
+    ("garbage in row -cy and column -cx", |c| {
+        (-(CX as i64)..CX as i64).for_each(|kx| c.set_coefficient(kx, -(CY as i64), NAN));
+        (-(CY as i64)..CY as i64).for_each(|ky| c.set_coefficient(-(CX as i64), ky, INF));
+    }),
+];
+
+#[test]
+fn what_is_allowed_is_solved() {
+    for (name, change) in ACCEPTED {
+        let mut call = Call::new();
+        change(&mut call);
+        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+        // What is in the table's last row and column cannot be seen in the pressures.
+        if call.without == "fields" || call.fields.known.pressure.is_null() {
+            assert!(call.contact.iter().all(|&c| c == -77), "{name}: written, though not wanted");
+        } else {
+            assert!(call.pressure.iter().all(|&p| p.is_finite() && p >= 0.0), "{name}: {:?}", call.pressure);
+            assert!(call.contact.iter().all(|&c| c == 0 || c == 1), "{name}: {:?}", call.contact);
+            assert!(call.contact.contains(&1), "{name}: no contact");
+        }
+    }
+}
+
+#[test]
+fn no_contact_is_no_error() {
+    #[rustfmt::skip]
+    let scenes: [Change; 4] = [
+        ("bodies apart", |c| c.scene.known.approach = -0.5),
+        ("no force", |c| (c.scene.known.load, c.scene.known.force) = (1, 0.0)),
+        ("no surface, approach prescribed", |c| c.h.fill(INF)),
+        ("no surface, no force", |c| { c.h.fill(INF); (c.scene.known.load, c.scene.known.force) = (1, 0.0); }),
+    ];
+    for (name, change) in scenes {
+        for method in [CONTACT_NORMAL_METHOD_AUTO, CONTACT_NORMAL_METHOD_NORM, CONTACT_NORMAL_METHOD_MULTIGRID] {
+            let mut call = Call::new();
+            change(&mut call);
+            call.options.known.method = method;
+            assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
+            assert!(call.pressure.iter().all(|&p| p == 0.0) && call.contact.iter().all(|&c| c == 0), "{name}");
+            let report = &call.report.known;
+            assert_eq!((report.force, report.contact_count, report.contact_area, report.residual), (0.0, 0, 0.0, 0.0));
+            assert!(report.approach.is_finite() && report.max_pressure == 0.0, "{name}: {}", report.approach);
+        }
+    }
+}

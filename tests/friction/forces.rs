@@ -1,0 +1,130 @@
+//! Forces that are given where nearly all slips, on few elements, or beside large slips: the force grows with the creepage, so there is an answer.
+
+use std::f64::consts::PI;
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
+use contact_normal::solver::{solve, Options, Outcome};
+
+use super::support::{residual, run, solver};
+
+const TOLERANCE: f64 = 1e-6;
+
+/// Solves on given pressures of like bodies and checks: the conditions by direct sums, and the forces that are given.
+fn meets(grid: &Grid, g: &[f64], friction: &Friction<'_>, before: &[[f64; 2]], what: &str) -> [f64; 2] {
+    let (report, solution) = run(&mut solver(grid, 0.3), g, friction, TOLERANCE);
+    let left = residual((grid, 0.3), g, friction, before, (&report, &solution));
+    // Sums of the test are rounded, too.
+    assert!(left <= 1.01 * TOLERANCE, "{what}: {left:e}");
+    let mu = friction.coefficient.at(0);
+    let carried = mu * g.iter().sum::<f64>() * grid.element_area();
+    for k in 0..2 {
+        let force: f64 = solution.traction.iter().map(|q| q[k]).sum::<f64>() * grid.element_area();
+        if let Prescribed::Force(given) = friction.prescribed[k] {
+            assert!((force - given).abs() <= 1.01 * TOLERANCE * carried, "{what}: {force:e} of {given:e}");
+        }
+    }
+    report.creepage
+}
+
+/// An aluminium roller on a steel one that rolls freely, with hardly any friction (Bentall and Johnson 1967): all slips, with a creepage of 5.260e-4
+/// (CONTACT's example bentall, case 2).
+#[test]
+fn rollers_with_little_friction_roll_freely() {
+    let grid = Grid::new(216, 1, 1e-3, 1e3).unwrap();
+    let h: Vec<f64> = (0..216).map(|i| 0.02 * ((f64::from(i) + 0.5) * 1e-3 - 0.108).powi(2)).collect();
+    let bodies = Bodies { shear_modulus: [23e3, 82e3], poisson_ratio: [0.31, 0.28] };
+    let force = 16201.9;
+    for mu in [1e-2, 1e-3, 5e-4, 1e-4, 1e-5] {
+        let friction = Friction {
+            motion: Motion::SteadyRolling,
+            rolling_direction: PI,
+            prescribed: [Prescribed::Force(0.0), Prescribed::Creepage(0.0)],
+            ..Friction::new(mu)
+        };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(force)) };
+        let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+        assert_eq!(stop, Outcome::Converged, "mu {mu}");
+        let found = report.friction.unwrap();
+        assert!(found.force[0].abs() <= TOLERANCE * mu * force, "mu {mu}: {:?}", found.force);
+        if mu <= 1e-4 {
+            // Its four digits, and one element that sticks somewhere among 200.
+            assert!((found.creepage[0] / 5.260e-4 - 1.0).abs() <= 5e-4, "mu {mu}: {:?}", found.creepage);
+        }
+    }
+}
+
+/// A line contact in which one creepage passes the rigid slip of nearly all elements at once.
+#[test]
+fn a_slip_of_the_callers_own_is_balanced() {
+    for n in [5, 40, 200] {
+        let grid = Grid::new(n, 1, 1e-3, 1e3).unwrap();
+        let ellipse = |i: usize| (1.0 - (2.0 * (i as f64 + 0.5) / n as f64 - 1.0).powi(2)).sqrt();
+        let pressure: Vec<f64> = (0..n).map(|i| 0.01 * ellipse(i)).collect();
+        let slip: Vec<f64> = (0..n).map(|i| -5.75e-7 * ellipse(i)).collect();
+        let noise: Vec<f64> = (0..n).map(|i| 4e-21 * ((i * 7919 % 13) as f64 - 6.0) / 6.0).collect();
+        for mu in [1e-4, 1e-6] {
+            let friction = Friction {
+                motion: Motion::SteadyRolling,
+                prescribed: [Prescribed::Force(0.0), Prescribed::Creepage(0.0)],
+                rigid_slip: Some([&slip, &noise]),
+                ..Friction::new(mu)
+            };
+            let [creepage, _] = meets(&grid, &pressure, &friction, &[], &format!("{n} elements, mu {mu}"));
+            // The mean of the slip lies between its least and its largest.
+            assert!(creepage > 0.0 && creepage < 5.75e-4, "{n} elements, mu {mu}: {creepage:e}");
+        }
+    }
+}
+
+/// A force of up to .999 mu N on one to 25 elements, square and slender ones.
+#[test]
+fn few_elements_reach_any_force_below_mu_n() {
+    for (mx, my, dy) in [(1, 1, 1.0), (1, 1, 0.1), (1, 2, 2.0), (2, 1, 0.5), (1, 5, 20.0), (5, 5, 1.0)] {
+        let grid = Grid::new(mx, my, 1.0, dy).unwrap();
+        let n = grid.len() as f64;
+        let pressure = vec![1.0 / (n * grid.element_area()); grid.len()];
+        for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+            for part in [0.5, 0.9, 0.99, 0.999] {
+                let friction = Friction {
+                    motion,
+                    prescribed: [Prescribed::Force(0.0), Prescribed::Force(0.3 * part)],
+                    rolling_distance: f64::max(1.0, dy),
+                    ..Friction::new(0.3)
+                };
+                let before = vec![[0.0; 2]; grid.len()];
+                let what = format!("{mx} x {my} of 1 x {dy}, {motion:?}, {part} mu N");
+                meets(&grid, &pressure, &friction, &before, &what);
+            }
+        }
+    }
+}
+
+/// What else moves may be large: a creepage that is given across the force, and tractions before the step.
+#[test]
+fn a_force_beside_large_slips_and_tractions_is_met() {
+    let m = 15;
+    let grid = Grid::new(m, m, 0.1, 0.1).unwrap();
+    let place = |i: usize| ((i % m) as f64 - 7.0).hypot((i / m) as f64 - 7.0);
+    let pressure: Vec<f64> = (0..m * m).map(|i| 0.1 * (1.0 - (place(i) / 6.3).powi(2)).max(0.0).sqrt()).collect();
+    let carried = 0.3 * pressure.iter().sum::<f64>() * grid.element_area();
+    for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+        for (size, part) in (0..9).step_by(2).flat_map(|k| [0.0, 0.3].map(|part| (10f64.powi(k), part))) {
+            let what = format!("{motion:?}, {part} mu N beside {size:e}");
+            let by = |creepage| [Prescribed::Force(part * carried), Prescribed::Creepage(creepage)];
+            let friction = Friction { motion, prescribed: by(size), ..Friction::new(0.3) };
+            let [creepage, _] = meets(&grid, &pressure, &friction, &vec![[0.0; 2]; m * m], &what);
+            // By symmetry.
+            assert!(part > 0.0 || creepage.abs() <= 1e-6 * size, "{what}: {creepage:e}");
+            if motion == Motion::SteadyRolling {
+                continue;
+            }
+            let before: Vec<[f64; 2]> =
+                (0..m * m).map(|i| [7.0, 11.0].map(|k| 0.03 * size * (k * i as f64).sin())).collect();
+            let (x, y): (Vec<f64>, Vec<f64>) = before.iter().map(|q| (q[0], q[1])).unzip();
+            let friction =
+                Friction { motion, prescribed: by(0.0), previous: Previous::Given([&x, &y]), ..Friction::new(0.3) };
+            meets(&grid, &pressure, &friction, &before, &format!("tractions before, {what}"));
+        }
+    }
+}
