@@ -80,16 +80,18 @@ fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mu
 /// A call that must be refused.
 fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Found) {
     let mut spoiled = case.clone();
-    match random.integer(0, 3) {
+    let kind = random.integer(0, 3);
+    match kind {
         0 => spoiled.h[case.grid.len() / 2] = f64::NAN,
-        1 => spoiled.load = Load::Force(-1.0),
+        // A fixed area may be pulled.
+        1 => spoiled.load = Load::Force(if case.how.fixed.is_some() { f64::NAN } else { -1.0 }),
         2 => spoiled.how.tolerance = -1.0,
         _ => spoiled.grid.dx *= 2.0,
     }
     let outputs = handle.solve(&spoiled, false);
     found.statuses.push(outputs.status);
     if outputs.status >= 0 || outputs.written {
-        let details = format!("status {}, written: {}", outputs.status, outputs.written);
+        let details = format!("kind {kind}, status {}, written: {}", outputs.status, outputs.written);
         found.verdict.fail("a handle refuses what is no scene", details);
     }
 }

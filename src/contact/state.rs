@@ -141,6 +141,12 @@ impl State {
         self.contact[i] || self.at_limit.get(i).is_some_and(|&at_limit| at_limit)
     }
 
+    /// Whether u is known in all of the contact area: that may have grown beyond the window of a coarser grid, outside of which it is infinite.
+    pub fn has_displacements(&self) -> bool {
+        let known = |touches: &[bool]| touches.iter().zip(&self.u).all(|(touches, u)| !touches || u.is_finite());
+        known(&self.contact) && (!self.has_limited() || known(&self.at_limit))
+    }
+
     /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
         let Grid { mx, my, .. } = self.grid;

@@ -75,6 +75,10 @@ pub(crate) fn unwritten<A: Copy + Send + Sync + 'static>(
         }
     }
     wake(v, n, mark, threads);
+    if cfg!(debug_assertions) {
+        // Whatever a block held: what is read before it is written shows.
+        v.fill(mark);
+    }
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Fast Fourier transforms: the only file that names the FFT crate.
 //!
-//! Plans are kept per thread and precision, so that a second operator of the same size costs no planning.
+//! Plans are kept per thread and precision, so that a second operator of the same size costs no planning. Each length has a planner of its own: the
+//! crate's makes a plan from parts of the plans before it, so that bits would depend on what a thread planned before.
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -36,7 +37,7 @@ pub trait Real:
 /// What a thread has planned.
 #[doc(hidden)]
 pub struct Plans<T: Real> {
-    planner: FftPlanner<T>,
+    columns: HashMap<usize, ColumnTransform<T>>,
     /// Lengths for whose plans there was room.
     planned: HashSet<usize>,
     /// Of transforms of real rows, by their length.
@@ -52,7 +53,7 @@ macro_rules! real {
         thread_local! {
             static $plans: RefCell<Plans<$t>> =
                 RefCell::new(Plans {
-                    planner: FftPlanner::new(),
+                    columns: HashMap::new(),
                     planned: HashSet::new(),
                     twiddles: HashMap::new(),
                     even: HashMap::new(),
@@ -154,10 +155,11 @@ pub struct ColumnTransform<T: Real> {
 impl<T: Real> ColumnTransform<T> {
     /// Plans for columns of length `n`.
     pub fn new(n: usize) -> ColumnTransform<T> {
-        T::with_plans(|plans| ColumnTransform {
-            forward: plans.planner.plan_fft_forward(n),
-            inverse: plans.planner.plan_fft_inverse(n),
-        })
+        let plan = || {
+            let mut planner = FftPlanner::new();
+            ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) }
+        };
+        T::with_plans(|plans| plans.columns.entry(n).or_insert_with(plan).clone())
     }
 
     /// Length of a column.
@@ -211,3 +213,7 @@ impl<T: Real> ColumnTransform<T> {
         self.inverse.process_with_scratch(columns, scratch);
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/fft.rs"]
+mod tests;

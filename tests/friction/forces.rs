@@ -47,9 +47,9 @@ fn rollers_with_little_friction_roll_freely() {
         assert_eq!(stop, Outcome::Converged, "mu {mu}");
         let found = report.friction.unwrap();
         assert!(found.force[0].abs() <= TOLERANCE * mu * force, "mu {mu}: {:?}", found.force);
-        if mu <= 1e-4 {
-            // Its four digits, and one element that sticks somewhere among 200.
-            assert!((found.creepage[0] / 5.260e-4 - 1.0).abs() <= 5e-4, "mu {mu}: {:?}", found.creepage);
+        if mu <= 5e-4 {
+            // The creepage is the slip of the one element that sticks, and that of neighbours differs by half a hundredth.
+            assert!((found.creepage[0] / 5.260e-4 - 1.0).abs() <= 5e-3, "mu {mu}: {:?}", found.creepage);
         }
     }
 }

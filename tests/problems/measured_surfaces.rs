@@ -228,3 +228,33 @@ fn forces_that_nearly_all_elements_carry_at_their_limit() {
         }
     }
 }
+
+/// A ball beside a hole, with a limit that much of the contact area reaches: on the finest grid contact grows beyond the window of the coarser one.
+#[test]
+fn a_limit_beside_a_hole_takes_few_iterations() {
+    let (width, height) = (2.290208420965782, 2.9958029935958836);
+    for (mx, my, limit, force, hole) in [
+        (142, 145, 0.26418591367565086, 0.0915215957236174, 0.29523339264339915),
+        (134, 144, 0.3386769406326888, 0.09590726443848098, 0.31727565096967557),
+    ] {
+        let grid = Grid::new(mx, my, width / mx as f64, height / my as f64).unwrap();
+        let h: Vec<f64> = (0..mx * my)
+            .map(|i| {
+                let x = 0.04476424501826427 - 0.5 * width + ((i % mx) as f64 + 0.5) * grid.dx;
+                let y = -0.031579716721700075 - 0.5 * height + ((i / mx) as f64 + 0.5) * grid.dy;
+                if (x - 0.2).hypot(y) < hole {
+                    f64::INFINITY
+                } else {
+                    0.5 * (x * x + y * y)
+                }
+            })
+            .collect();
+        let bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.3; 2] };
+        let scene = Scene {
+            pressure_limit: Some(PressureLimit::Uniform(limit)),
+            ..Scene::new(grid, &h, bodies, Load::Force(force))
+        };
+        let (_, report) = auto(&scene, &format!("{mx} x {my}"));
+        assert!(report.count.cycles <= 40, "{mx} x {my}: {} iterations", report.count.cycles);
+    }
+}

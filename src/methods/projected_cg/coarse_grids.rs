@@ -143,10 +143,6 @@ impl CoarseGrids {
             to.reached_limit |= from.state.reached_limit;
             if known && found.residual <= found.distance {
                 prolong(&from.state, to, highest, &threads);
-                // Contact that has grown to the edge of its window has no u beside it.
-                if to.u.iter().zip(&to.contact).any(|(u, inside)| *inside && !u.is_finite()) {
-                    displacement = Freshness::Stale;
-                }
             } else {
                 to.p.fill(0.0);
                 to.start(finer_influence);

@@ -123,8 +123,12 @@ impl Level {
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
+        let mut displacement = displacement;
         if displacement != Freshness::Exact {
             state.carry_force(set, &self.threads);
+            if !state.has_displacements() {
+                displacement = Freshness::Stale;
+            }
         }
         let (whole, is_mean_free) = (self.grid, self.influence.is_mean_free());
         self.on_window(state, set, displacement, |inner, window, units, state, set| {
@@ -148,9 +152,12 @@ impl Level {
         })?
     }
 
-    /// Improves p where u is near A p, without a product; u is not known afterwards.
+    /// Improves p where u is near A p and known in all of the contact area, without a product; u is not known afterwards.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set, &self.threads);
+        if !state.has_displacements() {
+            return Ok(());
+        }
         self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| {
             in_either!(inner, inner => inner.correct(state, set));
         })
