@@ -14,7 +14,7 @@
 //!
 //! t is half an element at most, where a straight edge lies as the elements do, and some of it is an error of the singularity
 //! itself. Along edges in steps most of it goes out, and the border of the grid is an edge of elements. (Measured, in elements: straight -0.46 to
-//! 0.2, in steps -0.15 to 0.05, on edges of elements -0.15; docs/notes/2026-11-accuracy.md.)
+//! 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
 
 use std::f64::consts::PI;
 
