@@ -13,7 +13,8 @@
 //! other surfaces nearly so. Whatever else is carried at the edge, tractions for instance, takes the place of one of the two factors p.
 //!
 //! t is half an element at most, where a straight edge lies as the elements do, and some of it is an error of the singularity
-//! itself. Along edges in steps most of it goes out, and the border of the grid is an edge of elements. (Measured, in elements: straight -0.46 to
+//! itself. Along edges in steps most of it goes out. The border of the grid is an edge of elements, as are all where the caller's elements are
+//! the surface. (Measured, in elements: straight -0.46 to
 //! 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
 
 use std::f64::consts::PI;
@@ -25,7 +26,7 @@ use super::{Problem, State};
 /// t, in elements.
 const AT_STRAIGHT: f64 = 0.5;
 const AT_STEPS: f64 = 0.12;
-const AT_BORDER: f64 = 0.2;
+const AT_EXACT: f64 = 0.2;
 
 /// One of the two directions of a grid.
 #[derive(Clone, Copy)]
@@ -64,15 +65,16 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
         for k in (0..2).filter(|&k| directions[k].m > 1) {
             let (across, along) = (directions[k], directions[1 - k]);
             for side in [0, 1] {
-                let length = match across.beside(state, (i, place[k]), side) {
+                let elements = match across.beside(state, (i, place[k]), side) {
                     Beside::Surface => continue,
-                    Beside::Border => AT_BORDER,
+                    Beside::Border => AT_EXACT,
+                    Beside::Hole if problem.exact_edges => AT_EXACT,
                     Beside::Hole if along.is_straight(state, (i, place[1 - k]), (across, place[k], side)) => {
                         AT_STRAIGHT
                     }
                     Beside::Hole => AT_STEPS,
-                } * across.size;
-                let part = length * (flexibility * across.size + problem.layer(i)) * state.p[i] * grid.element_area();
+                };
+                let part = elements * (flexibility * across.size + problem.layer(i)) * state.p[i] * grid.element_area();
                 let weights = weights(i);
                 (0..N).for_each(|n| sums[n] += part * weights[n]);
             }

@@ -84,7 +84,7 @@ impl Parts {
         let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
         let widened = 1.0 + (SHORT_CHORD / chord).powi(2);
         let smooth = AT_MOST * by * (widened * curvature.bend.abs() + along_lines);
-        let ends = by * ends(problem, state, outline) / force + one_element(problem, state) * found.abs();
+        let ends = by * ends(problem, state, outline) + one_element(problem, state) * found.abs();
         let jumps = by * jumps(problem, state) / count as f64;
         let parts = Parts { smooth, ends, jumps, stiffness, likely: sign * PART * by * curvature.bend };
         parts.error().is_finite().then_some(parts)
@@ -101,13 +101,13 @@ impl Parts {
     }
 }
 
-/// Force times the error of the approach by ends of the surface.
+/// Error of the approach by ends of the surface.
 fn ends(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 {
         return 0.0;
     }
     let [sum] = at_ends(problem, state, |i| [state.p[i]]);
-    sum
+    sum / state.force()
 }
 
 /// Of a direction of one element that does not repeat itself, relative to what is found.
@@ -119,6 +119,9 @@ fn one_element(problem: &Problem, state: &State) -> f64 {
 
 /// Error of the approach by jumps of h, times the elements in contact.
 fn jumps(problem: &Problem, state: &State) -> f64 {
+    if problem.exact_edges {
+        return 0.0;
+    }
     let (grid, contact) = (&state.grid, &state.contact);
     let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
     let weight = |i: usize, j: usize| if contact[i] || contact[j] { 1.0 } else { 0.0 };
@@ -179,7 +182,7 @@ pub fn estimate(
     let found = measures.found(finest.load);
     let sizes = (outline.edges - outline.straight_edges) as f64;
     let straight = (outline.straight.0 + outline.straight.1) as f64;
-    let edges = outline.straight_edges as f64;
+    let edges = if problem.exact_edges { 0.0 } else { outline.straight_edges as f64 };
     let lines = (STRAIGHT_OFF * straight + EDGE_OFF * edges + sizes.sqrt()) * finest.grid.element_area();
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
