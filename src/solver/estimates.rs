@@ -19,7 +19,7 @@
 //! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
 //!
 //! *The contact area* is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
-//! that of the corrected area; straight pieces are off by half an element, ends of the surface in steps by the root of their number.
+//! that of the corrected area; straight pieces and straight ends of the surface are off by half an element, ends in steps by the root of their number.
 
 use super::report::{Halving, Limit};
 use crate::bounding_box::bounding_box;
@@ -180,10 +180,10 @@ pub fn estimate(
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
     let residual = measures.certificate.residual;
     let found = measures.found(finest.load);
-    let sizes = (outline.edges - outline.straight_edges) as f64;
+    let curved = (outline.edges - outline.straight_edges) as f64;
     let straight = (outline.straight.0 + outline.straight.1) as f64;
-    let edges = if problem.exact_edges { 0.0 } else { outline.straight_edges as f64 };
-    let lines = (STRAIGHT_OFF * straight + EDGE_OFF * edges + sizes.sqrt()) * finest.grid.element_area();
+    let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
+    let lines = lines * finest.grid.element_area();
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -215,6 +215,16 @@ pub fn estimate(
     let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
+}
+
+/// Elements by which the contact area is off along straight ends of the surface: half of theirs if all ends are straight. A circle has four short pieces,
+/// which what is in steps makes up for.
+fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
+    if problem.exact_edges || outline.edges == 0 {
+        return 0.0;
+    }
+    let straight = outline.straight_edges as f64;
+    EDGE_OFF * straight * straight / outline.edges as f64
 }
 
 /// The bits of the errors that cannot be estimated; says so in the log.
