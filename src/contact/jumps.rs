@@ -68,27 +68,33 @@ impl Line {
 
     fn jumps(&self, places: Range<isize>, value: &impl Fn(usize) -> f64, weight: &impl Fn(usize, usize) -> f64) -> f64 {
         let mut sum = 0.0;
+        let mut before = self.second(places.start, value);
         for place in places {
-            let (Some(i), Some(j)) = (self.at(place), self.at(place + 1)) else { continue };
-            let weight = weight(i, j);
-            if weight > 0.0 {
-                sum += weight * self.uncertain(place, value);
+            let behind = self.second(place + 1, value);
+            // Nearly all places end here.
+            if before > 0.0 && behind < 0.0 || before < 0.0 && behind > 0.0 {
+                if let (Some(i), Some(j)) = (self.at(place), self.at(place + 1)) {
+                    let weight = weight(i, j);
+                    if weight > 0.0 {
+                        sum += weight * self.uncertain(place, behind - before, value);
+                    }
+                }
             }
+            before = behind;
         }
         sum
     }
 
-    /// `|J|` of a jump behind `place`, times what is uncertain of an element; 0 where there is none.
-    fn uncertain(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
+    /// `|J|` of a jump behind `place` with the third difference `found`, times what is uncertain of an element; 0 where there is none.
+    fn uncertain(&self, place: isize, found: f64, value: &impl Fn(usize) -> f64) -> f64 {
         let second = |k: isize| self.second(place + k, value);
-        let [Some(before), Some(behind)] = [second(0), second(1)] else { return 0.0 };
-        if !(before > 0.0 && behind < 0.0 || before < 0.0 && behind > 0.0) {
-            return 0.0;
-        }
-        let found = behind - before;
-        let change = |from: isize, to: isize| match [second(from), second(to)] {
-            [Some(from), Some(to)] => (to - from).abs(),
-            _ => 0.0,
+        let change = |from: isize, to: isize| {
+            let change = (second(to) - second(from)).abs();
+            if change.is_finite() {
+                change
+            } else {
+                0.0
+            }
         };
         // Waves of few elements bend on both sides, too, but farther off they bend more.
         let around = change(-2, -1).max(change(2, 3)).max(change(-1, 2));
@@ -97,10 +103,9 @@ impl Line {
         }
         let beside = [self.number.checked_sub(1), Some(self.number + 1).filter(|next| *next < self.lines)];
         let beside: Vec<Line> = beside.into_iter().flatten().map(|number| Line { number, ..*self }).collect();
-        let goes_on = |line: &Line, places: Range<isize>| {
-            let mut thirds =
-                places.filter_map(|k| Some(line.second(place + k + 1, value)? - line.second(place + k, value)?));
-            thirds.any(|third| (GOES_ON..=1.0 / GOES_ON).contains(&(third / found)))
+        let goes_on = |line: &Line, mut places: Range<isize>| {
+            let third = |k: isize| line.second(place + k + 1, value) - line.second(place + k, value);
+            places.any(|k| (GOES_ON..=1.0 / GOES_ON).contains(&(third(k) / found)))
         };
         if !beside.is_empty() && !beside.iter().any(|line| goes_on(line, -1..2)) {
             return 0.0;
@@ -109,10 +114,21 @@ impl Line {
         0.5 * found.abs() * if is_straight { AT_STRAIGHT } else { AT_STEPS }
     }
 
-    /// The second difference at a place; none where the surface ends.
-    fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> Option<f64> {
-        let [before, here, behind] = [place - 1, place, place + 1].map(|place| self.at(place).map(value));
-        let second = before? + behind? - 2.0 * here?;
-        second.is_finite().then_some(second)
+    /// The second difference at a place; no number where the surface ends.
+    #[inline]
+    fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
+        let second = if place >= 1 && place + 1 < self.m as isize {
+            let at = self.number * self.to_next + place as usize * self.step;
+            value(at - self.step) + value(at + self.step) - 2.0 * value(at)
+        } else {
+            let [before, here, behind] =
+                [place - 1, place, place + 1].map(|place| self.at(place).map_or(f64::INFINITY, value));
+            before + behind - 2.0 * here
+        };
+        if second.is_finite() {
+            second
+        } else {
+            f64::NAN
+        }
     }
 }
