@@ -253,3 +253,20 @@ fn the_error_of_a_force_where_mu_jumps_is_covered() {
     }
     assert_covered(ratios, 5.0, "mu jumps");
 }
+
+/// With an approach that is given the normal force is off, and with it `mu N` of what slips: of Hertz's ball.
+#[test]
+fn the_error_of_a_slipping_balls_force_by_approach_is_covered() {
+    let (a, mut ratios) = (0.6_f64, Vec::new());
+    for (m, place) in [20, 24, 32, 48, 64, 96, 128].into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
+        let (grid, h, _) = placed(m, place, &|x, y| 0.5 * (x * x + y * y), &|_| MU);
+        let friction =
+            Friction { prescribed: [Prescribed::Creepage(-1e3), Prescribed::Creepage(0.0)], ..Friction::new(MU) };
+        let bodies = Bodies::same(1.0, 0.0);
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(a * a)) };
+        let options = Options { estimates: true, tolerance: 1e-8, ..Options::default() };
+        let found = solve(&scene, &options).unwrap().2.friction.unwrap();
+        ratios.push(found.error[0] / (found.force[0] - MU * 4.0 / 3.0 * a.powi(3)).abs());
+    }
+    assert_covered(ratios, 5.0, "slipping ball");
+}
