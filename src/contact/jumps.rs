@@ -17,7 +17,7 @@ const STANDS_OUT: f64 = 8.0;
 /// A jump in the next line, at least this part of it and at most as many times it, says that it goes on.
 const GOES_ON: f64 = 0.5;
 /// Of an element: how far off a jump is, along a straight line and else.
-const AT_STRAIGHT: f64 = 0.45;
+const AT_STRAIGHT: f64 = 0.5;
 const AT_STEPS: f64 = 0.15;
 
 /// A row or a column.
