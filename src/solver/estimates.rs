@@ -19,7 +19,8 @@
 //! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
 //!
 //! *The contact area* is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
-//! that of the corrected area; straight pieces and straight ends of the surface are off by half an element, ends in steps by the root of their number.
+//! that of the corrected area; straight pieces and straight ends of the surface are off by half an element, ends in steps by the root
+//! of their number.
 
 use super::report::{Halving, Limit};
 use crate::bounding_box::bounding_box;
@@ -217,8 +218,8 @@ pub fn estimate(
     (limit, halving)
 }
 
-/// Elements by which the contact area is off along straight ends of the surface: half of theirs if all ends are straight. A circle has four short pieces,
-/// which what is in steps makes up for.
+/// Elements by which the contact area is off along straight ends of the surface: half of theirs if all ends are straight. A circle has
+/// four short pieces, which what is in steps makes up for.
 fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
     if problem.exact_edges || outline.edges == 0 {
         return 0.0;

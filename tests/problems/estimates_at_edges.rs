@@ -49,9 +49,10 @@ fn circle(x: f64, y: f64) -> f64 {
 
 #[test]
 fn the_error_of_a_flat_punch_between_elements_is_covered() {
-    for (name, h, stiffness) in
-        [("square", &square as &dyn Fn(f64, f64) -> f64, 2.0 * HALF * SQUARE), ("circle", &circle, 2.0 * HALF)]
-    {
+    for (name, h, stiffness, area) in [
+        ("square", &square as &dyn Fn(f64, f64) -> f64, 2.0 * HALF * SQUARE, 4.0 * HALF * HALF),
+        ("circle", &circle, 2.0 * HALF, PI * HALF * HALF),
+    ] {
         let (mut ratios, force) = (Vec::new(), stiffness * APPROACH);
         for (m, (side, off)) in SIZES.into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
             let d = side / m as f64;
@@ -62,6 +63,8 @@ fn the_error_of_a_flat_punch_between_elements_is_covered() {
                 let ratio = report.error.force / (report.measures.found(load) - exact).abs();
                 assert!(ratio >= 0.5, "{name} {m} {load:?} {side}: {ratio}");
                 ratios.push(ratio);
+                let off = (report.measures.contact_area - area).abs();
+                assert!(report.error.contact_area >= 0.8 * off, "{name} {m} {side}: area off by {off}");
             }
         }
         ratios.sort_by(f64::total_cmp);
