@@ -21,7 +21,7 @@ use crate::grid::Grid;
 /// Part of an element by which each change overestimates the area.
 const SHARE: f64 = (PI - 1.0 + LN_2) / 24.0;
 /// A piece of so many elements is straight.
-const STRAIGHT: usize = 8;
+pub(super) const STRAIGHT: usize = 8;
 
 /// The outline of a contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -28,6 +28,8 @@ pub struct Problem {
     pub symmetric: bool,
     /// Whether the coefficients are the caller's: only they may be those of no elastic body.
     pub given: bool,
+    /// Whether the surface is known to end, and to jump, between elements only: estimates ask for it.
+    pub exact_edges: bool,
     /// Work units of one product.
     pub work: f64,
     /// The threads of the solve.
@@ -63,7 +65,17 @@ impl Problem {
         operators.prepare(MadeOf { coefficients: &coefficients, grid: &grid, threads })?;
         let symmetric = coefficients.is_symmetric(&grid);
         let threads = threads.clone();
-        Ok(Problem { grid, coefficients, symmetric, given: false, work, threads, operators, products: 0 })
+        Ok(Problem {
+            grid,
+            coefficients,
+            symmetric,
+            given: false,
+            exact_edges: false,
+            work,
+            threads,
+            operators,
+            products: 0,
+        })
     }
 
     /// Takes other coefficients, on the same grid; plans and memory are kept where nobody else uses the operator. Not to be used after

@@ -12,17 +12,19 @@
 //! with s = 1/2, measured, to a third of it on 32 elements across: the rim lies on the elements as it happens. What lies along a straight
 //! outline is off by the same part everywhere, up to some times more. ([`Curvature`] has b; docs/accuracy.md the measurements.)
 //!
-//! Where the surface itself ends pressures are infinite, and a part of an element is missing: of the force on a circle of radius a
-//! about `d/3a`.
+//! Where the surface itself ends pressures are infinite, and the edge lies anywhere between two centres ([`at_ends`]); a surface that
+//! jumps does so anywhere between two centres as well ([`at_jumps`]). Both are of first order in the size of the elements.
 //!
 //! *Pressures.* Their second differences within the contact area and across its rim are what elements do not show: of the largest
 //! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
 //!
 //! *The contact area* is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
-//! that of the corrected area; straight pieces are off by half an element, ends of the surface in steps by the root of their number.
+//! that of the corrected area; straight pieces and straight ends of the surface are off by half an element, ends in steps by the root
+//! of their number.
 
 use super::report::{Halving, Limit};
-use crate::contact::{Curvature, Outline, Problem, State};
+use crate::bounding_box::bounding_box;
+use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
@@ -35,8 +37,8 @@ const STRAIGHT: f64 = 0.2;
 const SHORT_CHORD: f64 = 4.0;
 /// With shorter chords contact is on single elements: nothing is known.
 const LEAST_CHORD: f64 = 1.5;
-/// Error at ends of the surface, in elements of a circle's radius.
-const AT_ENDS: f64 = 0.33;
+/// Error of a direction of one element whose ends are those of the grid, over what is found.
+const ONE_ELEMENT: f64 = 0.26;
 /// Second differences of the pressures: what of them is missed of the largest, and in the rms; and when they say that a peak is singular.
 const PEAK: f64 = 0.1;
 const PRESSURES: f64 = 0.25;
@@ -45,6 +47,7 @@ const SHARP: f64 = 0.08;
 /// Part of the correction of the contact area by which it is off, and elements along straight outlines.
 const CORRECTION_OFF: f64 = 0.3;
 const STRAIGHT_OFF: f64 = 0.4;
+const EDGE_OFF: f64 = 0.5;
 /// Seconds grow with this power of the number of elements (docs/performance.md).
 pub const SECONDS_EXPONENT: f64 = 1.13;
 
@@ -55,6 +58,10 @@ pub struct Parts {
     pub smooth: f64,
     /// By ends of the surface: of first order.
     pub ends: f64,
+    /// By jumps of it: of first order.
+    pub jumps: f64,
+    /// dF/d(approach).
+    pub stiffness: f64,
     /// The first in the mean, with its sign.
     likely: f64,
 }
@@ -67,29 +74,60 @@ impl Parts {
         if count == 0 || chord < LEAST_CHORD {
             return None;
         }
-        let (force, depth) = (state.force(), curvature.depth);
-        let stiffness = match state.load {
-            Load::Force(_) => 1.0,
-            Load::Approach(_) => stiffness(problem, force, depth, count as f64 * state.grid.element_area()),
+        let force = state.force();
+        let stiffness = stiffness(problem, force, curvature.depth, count as f64 * state.grid.element_area());
+        // What an error of the approach makes of what is found.
+        let (by, sign, found) = match state.load {
+            Load::Force(_) => (1.0, -1.0, curvature.depth),
+            Load::Approach(_) => (stiffness, 1.0, force),
         };
-        let of_approach = PART * curvature.bend * stiffness;
         let pressure = force / (count as f64 * state.grid.element_area());
         let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
         let widened = 1.0 + (SHORT_CHORD / chord).powi(2);
-        let smooth = AT_MOST * stiffness * (widened * curvature.bend.abs() + along_lines);
-        let ends = outline.ends(problem.coefficients.repeats(&state.grid)) as f64;
-        // A circle of radius a, in elements, has 8 a sides and pi a^2 elements.
-        let found = if matches!(state.load, Load::Force(_)) { depth } else { force };
-        let ends = AT_ENDS * std::f64::consts::PI / 8.0 * ends / count as f64 * found.abs();
-        let likely = if matches!(state.load, Load::Force(_)) { -of_approach } else { of_approach };
-        let parts = Parts { smooth, ends, likely };
-        (smooth + ends).is_finite().then_some(parts)
+        let smooth = AT_MOST * by * (widened * curvature.bend.abs() + along_lines);
+        let ends = by * ends(problem, state, outline) + one_element(problem, state) * found.abs();
+        let jumps = by * jumps(problem, state) / count as f64;
+        let parts = Parts { smooth, ends, jumps, stiffness, likely: sign * PART * by * curvature.bend };
+        parts.error().is_finite().then_some(parts)
     }
 
     /// Together.
     pub fn error(&self) -> f64 {
-        self.smooth + self.ends
+        self.smooth + self.of_first_order()
     }
+
+    /// Ends and jumps.
+    pub fn of_first_order(&self) -> f64 {
+        self.ends + self.jumps
+    }
+}
+
+/// Error of the approach by ends of the surface.
+fn ends(problem: &Problem, state: &State, outline: &Outline) -> f64 {
+    if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 {
+        return 0.0;
+    }
+    let [sum] = at_ends(problem, state, |i| [state.p[i]]);
+    sum / state.force()
+}
+
+/// Of a direction of one element that does not repeat itself, relative to what is found.
+fn one_element(problem: &Problem, state: &State) -> f64 {
+    let (x, y) = problem.coefficients.repeats(&state.grid);
+    let is_one = |m: usize, repeats: bool| if m == 1 && !repeats { ONE_ELEMENT } else { 0.0 };
+    is_one(state.grid.mx, x) + is_one(state.grid.my, y)
+}
+
+/// Error of the approach by jumps of h, times the elements in contact.
+fn jumps(problem: &Problem, state: &State) -> f64 {
+    if problem.exact_edges {
+        return 0.0;
+    }
+    let (grid, contact) = (&state.grid, &state.contact);
+    let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
+    let weight = |i: usize, j: usize| if contact[i] || contact[j] { 1.0 } else { 0.0 };
+    let value = |i: usize| state.h[i];
+    touching.map_or(0.0, |part| at_jumps((grid, &part), problem.coefficients.repeats(grid), (value, false), weight))
 }
 
 /// dF/d(approach): that of a circle of the same area, or where contact is in many places or endless that of a parabola, 3/2 F/depth. What the
@@ -143,9 +181,10 @@ pub fn estimate(
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
     let residual = measures.certificate.residual;
     let found = measures.found(finest.load);
-    let sizes = (outline.edges - outline.straight_edges) as f64;
+    let curved = (outline.edges - outline.straight_edges) as f64;
     let straight = (outline.straight.0 + outline.straight.1) as f64;
-    let lines = (STRAIGHT_OFF * straight + sizes.sqrt()) * finest.grid.element_area();
+    let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
+    let lines = lines * finest.grid.element_area();
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -153,7 +192,7 @@ pub fn estimate(
         // Coarser rows: off from the value without its likely error.
         let force = parts.map(|parts| match is_last {
             true => parts.error(),
-            false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.ends,
+            false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.of_first_order(),
         });
         let highest = peak.map(|bend| {
             let missed = PEAK * bend * (1.0 + (bend / SHARP).powi(2)) * measures.max_pressure;
@@ -173,10 +212,20 @@ pub fn estimate(
     }
     let Some(parts) = parts else { return Default::default() };
     let hidden = residual * found.abs();
-    let halved = parts.smooth / 4.0 + parts.ends / 2.0;
+    let halved = parts.smooth / 4.0 + parts.of_first_order() / 2.0;
     let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
+}
+
+/// Elements by which the contact area is off along straight ends of the surface: half of theirs if all ends are straight. A circle has
+/// four short pieces, which what is in steps makes up for.
+fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
+    if problem.exact_edges || outline.edges == 0 {
+        return 0.0;
+    }
+    let straight = outline.straight_edges as f64;
+    EDGE_OFF * straight * straight / outline.edges as f64
 }
 
 /// The bits of the errors that cannot be estimated; says so in the log.

@@ -224,19 +224,22 @@ impl Solver {
         self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
     }
 
-    /// The errors of the report and the ledger. Limits have other rims, row tables other displacements than the estimates know.
+    /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.
     fn estimate(&self, scene: &Scene<'_>, options: &Options, monitor: &mut Monitor<'_>, report: &mut Report) {
-        if !self.problem.symmetric || options.is_fixed() || scene.pressure_limit.is_some() {
+        if !self.problem.symmetric || options.is_fixed() || self.state.has_limited() {
             return;
         }
         let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
         let (rows, outline) = (&mut ledger.rows, &ledger.outline);
         (report.limit, report.halving) = estimates::estimate(rows, &self.problem, &self.state, outline, seconds);
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
-        let alike = self.friction.as_ref().is_some_and(|tangent| tangent.is_of_like_bodies());
-        if let (Some(friction), Some(found)) = (&scene.friction, &mut report.friction) {
-            let contact = (&self.problem, &self.state, &ledger.outline);
-            found.error = tangential_estimates::estimate(contact, (friction, alike), found);
+        let Some(tangent) = self.friction.as_deref() else { return };
+        let found = (&scene.friction, &mut report.friction, tangent.solution());
+        if let (Some(friction), Some(found), Some(solution)) = found {
+            let (problem, state, outline) = (&self.problem, &self.state, &ledger.outline);
+            let alike = tangent.is_of_like_bodies();
+            let solved = tangential_estimates::Solved { problem, state, outline, friction, solution, alike };
+            found.error = tangential_estimates::estimate(&solved, found);
         }
     }
 

@@ -209,6 +209,8 @@ fn on_grid(
         other => other,
     };
     let (mut solver, lowest) = Solver::for_scene(&scene, options).map_err(said)?;
+    // Without a callback the elements that were given are the surface.
+    solver.problem.exact_edges = surface.is_none() && doublings >= 0;
     let mut is_late = false;
     let mut watch = |told: &Progress| {
         is_late = late(told);

@@ -2,7 +2,7 @@
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
+use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 const MU: f64 = 0.3;
@@ -159,4 +159,114 @@ fn errors_of_steps_that_continue_are_not_known() {
     let given = |motion| move |_: f64, _: [f64; 2]| Friction { motion, ..Friction::new(MU) };
     let (found, _) = moved(24, 0.0, given(Motion::TransientRolling));
     assert_eq!(found.error, [-1.0; 2]);
+}
+
+/// Sides of a grid, and how far off its middle a surface is: edges and jumps of mu fall on elements as it happens.
+const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
+
+/// The grid and a surface at its centres; and mu.
+fn placed(
+    m: usize,
+    (side, off): (f64, [f64; 2]),
+    h: &dyn Fn(f64, f64) -> f64,
+    mu: &dyn Fn(f64) -> f64,
+) -> (Grid, Vec<f64>, Vec<f64>) {
+    let d = side / m as f64;
+    let place = |i: usize, k: usize| (i as f64 - 0.5 * (m - 1) as f64) * d + off[k];
+    let h = (0..m * m).map(|i| h(place(i % m, 0), place(i / m, 1))).collect();
+    let mu = (0..m * m).map(|i| mu(place(i % m, 0))).collect();
+    (Grid::new(m, m, d, d).unwrap(), h, mu)
+}
+
+/// No estimate is below half of its error, one in ten below all of it; the median.
+fn assert_covered(mut ratios: Vec<f64>, most: f64, what: &str) {
+    ratios.sort_by(f64::total_cmp);
+    let (low, median) = (ratios.iter().filter(|ratio| **ratio < 1.0).count(), ratios[ratios.len() / 2]);
+    println!("{what}: least {}, {low} of {} below 1, median {median}", ratios[0], ratios.len());
+    assert!(ratios[0] >= 0.5 && 10 * low <= ratios.len() && median <= most, "{what}: {low} low, median {median}");
+}
+
+/// A flat punch sticks until all of it slips: tractions are proportional to pressures, and with nu = 0 both displace alike. So
+/// `F = k E* shift` with the k of the normal force, for a circle of radius a 2 a, for a square of side L `pi 0.36679 L` (Read 1997).
+#[test]
+fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
+    let square = |x: f64, y: f64| if x.abs().max(y.abs()) < 0.6 { 0.0 } else { f64::INFINITY };
+    let circle = |x: f64, y: f64| if x.hypot(y) < 0.6 { 0.0 } else { f64::INFINITY };
+    let of_square = 1.2 * std::f64::consts::PI * 0.36679;
+    for (name, h, stiffness) in
+        [("square", &square as &dyn Fn(f64, f64) -> f64, of_square), ("circle", &circle as _, 1.2)]
+    {
+        let approach = 0.01;
+        let loads = [Load::Approach(approach), Load::Force(stiffness * approach)];
+        let (mut by_shift, mut by_force) = (Vec::new(), Vec::new());
+        for (m, place) in [16, 24, 32, 48, 64].into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
+            let (grid, h, _) = placed(m, place, h, &|_| MU);
+            for (part, load) in [0.1, 0.5, 0.9].into_iter().flat_map(|part| loads.map(|load| (part, load))) {
+                let shift = part * MU * approach;
+                let of = |first: Prescribed| {
+                    let friction = Friction { prescribed: [first, Prescribed::Creepage(0.0)], ..Friction::new(MU) };
+                    let scene =
+                        Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(1.0, 0.0), load) };
+                    solve(&scene, &Options { estimates: true, tolerance: 1e-7, ..Options::default() })
+                        .unwrap()
+                        .2
+                        .friction
+                        .unwrap()
+                };
+                let found = of(Prescribed::Creepage(-shift));
+                by_shift.push(found.error[0] / (found.force[0] - stiffness * shift).abs());
+                if let Load::Force(_) = load {
+                    let found = of(Prescribed::Force(stiffness * shift));
+                    by_force.push(found.error[0] / (found.creepage[0] + shift).abs());
+                }
+            }
+        }
+        assert_covered(by_shift, 10.0, &format!("{name}, shifted"));
+        assert_covered(by_force, 10.0, &format!("{name}, pushed"));
+    }
+}
+
+/// A ball of radius 1 on which mu jumps at x = c, where all slips: the part of Hertz's force beyond c is
+/// `(pi p0/(2 a)) (2 a^3/3 - a^2 c + c^3/3)`.
+#[test]
+fn the_error_of_a_force_where_mu_jumps_is_covered() {
+    let a = 0.6_f64;
+    let normal = 4.0 / 3.0 * a.powi(3);
+    let mut ratios = Vec::new();
+    for (m, place) in [16, 24, 32, 48, 64, 96].into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
+        for c in [-0.2_f64, 0.05, 0.31] {
+            let beyond = 2.0 * a.powi(3) / 3.0 - a * a * c + c.powi(3) / 3.0;
+            let exact = 0.1 * normal + 0.2 * beyond;
+            let jumps = |x: f64| if x < c { 0.1 } else { 0.3 };
+            let (grid, h, mu) = placed(m, place, &|x, y| 0.5 * (x * x + y * y), &jumps);
+            let friction = Friction {
+                coefficient: Coefficient::PerElement(&mu),
+                prescribed: [Prescribed::Creepage(-1e3), Prescribed::Creepage(0.0)],
+                ..Friction::new(MU)
+            };
+            let bodies = Bodies::same(1.0, 0.0);
+            let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(normal)) };
+            let options = Options { estimates: true, tolerance: 1e-7, ..Options::default() };
+            let found = solve(&scene, &options).unwrap().2.friction.unwrap();
+            ratios.push(found.error[0] / (found.force[0] - exact).abs());
+        }
+    }
+    assert_covered(ratios, 5.0, "mu jumps");
+}
+
+/// With an approach that is given the normal force is off, and with it `mu N` of what slips: of Hertz's ball.
+#[test]
+fn the_error_of_a_slipping_balls_force_by_approach_is_covered() {
+    let (a, mut ratios) = (0.6_f64, Vec::new());
+    for (m, place) in [20, 24, 32, 48, 64, 96, 128].into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
+        let (grid, h, _) = placed(m, place, &|x, y| 0.5 * (x * x + y * y), &|_| MU);
+        let friction =
+            Friction { prescribed: [Prescribed::Creepage(-1e3), Prescribed::Creepage(0.0)], ..Friction::new(MU) };
+        let bodies = Bodies::same(1.0, 0.0);
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(a * a)) };
+        let options = Options { estimates: true, tolerance: 1e-8, ..Options::default() };
+        let found = solve(&scene, &options).unwrap().2.friction.unwrap();
+        ratios.push(found.error[0] / (found.force[0] - MU * 4.0 / 3.0 * a.powi(3)).abs());
+    }
+    assert_covered(ratios, 5.0, "slipping ball");
 }

@@ -26,6 +26,7 @@ mod coating;
 mod coefficients;
 mod effects;
 mod estimates;
+mod estimates_at_edges;
 mod every_grid;
 mod families;
 mod fft_smoother;

@@ -1,0 +1,134 @@
+//! Jumps of a quantity that is known at the centres of elements.
+//!
+//! A jump lies somewhere between two centres: half an element is uncertain, along a straight line all in the same direction, else most of
+//! it goes out. It is found by its third difference, `-2 J` for a jump J between the two middle ones of four centres: it stands out
+//! from what is around it, the second differences beside it have opposite signs, and it goes on in the next line. What bends smoothly has
+//! none. (Of a rough surface whose shortest waves have 3 to 16 elements one place in 1e4 or fewer is taken for a jump, and a small one.)
+
+use std::ops::Range;
+
+use crate::bounding_box::Part;
+use crate::grid::Grid;
+
+/// Lines that are looked at, at least.
+const LINES: usize = 32;
+/// A third difference stands out by this factor.
+const STANDS_OUT: f64 = 8.0;
+/// A jump in the next line, at least this part of it and at most as many times it, says that it goes on.
+const GOES_ON: f64 = 0.5;
+/// Of an element: how far off a jump is, along a straight line and else.
+const AT_STRAIGHT: f64 = 0.5;
+const AT_STEPS: f64 = 0.15;
+
+/// A row or a column.
+#[derive(Clone, Copy)]
+struct Line {
+    number: usize,
+    /// Of all that there are.
+    lines: usize,
+    /// Elements along it.
+    m: usize,
+    /// Distances in memory, along it and to the next line.
+    step: usize,
+    to_next: usize,
+    repeats: bool,
+}
+
+/// Sum over the jumps J between neighbours of `|J|` times the part of an element that is uncertain times `weight(i, j)` of the two
+/// elements, of which one lies in `part` of the grid. Of many lines some are looked at, unless `all`.
+pub fn at_jumps(
+    (grid, part): (&Grid, &Part),
+    repeats: (bool, bool),
+    (value, all): (impl Fn(usize) -> f64, bool),
+    weight: impl Fn(usize, usize) -> f64,
+) -> f64 {
+    let (mx, my) = (grid.mx, grid.my);
+    let row = Line { number: 0, lines: my, m: mx, step: 1, to_next: mx, repeats: repeats.0 };
+    let column = Line { number: 0, lines: mx, m: my, step: mx, to_next: 1, repeats: repeats.1 };
+    let mut sum = 0.0;
+    // A jump needs four different centres.
+    for (first, numbers, places) in [(row, &part.1, &part.0), (column, &part.0, &part.1)] {
+        let stride = if all { 1 } else { (numbers.len() / LINES).max(1) };
+        let looked_at = (numbers.start + stride / 2..numbers.end).step_by(stride);
+        let each = numbers.len() as f64 / looked_at.len() as f64;
+        let places = places.start as isize - 1..places.end as isize;
+        let of_line = |number| Line { number, ..first }.jumps(places.clone(), &value, &weight);
+        sum += each * looked_at.filter(|_| first.m >= 4).map(of_line).sum::<f64>();
+    }
+    sum
+}
+
+impl Line {
+    /// The element at `place`, none beyond the ends.
+    fn at(&self, place: isize) -> Option<usize> {
+        let m = self.m as isize;
+        let place = if self.repeats { place.rem_euclid(m) } else { place };
+        (0..m).contains(&place).then(|| self.number * self.to_next + place as usize * self.step)
+    }
+
+    fn jumps(&self, places: Range<isize>, value: &impl Fn(usize) -> f64, weight: &impl Fn(usize, usize) -> f64) -> f64 {
+        let mut sum = 0.0;
+        let mut before = self.second(places.start, value);
+        for place in places {
+            let behind = self.second(place + 1, value);
+            // Nearly all places end here.
+            if before > 0.0 && behind < 0.0 || before < 0.0 && behind > 0.0 {
+                if let (Some(i), Some(j)) = (self.at(place), self.at(place + 1)) {
+                    let weight = weight(i, j);
+                    if weight > 0.0 {
+                        sum += weight * self.uncertain(place, behind - before, value);
+                    }
+                }
+            }
+            before = behind;
+        }
+        sum
+    }
+
+    /// `|J|` of a jump behind `place` with the third difference `found`, times what is uncertain of an element; 0 where there is none.
+    fn uncertain(&self, place: isize, found: f64, value: &impl Fn(usize) -> f64) -> f64 {
+        let second = |k: isize| self.second(place + k, value);
+        let change = |from: isize, to: isize| {
+            let change = (second(to) - second(from)).abs();
+            if change.is_finite() {
+                change
+            } else {
+                0.0
+            }
+        };
+        // Waves of few elements bend on both sides, too, but farther off they bend more.
+        let around = change(-2, -1).max(change(2, 3)).max(change(-1, 2));
+        if !(found.abs() > STANDS_OUT * around) {
+            return 0.0;
+        }
+        let beside = [self.number.checked_sub(1), Some(self.number + 1).filter(|next| *next < self.lines)];
+        let beside: Vec<Line> = beside.into_iter().flatten().map(|number| Line { number, ..*self }).collect();
+        let goes_on = |line: &Line, mut places: Range<isize>| {
+            let third = |k: isize| line.second(place + k + 1, value) - line.second(place + k, value);
+            places.any(|k| (GOES_ON..=1.0 / GOES_ON).contains(&(third(k) / found)))
+        };
+        if !beside.is_empty() && !beside.iter().any(|line| goes_on(line, -1..2)) {
+            return 0.0;
+        }
+        let is_straight = beside.iter().all(|line| goes_on(line, 0..1));
+        0.5 * found.abs() * if is_straight { AT_STRAIGHT } else { AT_STEPS }
+    }
+
+    /// The second difference at a place; no number where the surface ends.
+    #[inline]
+    fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
+        let second = if place >= 1 && place + 1 < self.m as isize {
+            let at = self.number * self.to_next + place as usize * self.step;
+            value(at - self.step) + value(at + self.step) - 2.0 * value(at)
+        } else {
+            let [before, here, behind] =
+                [place - 1, place, place + 1].map(|place| self.at(place).map_or(f64::INFINITY, value));
+            before + behind - 2.0 * here
+        };
+        if second.is_finite() {
+            second
+        } else {
+            f64::NAN
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Estimated errors where the surface ends within the contact, between elements or with them: punches that are flat.
+//!
+//! A flat punch has `F = k E* d`. For a circle of radius a k is 2 a; a square of side L has `k = pi 0.36679 L`, the capacity of a square
+//! plate over 4 epsilon, known to five digits (Read, J. Comput. Phys. 133, 1997).
+
+use std::f64::consts::PI;
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcome, Report};
+
+use crate::support::run;
+
+/// E* = 1.
+const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
+/// Of a square of side 1.
+const SQUARE: f64 = PI * 0.36679;
+const HALF: f64 = 0.6;
+const APPROACH: f64 = 0.01;
+/// Sides of the grid, and how far the punch is off its middle.
+const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
+const SIZES: [usize; 6] = [16, 24, 32, 40, 64, 96];
+
+fn estimating() -> Options {
+    Options { tolerance: 1e-7, estimates: true, ..Options::default() }
+}
+
+/// A surface at the centres of m x m elements over a square.
+fn at_centres(grid: &Grid, off: [f64; 2], h: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
+    let place = |i: usize, k: usize| (i as f64 - 0.5 * (grid.mx - 1) as f64) * grid.dx + off[k];
+    (0..grid.len()).map(|i| h(place(i % grid.mx, 0), place(i / grid.mx, 1))).collect()
+}
+
+fn square(x: f64, y: f64) -> f64 {
+    if x.abs().max(y.abs()) < HALF {
+        0.0
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn circle(x: f64, y: f64) -> f64 {
+    if x.hypot(y) < HALF {
+        0.0
+    } else {
+        f64::INFINITY
+    }
+}
+
+#[test]
+fn the_error_of_a_flat_punch_between_elements_is_covered() {
+    for (name, h, stiffness, area) in [
+        ("square", &square as &dyn Fn(f64, f64) -> f64, 2.0 * HALF * SQUARE, 4.0 * HALF * HALF),
+        ("circle", &circle, 2.0 * HALF, PI * HALF * HALF),
+    ] {
+        let (mut ratios, force) = (Vec::new(), stiffness * APPROACH);
+        for (m, (side, off)) in SIZES.into_iter().flat_map(|m| PLACES.map(|place| (m, place))) {
+            let d = side / m as f64;
+            let grid = Grid::new(m, m, d, d).unwrap();
+            let h = at_centres(&grid, off, h);
+            for (load, exact) in [(Load::Approach(APPROACH), force), (Load::Force(force), APPROACH)] {
+                let (_, report) = run(&Scene::new(grid, &h, UNIT, load), &estimating());
+                let ratio = report.error.force / (report.measures.found(load) - exact).abs();
+                assert!(ratio >= 0.5, "{name} {m} {load:?} {side}: {ratio}");
+                ratios.push(ratio);
+                let off = (report.measures.contact_area - area).abs();
+                assert!(report.error.contact_area >= 0.8 * off, "{name} {m} {side}: area off by {off}");
+            }
+        }
+        ratios.sort_by(f64::total_cmp);
+        let (low, median) = (ratios.iter().filter(|ratio| **ratio < 1.0).count(), ratios[ratios.len() / 2]);
+        println!("{name}: least {}, {low} of {} below 1, median {median}", ratios[0], ratios.len());
+        assert!(10 * low <= ratios.len() && median <= 8.0, "{name}: {low} below 1, median {median}");
+    }
+}
+
+#[test]
+fn an_accuracy_is_kept_by_a_punch_whose_edges_fall_between_elements() {
+    let force = 2.0 * HALF * SQUARE * APPROACH;
+    for (n, side, off) in [(8, 1.957_788, [0.0, 0.0]), (10, 2.2, [0.013, -0.017]), (20, 1.9, [-0.004, 0.011])] {
+        for target in [3e-2, 1e-2, 5e-3] {
+            let mut surface = |grid: &Grid, h: &mut [f64]| {
+                h.copy_from_slice(&at_centres(grid, off, &square));
+                false
+            };
+            let scene = Scene::new(
+                Grid::new(n, n, side / n as f64, side / n as f64).unwrap(),
+                &[],
+                UNIT,
+                Load::Approach(APPROACH),
+            );
+            let accuracy = Accuracy { max_elements: 1 << 21, ..Accuracy::new(target) };
+            let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).unwrap();
+            assert_eq!(found.stop, Outcome::Converged, "{n} {target}: {}", found.reason);
+            let error = (found.report.measures.force / force - 1.0).abs();
+            assert!(error <= target, "{n} {side} {target}: {error}, {}", found.reason);
+        }
+    }
+}
+
+/// Without a callback the elements that are given are the surface: their edges are exact, and take no finer grid.
+#[test]
+fn edges_of_elements_that_are_given_are_exact() {
+    let n = 16;
+    let force = 12.0 / n as f64 * SQUARE * APPROACH;
+    let d = 1.0 / n as f64;
+    let grid = Grid::new(n, n, d, d).unwrap();
+    let h = at_centres(&grid, [0.0; 2], &|x, y| if x.abs().max(y.abs()) < 6.0 * d { 0.0 } else { f64::INFINITY });
+    let scene = Scene::new(grid, &h, UNIT, Load::Approach(APPROACH));
+    let mut elements = Vec::new();
+    for target in [3e-2, 1e-2, 3e-3] {
+        let accuracy = Accuracy::new(target);
+        let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).unwrap();
+        assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
+        let error = (found.report.measures.force / force - 1.0).abs();
+        assert!(error <= target, "{target}: {error}, {}", found.reason);
+        let mut surface = |grid: &Grid, h: &mut [f64]| {
+            let inside = |x: f64, y: f64| if x.abs().max(y.abs()) < 6.0 * d { 0.0 } else { f64::INFINITY };
+            h.copy_from_slice(&at_centres(grid, [0.0; 2], &inside));
+            false
+        };
+        let of_callback = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).unwrap();
+        elements.push([found, of_callback].map(|found| found.solver.unwrap().grid().mx));
+    }
+    println!("elements by the array, by a callback: {elements:?}");
+    assert!(elements.iter().all(|[exact, unknown]| exact <= unknown));
+    assert!(elements.iter().any(|[exact, unknown]| exact < unknown), "{elements:?}");
+}
+
+fn report(scene: &Scene<'_>) -> Report {
+    solve(scene, &estimating()).unwrap().2
+}
+
+#[test]
+fn a_limit_that_is_not_reached_leaves_the_estimates() {
+    let grid = Grid::new(32, 32, 0.04, 0.04).unwrap();
+    let h = at_centres(&grid, [0.0; 2], &|x, y| 0.5 * (x * x + y * y));
+    let plain = report(&Scene::new(grid, &h, UNIT, Load::Approach(0.13)));
+    assert!(plain.error.force > 0.0);
+    for limit in [f64::INFINITY, 1e6, 1.1 * plain.measures.max_pressure] {
+        let limit = PressureLimit::Uniform(limit);
+        let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
+        let error = report(&scene).error;
+        for (limited, plain) in [
+            (error.force, plain.error.force),
+            (error.max_pressure, plain.error.max_pressure),
+            (error.contact_area, plain.error.contact_area),
+            (error.pressure, plain.error.pressure),
+        ] {
+            // Other iterations: the tolerance apart.
+            assert!((limited / plain - 1.0).abs() < 1e-3, "{limit:?}: {limited}, {plain} without");
+        }
+    }
+    let limit = PressureLimit::Uniform(0.9 * plain.measures.max_pressure);
+    let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
+    assert!(report(&scene).error.force < 0.0);
+}
+
+/// What jumps has an estimate of its own; a wave of few elements does not jump, whatever its length.
+#[test]
+fn jumps_are_found_and_waves_are_not() {
+    let m = 96;
+    let grid = Grid::new(m, m, 2.0 / m as f64, 2.0 / m as f64).unwrap();
+    let period = Some(Period { x: true, y: true });
+    let of = |h: &dyn Fn(f64, f64) -> f64, approach, period| {
+        let h = at_centres(&grid, [0.0; 2], h);
+        let found = report(&Scene { period, ..Scene::new(grid, &h, UNIT, Load::Approach(approach)) });
+        // Of first order: what halving the elements halves.
+        (4.0 * found.halving.force - found.error.force).max(0.0) / found.error.force
+    };
+    for waves in [4.0, 8.0, 12.0, 16.0, 24.0] {
+        let part = of(&|x, y| 0.01 * ((PI * waves * x).cos() + (PI * waves * y).cos()), -0.01, period);
+        assert!(part < 1e-3, "{waves} waves: {part}");
+    }
+    let step = of(&|x, y| 0.2 * (x * x + y * y) + if x > 0.013 { 0.01 } else { 0.0 }, 0.05, None);
+    assert!(step > 0.5, "{step}");
+}
