@@ -1,6 +1,6 @@
 //! What looks odd but is allowed, and what elements at their limit and batches with friction report.
 
-use std::ptr::{null, null_mut};
+use std::ptr::null_mut;
 
 use crate::call::{initialised, Call, Through, CX, CY};
 use crate::rows::*;
