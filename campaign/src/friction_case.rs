@@ -210,6 +210,13 @@ impl Case {
         }
     }
 
+    /// Whether a step of steady rolling is shorter than a tenth of the elements along it: such a step is refused.
+    pub fn has_step_of_no_length(&self) -> bool {
+        let grid = &self.place.grid;
+        let [x, y] = self.slide.step(grid);
+        self.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING && (x / grid.dx).abs().max((y / grid.dy).abs()) < 0.1
+    }
+
     /// Why the normal problem may be refused with this status.
     pub fn normal_reason(&self, status: i32) -> Option<&'static str> {
         rules::reason(&self.place.normal(&self.stop, &vec![0.0; self.place.h.len()], 0.0), status)

@@ -24,6 +24,11 @@ impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
 
+    /// Whether forces are given, and are 0.
+    pub fn are_zero(&self) -> bool {
+        self.any() && self.only_given(self.sum) == [0.0; 2]
+    }
+
     /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that. Where nothing can be carried
     /// a force of 0 is met as it is, and its creepage stays 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {

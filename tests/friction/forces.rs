@@ -128,3 +128,26 @@ fn a_force_beside_large_slips_and_tractions_is_met() {
         }
     }
 }
+
+/// Nothing moves, and a force of 0 is given: no creepage, no tractions, and no residual.
+#[test]
+fn what_does_not_move_carries_no_force() {
+    let grid = Grid::new(1, 9, 1.0, 0.41).unwrap();
+    let pressure: Vec<f64> =
+        (0..9).map(|i| 1e-3 * (1.0 - ((f64::from(i) - 4.0) / 3.6).powi(2)).max(0.0).sqrt()).collect();
+    for prescribed in [
+        [Prescribed::Creepage(0.0), Prescribed::Force(0.0)],
+        [Prescribed::Force(0.0), Prescribed::Creepage(0.0)],
+        [Prescribed::Force(0.0), Prescribed::Force(-0.0)],
+    ] {
+        for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+            let friction = Friction { motion, prescribed, rolling_direction: -0.5 * PI, ..Friction::new(0.07) };
+            let (report, solution) = run(&mut solver(&grid, 0.3), &pressure, &friction, 1e-8);
+            assert_eq!((report.creepage, report.certificate.residual), ([0.0; 2], 0.0), "{motion:?} {prescribed:?}");
+            assert!(
+                solution.traction.iter().chain(&solution.slip).all(|v| *v == [0.0; 2]),
+                "{motion:?} {prescribed:?}"
+            );
+        }
+    }
+}
