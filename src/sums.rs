@@ -102,6 +102,11 @@ pub fn in_blocks(mut values: impl Iterator<Item = f64>) -> f64 {
     all
 }
 
+/// The mean of values.
+pub fn mean(values: &[f64]) -> f64 {
+    in_blocks(values.iter().copied()) / values.len() as f64
+}
+
 /// The lesser of two values; of equal ones the second, whatever the sign of a zero.
 #[inline(always)]
 pub fn lesser(a: f64, b: f64) -> f64 {

@@ -211,7 +211,7 @@ impl Case {
     }
 
     /// Whether a step of steady rolling is shorter than a tenth of the elements along it: such a step is refused.
-    pub fn has_step_of_no_length(&self) -> bool {
+    pub fn step_is_too_short(&self) -> bool {
         let grid = &self.place.grid;
         let [x, y] = self.slide.step(grid);
         self.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING && (x / grid.dx).abs().max((y / grid.dy).abs()) < 0.1

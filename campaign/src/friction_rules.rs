@@ -57,7 +57,7 @@ fn reason(case: &Case, status: i32) -> Option<&'static str> {
     if status == CONTACT_NORMAL_INFEASIBLE {
         return case.may_be_infeasible();
     }
-    if status == CONTACT_NORMAL_INVALID_ARGUMENT && case.has_step_of_no_length() {
+    if status == CONTACT_NORMAL_INVALID_ARGUMENT && case.step_is_too_short() {
         return Some("refused: a step of steady rolling of less than a tenth of an element");
     }
     None

@@ -130,7 +130,7 @@ impl Sums {
 }
 
 /// The elements before and behind element `i` of `m`; none beyond the end of what does not repeat itself.
-pub(super) fn neighbours(i: usize, m: usize, repeats: bool) -> [Option<usize>; 2] {
+fn neighbours(i: usize, m: usize, repeats: bool) -> [Option<usize>; 2] {
     match (i, repeats && m > 1) {
         (_, _) if m == 1 => [None, None],
         (0, true) => [Some(m - 1), Some(1)],

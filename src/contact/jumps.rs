@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::direction::Direction;
 use crate::bounding_box::Part;
 use crate::grid::Grid;
 
@@ -24,14 +25,9 @@ const AT_STEPS: f64 = 0.15;
 #[derive(Clone, Copy)]
 struct Line {
     number: usize,
-    /// Of all that there are.
-    lines: usize,
-    /// Elements along it.
-    m: usize,
-    /// Distances in memory, along it and to the next line.
-    step: usize,
-    to_next: usize,
-    repeats: bool,
+    /// The direction along it, and that to the next line.
+    along: Direction,
+    across: Direction,
 }
 
 /// Sum over the jumps J between neighbours of `|J|` times the part of an element that is uncertain times `weight(i, j)` of the two
@@ -42,18 +38,19 @@ pub fn at_jumps(
     (value, all): (impl Fn(usize) -> f64, bool),
     weight: impl Fn(usize, usize) -> f64,
 ) -> f64 {
-    let (mx, my) = (grid.mx, grid.my);
-    let row = Line { number: 0, lines: my, m: mx, step: 1, to_next: mx, repeats: repeats.0 };
-    let column = Line { number: 0, lines: mx, m: my, step: mx, to_next: 1, repeats: repeats.1 };
+    let [x, y] = Direction::both(grid, repeats);
     let mut sum = 0.0;
-    // A jump needs four different centres.
-    for (first, numbers, places) in [(row, &part.1, &part.0), (column, &part.0, &part.1)] {
+    for (along, across, numbers, places) in [(x, y, &part.1, &part.0), (y, x, &part.0, &part.1)] {
+        // A jump needs four different centres.
+        if along.m < 4 {
+            continue;
+        }
         let stride = if all { 1 } else { (numbers.len() / LINES).max(1) };
         let looked_at = (numbers.start + stride / 2..numbers.end).step_by(stride);
         let each = numbers.len() as f64 / looked_at.len() as f64;
         let places = places.start as isize - 1..places.end as isize;
-        let of_line = |number| Line { number, ..first }.jumps(places.clone(), &value, &weight);
-        sum += each * looked_at.filter(|_| first.m >= 4).map(of_line).sum::<f64>();
+        let of_line = |number| Line { number, along, across }.jumps(places.clone(), &value, &weight);
+        sum += each * looked_at.map(of_line).sum::<f64>();
     }
     sum
 }
@@ -61,9 +58,7 @@ pub fn at_jumps(
 impl Line {
     /// The element at `place`, none beyond the ends.
     fn at(&self, place: isize) -> Option<usize> {
-        let m = self.m as isize;
-        let place = if self.repeats { place.rem_euclid(m) } else { place };
-        (0..m).contains(&place).then(|| self.number * self.to_next + place as usize * self.step)
+        self.along.at(place).map(|at| self.number * self.across.step + at)
     }
 
     fn jumps(&self, places: Range<isize>, value: &impl Fn(usize) -> f64, weight: &impl Fn(usize, usize) -> f64) -> f64 {
@@ -96,12 +91,12 @@ impl Line {
                 0.0
             }
         };
-        // Waves of few elements bend on both sides, too, but farther off they bend more.
+        // Waves of few elements have opposite signs there, too; but their second differences change as much farther off.
         let around = change(-2, -1).max(change(2, 3)).max(change(-1, 2));
         if !(found.abs() > STANDS_OUT * around) {
             return 0.0;
         }
-        let beside = [self.number.checked_sub(1), Some(self.number + 1).filter(|next| *next < self.lines)];
+        let beside = [self.number.checked_sub(1), Some(self.number + 1).filter(|next| *next < self.across.m)];
         let beside: Vec<Line> = beside.into_iter().flatten().map(|number| Line { number, ..*self }).collect();
         let goes_on = |line: &Line, mut places: Range<isize>| {
             let third = |k: isize| line.second(place + k + 1, value) - line.second(place + k, value);
@@ -117,9 +112,10 @@ impl Line {
     /// The second difference at a place; no number where the surface ends.
     #[inline]
     fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
-        let second = if place >= 1 && place + 1 < self.m as isize {
-            let at = self.number * self.to_next + place as usize * self.step;
-            value(at - self.step) + value(at + self.step) - 2.0 * value(at)
+        let second = if place >= 1 && place + 1 < self.along.m as isize {
+            let Direction { step, .. } = self.along;
+            let at = self.number * self.across.step + place as usize * step;
+            value(at - step) + value(at + step) - 2.0 * value(at)
         } else {
             let [before, here, behind] =
                 [place - 1, place, place + 1].map(|place| self.at(place).map_or(f64::INFINITY, value));

@@ -4,6 +4,7 @@ mod admissible;
 mod balance;
 mod certificate;
 mod curvature;
+mod direction;
 mod ends;
 mod exchange;
 mod guard;

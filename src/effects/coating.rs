@@ -127,11 +127,9 @@ impl Effect for Coating {
         &["influence", "row_tables"]
     }
 
-    fn mean_response(&self, scene: &Plain<'_>) -> f64 {
-        // 1/M of a modulus and a ratio.
-        let of = |g: f64, nu: f64| (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu));
-        let layers = (0..2).filter_map(|b| self.in_effect(b, scene));
-        layers.map(|layer| layer.thickness * of(layer.shear_modulus, layer.poisson_ratio)).sum()
+    // A ratio that is no number is refused by name.
+    fn gives_way(&self, scene: &Plain<'_>) -> bool {
+        (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
     }
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {

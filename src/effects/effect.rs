@@ -44,9 +44,9 @@ pub trait Effect {
         false
     }
 
-    /// What it gives way to a uniform pressure of 1 where the bodies do not: in a scene that repeats itself in both directions.
-    fn mean_response(&self, _scene: &Plain<'_>) -> f64 {
-        0.0
+    /// Whether a uniform pressure compresses it, where it does not move the bodies: in a scene that repeats itself in both directions.
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
     }
 
     /// What MULTIGRID and FULL_MULTIGRID do not solve: there is no smoother, or there are no coarser grids.

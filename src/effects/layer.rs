@@ -5,7 +5,6 @@ use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
 use crate::scene::Plain;
-use crate::sums::in_blocks;
 
 /// The compliance c of the layer, a length per pressure: of the same kind as influence coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,11 +42,8 @@ impl Effect for Layer<'_> {
         }
     }
 
-    fn mean_response(&self, _scene: &Plain<'_>) -> f64 {
-        match self {
-            Layer::Uniform(c) => *c,
-            Layer::PerElement(c) => in_blocks(c.iter().copied()) / c.len() as f64,
-        }
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        !self.is_rigid()
     }
 
     fn without_multigrid(&self) -> Option<&'static str> {

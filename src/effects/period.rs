@@ -9,7 +9,7 @@ use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
-use crate::sums::in_blocks;
+use crate::sums::mean;
 
 /// In which directions the scene repeats itself, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,13 +36,10 @@ impl Effect for Period {
     // is full there, and any force fits.
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
-        // What is no number is refused by name.
-        let response: f64 = others.iter().flatten().map(|other| other.mean_response(scene)).sum();
-        if !(response <= 0.0) {
+        if others.iter().flatten().any(|other| other.gives_way(scene)) {
             return Ok(());
         }
-        let h = scene.undeformed_distance;
-        let mean = in_blocks(h.iter().copied()) / h.len() as f64;
+        let mean = mean(scene.undeformed_distance);
         if approach >= mean {
             return Err(Error::Infeasible(format!(
                 "approach is {approach}, the mean of undeformed_distance {mean}; with two periods the approach is relative to the \

@@ -24,9 +24,9 @@ impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
 
-    /// Whether forces are given, and are 0.
+    /// Whether all that are given are 0.
     pub fn are_zero(&self) -> bool {
-        self.any() && self.only_given(self.sum) == [0.0; 2]
+        self.only_given(self.sum) == [0.0; 2]
     }
 
     /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that. Where nothing can be carried

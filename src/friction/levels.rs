@@ -14,6 +14,8 @@
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
 
+use std::iter::successors;
+
 use super::certificate::ON_THE_CIRCLE;
 use super::extension::{neighbours, Extension};
 use super::march::Rolling;
@@ -118,11 +120,11 @@ pub fn levels(
     let mut quadrant = Quadrant::new(tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
     let mut finest = Level::new(grid, Operators::new(&quadrant, &grid, rolling, false, threads)?)?;
     finest.prepare(&quadrant, single)?;
-    let coarser_grids = std::iter::successors(coarser(&grid), coarser).count();
-    let mut levels = sparse(1 + coarser_grids, "the grids of friction")?;
+    let below = || successors(coarser(&grid), coarser);
+    let mut levels = sparse(1 + below().count(), "the grids of friction")?;
     levels.push(finest);
     let (mut last, mut rolling) = (grid, rolling);
-    while let Some(grid) = coarser(&last) {
+    for grid in below() {
         let tangential = quadrant.tangential().for_element(grid.dx, grid.dy)?;
         rolling = rolling.map(|rolling| rolling.on(&last, &grid));
         quadrant = quadrant.coarser(&tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;

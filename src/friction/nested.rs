@@ -8,7 +8,6 @@ use super::bracket;
 use super::forces::Forces;
 use super::levels::{interpolate, restrict, Level};
 use super::newton::{self, Manner};
-use super::problem::Problem;
 use super::shift::{self, Goal};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -97,15 +96,6 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     }
 }
 
-/// Whether nothing moves, and nothing did; forces of 0 take no creepage then.
-fn is_at_rest(problem: &mut Problem, forces: Forces) -> bool {
-    if forces.are_zero() && problem.rms(|i| problem.slip[i]) == 0.0 {
-        problem.offset = [0.0; 2];
-        return true;
-    }
-    problem.rms_slip() == 0.0 && !forces.any()
-}
-
 /// Products that a grid may make, if it is the finest or all coarser ones together.
 fn products_of(limit: u64, certified: bool) -> f64 {
     if certified {
@@ -125,7 +115,9 @@ fn one(
 ) -> Result<Outcome> {
     let Level { problem, state, memory, .. } = level;
     let grid = problem.grid;
-    if is_at_rest(problem, forces) {
+    // Nothing moves, and nothing did: forces of 0 take no creepage then.
+    if forces.are_zero() && problem.rms(|i| problem.slip[i]) == 0.0 {
+        problem.offset = [0.0; 2];
         state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }

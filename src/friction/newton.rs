@@ -73,11 +73,11 @@ struct Course {
     factor: f64,
     /// The inner residual.
     inner: f64,
-    /// What is missing: the least of it, and steps since then; cuts since then.
+    /// The least residual, the steps since then, and the cuts since then.
     least: f64,
     since: u32,
     cuts: u32,
-    /// The last of it, and steps that left it as it is.
+    /// The last residual, and the steps that did not change it.
     last: f64,
     still: u32,
 }

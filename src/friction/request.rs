@@ -25,6 +25,11 @@ pub struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
+    /// mu p of an element.
+    pub fn bound(&self, i: usize) -> f64 {
+        self.friction.coefficient.at(i) * self.pressure[i].max(0.0)
+    }
+
     /// From the tractions before the step, for like bodies, in 1000 iterations at most, without estimates.
     pub fn new(pressure: &'a [f64], friction: &'a Friction<'a>, tolerance: f64) -> Request<'a> {
         let (limit, start) = (1000, Start::Before);

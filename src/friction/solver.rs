@@ -131,7 +131,7 @@ impl Solver {
     ) -> Result<(Outcome, Report)> {
         let began = std::time::Instant::now();
         let Request { pressure, friction, .. } = *request;
-        let bound = |i: usize| friction.coefficient.at(i) * pressure[i].max(0.0);
+        let bound = |i: usize| request.bound(i);
         let keeps = friction.previous == Previous::Kept;
         if keeps && !self.has_solution {
             return invalid("friction continues, but this solver holds no tractions yet".into());
@@ -183,8 +183,7 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
-        let Request { pressure, friction, .. } = *request;
-        let bound = |i: usize| friction.coefficient.at(i) * pressure[i].max(0.0);
+        let bound = |i: usize| request.bound(i);
         let from_rest = report.from_rest;
         let mut near = Near::default();
         if let Start::Superposed(_) = request.start {

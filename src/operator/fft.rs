@@ -145,6 +145,14 @@ pub(super) fn length_of_least_work(n: usize, relative_work: impl Fn(u32, u32, u3
     best
 }
 
+/// Makes the scratch of transforms so long, at least.
+pub(super) fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> {
+    let length = scratch.len().max(length);
+    reserve(scratch, length, "the scratch of transforms")?;
+    scratch.resize(length, Complex::default());
+    Ok(())
+}
+
 /// Complex transforms of one length, many columns at a time (unnormalised).
 #[derive(Clone)]
 pub struct ColumnTransform<T: Real> {
@@ -176,10 +184,7 @@ impl<T: Real> ColumnTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
-        let length = scratch.len().max(self.scratch_length());
-        reserve(scratch, length, "the scratch of transforms")?;
-        scratch.resize(length, Complex::default());
-        Ok(())
+        fit(scratch, self.scratch_length())
     }
 
     /// Its length.

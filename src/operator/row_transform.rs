@@ -13,9 +13,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::columns::{parts, parts_mut};
-use super::fft::{twiddles, ColumnTransform, Complex, Real};
+use super::fft::{fit, twiddles, ColumnTransform, Complex, Real};
 use crate::error::Result;
-use crate::memory::reserve;
 
 /// Lengths of short rows, and how many are transformed together.
 const SHORT: usize = 256;
@@ -73,10 +72,7 @@ impl<T: Real> RowTransform<T> {
 
     /// Makes scratch long enough.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
-        let length = scratch.len().max(self.scratch_length());
-        reserve(scratch, length, "the scratch of transforms")?;
-        scratch.resize(length, Complex::default());
-        Ok(())
+        fit(scratch, self.scratch_length())
     }
 
     /// Its length.

@@ -161,21 +161,18 @@ pub fn predict(problem: &Problem, state: &State) -> f64 {
     }
 }
 
-/// Writes the errors of all rows, of which the last is that of `finest`. What limits the answer, and what the next finer grid would
-/// bring.
+/// Writes the errors of all rows, of which the last is that of `finest`, with its curvature and the parts of its error. What limits the
+/// answer, and what the next finer grid would bring.
 pub fn estimate(
     ledger: &mut [LedgerRow],
-    problem: &Problem,
-    finest: &State,
-    outline: &Outline,
+    (problem, finest, outline): (&Problem, &State, &Outline),
+    (curvature, parts): (&Curvature, Option<Parts>),
     seconds: f64,
 ) -> (Limit, Halving) {
     let Some(last) = ledger.last().copied().filter(|last| last.measures.contact_count > 0) else {
         return Default::default();
     };
     let measures = last.measures;
-    let curvature = Curvature::of(problem, finest, outline.rows);
-    let parts = Parts::of(problem, finest, &curvature, outline);
     let peak = Curvature::of_peak(problem, finest, measures.max_pressure).filter(|bend| *bend <= SINGULAR);
     let pressure = parts.map(|_| PRESSURES * curvature.pressure);
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());

@@ -43,7 +43,7 @@ pub use refinement::{
 pub use report::{Halving, Limit, Report};
 pub use tangential::solve_tangential;
 
-use crate::contact::{self, Freshness, State};
+use crate::contact::{self, Curvature, Freshness, State};
 use crate::effects::{self, Effect, Named};
 use crate::error::{invalid, Result};
 use crate::friction;
@@ -53,8 +53,10 @@ use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 use compressible::Compressible;
+use estimates::Parts;
 use methods::Methods;
 use tangential::Tangent;
+use tangential_estimates::Solved;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -231,14 +233,17 @@ impl Solver {
         }
         let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
         let (rows, outline) = (&mut ledger.rows, &ledger.outline);
-        (report.limit, report.halving) = estimates::estimate(rows, &self.problem, &self.state, outline, seconds);
+        let (problem, state) = (&self.problem, &self.state);
+        let curvature = &Curvature::of(problem, state, outline.rows);
+        let parts = Parts::of(problem, state, curvature, outline);
+        (report.limit, report.halving) =
+            estimates::estimate(rows, (problem, state, outline), (curvature, parts), seconds);
         report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
         let Some(tangent) = self.friction.as_deref() else { return };
         let found = (&scene.friction, &mut report.friction, tangent.solution());
         if let (Some(friction), Some(found), Some(solution)) = found {
-            let (problem, state, outline) = (&self.problem, &self.state, &ledger.outline);
             let alike = tangent.is_of_like_bodies();
-            let solved = tangential_estimates::Solved { problem, state, outline, friction, solution, alike };
+            let solved = Solved { problem, state, outline, curvature, parts, friction, solution, alike };
             found.error = tangential_estimates::estimate(&solved, found);
         }
     }

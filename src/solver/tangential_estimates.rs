@@ -15,7 +15,7 @@
 //! else by less, `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. Jumps of the surface are off by the same.
 //!
 //! *Where the surface ends within the contact* ([`at_ends`]) tractions are singular as pressures are, and the force is off as the normal
-//! one is, with the traction in the place of the pressure. With a normal force that is given that part vanishes as all begins to slip.
+//! one is, with the traction in the place of the pressure. If the normal force is given, this part goes to 0 as the contact approaches full slip.
 //!
 //! *Where mu jumps* the jump lies anywhere between two centres, and with it `mu p` of what slips there ([`at_jumps`]).
 //!
@@ -53,6 +53,9 @@ pub struct Solved<'a> {
     pub problem: &'a Problem,
     pub state: &'a State,
     pub outline: &'a Outline,
+    /// Its curvature, and the parts of its error.
+    pub curvature: &'a Curvature,
+    pub parts: Option<Parts>,
     pub friction: &'a Friction<'a>,
     /// Tractions and slip.
     pub solution: &'a Solution,
@@ -63,14 +66,13 @@ pub struct Solved<'a> {
 /// Errors of the tangential force in each direction, or of the creepage where the force is prescribed; negative: not known.
 pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
     let unknown = [-1.0; 2];
-    let &Solved { problem, state, outline, friction, alike, .. } = solved;
-    let curvature = Curvature::of(problem, state, outline.rows);
+    let &Solved { state, outline, curvature, friction, alike, .. } = solved;
     let count = state.contact_count();
     let chord = outline.chord(count);
     if count == 0 || !(chord >= LEAST_CHORD) || !(curvature.depth > 0.0) {
         return unknown;
     }
-    let Some(parts) = Parts::of(problem, state, &curvature, outline) else { return unknown };
+    let Some(parts) = solved.parts else { return unknown };
     let widened = 1.0 + (CHORD / chord).powi(2);
     let of_shift = PART * curvature.bend.abs() / curvature.depth * widened * found.carried;
     let hidden = found.certificate.residual * found.carried;

@@ -285,23 +285,3 @@ fn inits_ignore_null_and_levels_are_checked() {
         assert!(!text.is_empty());
     }
 }
-
-#[test]
-fn a_fixed_area_comes_from_the_fields_whatever_the_guess() {
-    // Two elements, then two others with the pressures of the first solve as the guess.
-    let mut call = Call::new();
-    call.fix_contact();
-    let handle = call.new_handle();
-    for (guess, elements) in
-        [(CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [14, 15]), (CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [8, 9])]
-    {
-        call.options.known.initial_guess = guess;
-        call.contact.fill(0);
-        elements.iter().for_each(|&i| call.contact[i] = 1);
-        assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()));
-        let found: Vec<usize> = (0..call.pressure.len()).filter(|&i| call.pressure[i] != 0.0).collect();
-        assert_eq!(found, elements);
-    }
-    // SAFETY: made above.
-    unsafe { contact_normal_solver_free(handle) };
-}

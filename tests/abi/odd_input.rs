@@ -1,4 +1,4 @@
-//! What looks odd but is allowed, and what elements at their limit and batches with friction report.
+//! Input that looks odd but is allowed; elements at their limit, batches with friction, and fixed areas.
 
 use std::ptr::null_mut;
 
@@ -76,7 +76,7 @@ fn what_is_allowed_is_solved() {
         let mut call = Call::new();
         change(&mut call);
         assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
-        // What is in the table's last row and column cannot be seen in the pressures.
+        // The pressures do not depend on the table's last row and column.
         if call.without == "fields" || call.fields.known.pressure.is_null() {
             assert!(call.contact.iter().all(|&c| c == -77), "{name}: written, though not wanted");
         } else {
@@ -108,4 +108,24 @@ fn no_contact_is_no_error() {
             assert!(report.approach.is_finite() && report.max_pressure == 0.0, "{name}: {}", report.approach);
         }
     }
+}
+
+#[test]
+fn a_fixed_area_comes_from_the_fields_whatever_the_guess() {
+    // Two elements, then two others with the pressures of the first solve as the guess.
+    let mut call = Call::new();
+    call.fix_contact();
+    let handle = call.new_handle();
+    for (guess, elements) in
+        [(CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [14, 15]), (CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS, [8, 9])]
+    {
+        call.options.known.initial_guess = guess;
+        call.contact.fill(0);
+        elements.iter().for_each(|&i| call.contact[i] = 1);
+        assert_eq!(call.run(Through::SolverSolve, handle), (CONTACT_NORMAL_OK, String::new()));
+        let found: Vec<usize> = (0..call.pressure.len()).filter(|&i| call.pressure[i] != 0.0).collect();
+        assert_eq!(found, elements);
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
 }

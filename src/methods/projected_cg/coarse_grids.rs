@@ -24,7 +24,7 @@ use crate::operator::reserve;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
-use crate::sums::in_blocks;
+use crate::sums::mean;
 use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
@@ -63,10 +63,10 @@ pub struct CoarseGrids {
 impl CoarseGrids {
     /// The grids below `grid`; their operators follow when they are needed.
     pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
-        let count = successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST)).count();
-        let mut grids = sparse(count, "coarser grids")?;
+        let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
+        let mut grids = sparse(below().count(), "coarser grids")?;
         let (mut fine, mut influence) = (*grid, influence.clone());
-        while let Some(coarse) = coarsen(&fine, COARSEST) {
+        for coarse in below() {
             influence = influence.coarsen(&fine, &coarse)?;
             fine = coarse;
             grids.push(Coarse {
@@ -258,7 +258,6 @@ fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
 
 /// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
 fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
-    let mean = |h: &[f64]| in_blocks(h.iter().copied()) / h.len() as f64;
     let shift = mean(fine) - mean(coarse);
     if shift.is_finite() {
         coarse.iter_mut().for_each(|h| *h += shift);

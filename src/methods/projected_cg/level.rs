@@ -118,15 +118,14 @@ impl Level {
         &mut self,
         state: &mut State,
         set: S,
-        (displacement, last): (Freshness, Option<Last<'_>>),
+        (mut displacement, last): (Freshness, Option<Last<'_>>),
         goal: &Goal,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
-        let mut displacement = displacement;
         if displacement != Freshness::Exact {
             state.carry_force(set, &self.threads);
-            if !state.has_displacements() {
+            if displacement == Freshness::Near && !state.has_displacements() {
                 displacement = Freshness::Stale;
             }
         }
