@@ -22,10 +22,15 @@ impl Direction {
         ]
     }
 
-    /// From the first element of a line to the one at `place`, in memory; none beyond the ends.
-    pub fn at(&self, place: isize) -> Option<usize> {
+    /// The element of a line at `place`, by its number in the line; none beyond the ends.
+    pub fn place(&self, place: isize) -> Option<usize> {
         let m = self.m as isize;
         let place = if self.repeats { place.rem_euclid(m) } else { place };
-        (0..m).contains(&place).then(|| place as usize * self.step)
+        (0..m).contains(&place).then_some(place as usize)
+    }
+
+    /// From the first element of a line to the one at `place`, in memory; none beyond the ends.
+    pub fn at(&self, place: isize) -> Option<usize> {
+        self.place(place).map(|place| place * self.step)
     }
 }

@@ -48,7 +48,9 @@ pub fn at_jumps(
         let stride = if all { 1 } else { (numbers.len() / LINES).max(1) };
         let looked_at = (numbers.start + stride / 2..numbers.end).step_by(stride);
         let each = numbers.len() as f64 / looked_at.len() as f64;
-        let places = places.start as isize - 1..places.end as isize;
+        // Where a whole period is looked at, the jump at its seam comes last.
+        let first = if along.repeats && places.len() == along.m { 0 } else { -1 };
+        let places = places.start as isize + first..places.end as isize;
         let of_line = |number| Line { number, along, across }.jumps(places.clone(), &value, &weight);
         sum += each * looked_at.map(of_line).sum::<f64>();
     }
@@ -85,18 +87,15 @@ impl Line {
         let second = |k: isize| self.second(place + k, value);
         let change = |from: isize, to: isize| {
             let change = (second(to) - second(from)).abs();
-            if change.is_finite() {
-                change
-            } else {
-                0.0
-            }
+            change.is_finite().then_some(change)
         };
         // Waves of few elements have opposite signs there, too; but their second differences change as much farther off.
-        let around = change(-2, -1).max(change(2, 3)).max(change(-1, 2));
-        if !(found.abs() > STANDS_OUT * around) {
+        let around = [change(-2, -1), change(2, 3), change(-1, 2)].into_iter().flatten().reduce(f64::max);
+        // Where nothing is known around, a jump is not told from what bends.
+        if !around.is_some_and(|around| found.abs() > STANDS_OUT * around) {
             return 0.0;
         }
-        let beside = [self.number.checked_sub(1), Some(self.number + 1).filter(|next| *next < self.across.m)];
+        let beside = [-1, 1].map(|next| self.across.place(self.number as isize + next));
         let beside: Vec<Line> = beside.into_iter().flatten().map(|number| Line { number, ..*self }).collect();
         let goes_on = |line: &Line, mut places: Range<isize>| {
             let third = |k: isize| line.second(place + k + 1, value) - line.second(place + k, value);

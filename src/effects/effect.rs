@@ -34,6 +34,11 @@ pub trait Effect {
         Ok(())
     }
 
+    /// Refuses a load that no pressures carry beside the other effects, on any contact area or on the one that is given; asked for each solve.
+    fn check_area(&self, _scene: &Plain<'_>, _others: &[Option<&dyn Effect>], _given: Option<&[bool]>) -> Result<()> {
+        Ok(())
+    }
+
     /// The names of the effects that it is not solved with; one of a pair says so.
     fn excludes(&self) -> &'static [&'static str] {
         &[]
@@ -44,7 +49,8 @@ pub trait Effect {
         false
     }
 
-    /// Whether a uniform pressure compresses it, where it does not move the bodies: in a scene that repeats itself in both directions.
+    /// Whether surfaces approach each other beyond their mean distance, though a uniform pressure does not move the bodies: in a scene that
+    /// repeats itself in both directions. By a uniform pressure something is compressed, or pressures are held.
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {
         false
     }

@@ -100,4 +100,18 @@ impl Scene<'_> {
         plain.check_surface(lowest)?;
         Ok(lowest)
     }
+
+    /// Refuses a load that no pressures carry: of a contact area that is to be found, not of one that `is_fixed`.
+    pub fn check_free_load(&self, is_fixed: bool) -> Result<()> {
+        self.load.check_sign(is_fixed)?;
+        if is_fixed {
+            return Ok(());
+        }
+        self.check_area(None)
+    }
+
+    /// Refuses a load that no pressures carry, on any contact area or on the one that is given.
+    pub fn check_area(&self, given: Option<&[bool]>) -> Result<()> {
+        effects(self).try_for_each(|effect| effect.check_area(&self.plain(), &list(self), given))
+    }
 }

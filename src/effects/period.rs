@@ -11,6 +11,9 @@ use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
 use crate::sums::mean;
 
+const FULL: &str = "active_set is FIXED and all elements are in contact; with two periods the approach is relative to the mean plane, \
+     and any force fits: prescribe the force";
+
 /// In which directions the scene repeats itself, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {
@@ -34,12 +37,17 @@ impl Effect for Period {
 
     // With two periods the mean displacement is zero, so no approach is possible at which the mean of the distance vanishes: contact
     // is full there, and any force fits.
-    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+    fn check_area(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>], given: Option<&[bool]>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
         if others.iter().flatten().any(|other| other.gives_way(scene)) {
             return Ok(());
         }
-        let mean = mean(scene.undeformed_distance);
+        let h = scene.undeformed_distance;
+        if let Some(contact) = given {
+            let is_full = contact.iter().zip(h).all(|(inside, h)| *inside && h.is_finite());
+            return if is_full { Err(Error::Infeasible(FULL.into())) } else { Ok(()) };
+        }
+        let mean = mean(h);
         if approach >= mean {
             return Err(Error::Infeasible(format!(
                 "approach is {approach}, the mean of undeformed_distance {mean}; with two periods the approach is relative to the \

@@ -57,6 +57,16 @@ impl Effect for PressureLimit<'_> {
         }
     }
 
+    // Those that are held leave the mean distance to the others.
+    fn gives_way(&self, scene: &Plain<'_>) -> bool {
+        let is_held = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
+        let h = scene.undeformed_distance.iter();
+        match *self {
+            PressureLimit::Uniform(limit) => h.zip(std::iter::repeat(limit)).any(is_held),
+            PressureLimit::PerElement(limits) => h.zip(limits.iter().copied()).any(is_held),
+        }
+    }
+
     // A force that is more than all elements with a surface carry at the limit.
     fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;

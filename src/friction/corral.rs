@@ -65,7 +65,8 @@ impl Corral {
             let to = self.corners[(k + 1) % self.corners.len()];
             (to[0] - from[0]) * (c[1] - from[1]) - (to[1] - from[1]) * (c[0] - from[0])
         });
-        c.iter().all(|value| value.is_finite()) && sides.into_iter().all(|side| side >= 0.0)
+        let is_polygon = self.corners.len() > 2;
+        is_polygon && c.iter().all(|value| value.is_finite()) && sides.into_iter().all(|side| side >= 0.0)
     }
 
     fn only_given(&self, c: Vector) -> Vector {

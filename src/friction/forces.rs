@@ -7,6 +7,7 @@ use super::Vector;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::sums::in_blocks;
 
 /// Forces that are given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,14 +43,15 @@ impl Forces {
         if !forces.any() {
             return Ok(forces);
         }
-        let greatest: f64 = (0..grid.len()).map(bound).sum();
+        let greatest = in_blocks((0..grid.len()).map(bound));
         if greatest == 0.0 && forces.sum == [0.0; 2] {
             return Ok(Forces::NONE);
         }
-        if !(forces.sum[0].hypot(forces.sum[1]) < greatest * (1.0 - ROUND_OFF)) {
+        let wanted = forces.sum[0].hypot(forces.sum[1]);
+        if !(wanted < greatest * (1.0 - ROUND_OFF)) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",
-                square(forces.sum).sqrt() * area,
+                wanted * area,
                 greatest * area
             )));
         }

@@ -140,7 +140,7 @@ fn one(
             break;
         }
         if k > 0 {
-            log::info!("tangential problem: no further progress, Newton's method goes on");
+            log::info!("tangential problem: no further progress, {way:?} goes on");
             best.take_up(problem, state);
         }
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);

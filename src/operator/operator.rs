@@ -189,6 +189,11 @@ impl<T: Real> Operator<T> {
         self.rows.mx * self.rows.my
     }
 
+    /// Whether A has more on its diagonal than the coefficients.
+    pub fn has_diagonal(&self) -> bool {
+        !self.diagonal.is_empty()
+    }
+
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
         let columns = match &self.columns {

@@ -10,7 +10,7 @@ impl SetUp {
     /// Refuses a scene, whose distance and load are checked, and options that are not those of the set-up, or not solved together.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
-        scene.load.check_sign(options.is_fixed())?;
+        scene.check_free_load(options.is_fixed())?;
         if let Some(difference) = scene.grid.differs(&problem.grid) {
             return invalid(difference);
         }
@@ -93,6 +93,9 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
     let surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
     if fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(surface) {
         return invalid("active_set is FIXED, but the given contact area is empty, or has no surface".into());
+    }
+    if fixed {
+        scene.check_area(Some(guess.contact))?;
     }
     match guess.pressure.iter().find(|p| !p.is_finite()) {
         Some(p) => Err(Error::NotFinite(format!("pressure, the initial guess, holds {p}; it must be finite"))),

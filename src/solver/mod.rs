@@ -134,7 +134,7 @@ impl Solver {
         // The scene is refused first; threads that cannot be had, and options that are none, after it.
         let threads = options.check().and_then(|()| Threads::new(options.threads));
         let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
-        scene.load.check_sign(options.is_fixed())?;
+        scene.check_free_load(options.is_fixed())?;
         let threads = threads?;
         let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {

@@ -159,7 +159,8 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
         effects::check_bodies(scene)?;
         return scene.load.check();
     }
-    scene.check(&Threads::One).map(drop)
+    scene.check(&Threads::One)?;
+    scene.check_free_load(false)
 }
 
 /// The grid over the same rectangle with twice the elements in both directions, so many times; with half of them if the number is

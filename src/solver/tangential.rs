@@ -199,7 +199,7 @@ pub fn solve_tangential(
 ) -> Result<(Outcome, Solution, super::Report)> {
     scene.check(&Threads::One)?;
     options.check()?;
-    scene.load.check_sign(options.is_fixed())?;
+    scene.check_free_load(options.is_fixed())?;
     let Some(friction) = &scene.friction else {
         return invalid("friction is not given: there is nothing to solve".into());
     };

@@ -91,7 +91,8 @@ impl Solver {
             // Turns go on from each other, not from what was solved before.
             self.methods.projected_cg.forget_solutions();
         }
-        let options = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
+        let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
+        let mut cycles = 0;
         for solved in 0..=MOST_TURNS {
             let so_far = worse(stop, tangential_stop);
             let Some((distance, change)) = tangent.distance(&self.state) else {
@@ -108,14 +109,17 @@ impl Solver {
                 break;
             }
             // The work of all turns together is bounded by what the caller said.
-            let left = turn.options.max_cycles.saturating_sub(found.products as usize);
-            if left == 0 {
+            let most = turn.options.max_cycles;
+            let (left, left_normal) = (most.saturating_sub(found.products as usize), most.saturating_sub(cycles));
+            if left == 0 || left_normal == 0 {
                 return Ok((Outcome::IterationLimit, found));
             }
             monitor.ledger.rows.pop();
             monitor.enter_grid();
             let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
+            let options = Options { max_cycles: left_normal, ..again };
             (stop, _) = self.solve_normal((&scene, lowest(distance)), &options, None, monitor)?;
+            cycles += monitor.count.cycles as usize;
             let (products, seconds) = (found.products, found.seconds);
             let rest = Options { max_cycles: left, ..*turn.options };
             let turn = Turn { options: &rest, ..*turn };

@@ -43,6 +43,7 @@ mod operator;
 mod paper_tables;
 mod patches;
 mod periodic;
+mod periodic_beyond_the_mean;
 mod periodic_by_approach;
 mod pressure_limit;
 mod properties;

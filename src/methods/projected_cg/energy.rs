@@ -63,7 +63,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
-    /// the factor. It costs no product. Where p moves along a known change instead, or pressures have reached a limit, only a truncation that a
+    /// the factor. It costs no product. Where p moves along a known direction instead, or pressures have reached a limit, only a truncation that a
     /// product has paid is followed by it. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
@@ -72,8 +72,7 @@ impl<T: Real> Iteration<T> {
         sums: Option<(f64, f64)>,
     ) {
         self.is_scaled = false;
-        let along_change = self.known.is_there() && !self.known.is_deflation;
-        let scales = !(along_change || S::LIMITED && state.reached_limit);
+        let scales = !(self.known.is_there() || S::LIMITED && state.reached_limit);
         if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.settled) {
             return;
         }

@@ -11,8 +11,8 @@
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
-//! z and t have mean zero over C: directions carry no force, nor do they after they are held back, for t is lowered until its sum is 0 again. What is
-//! truncated beyond that is the error of the forecast; with a prescribed force p is scaled to make up for it. With a prescribed approach p is
+//! z and t have mean zero over C, so directions carry no force. Where elements are held back, t is lowered until its sum is 0 again. Only the error
+//! of the forecast is truncated then; with a prescribed force p is scaled to carry the force again. With a prescribed approach p is
 //! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `known`), or along a deflation
 //! direction where few elements carry much of the force (module `deflation`).
 //!
@@ -42,7 +42,7 @@
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::passes::{Step, Update};
-use super::search::{Search, FIRST_FORECAST};
+use super::search::{Search, FIRST_FORECAST, LONGEST};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
@@ -120,10 +120,10 @@ impl<T: Real> Iteration<T> {
         &mut self,
         state: &mut State,
         set: S,
-        goal: &Goal,
+        (goal, is_mean_free): (&Goal, bool),
         mut after_cycle: impl FnMut(&Cycle) -> bool,
     ) -> End {
-        let mut search = self.begin(state, set);
+        let mut search = self.begin(state, set, is_mean_free);
         let mut cycle: Option<Cycle> = None;
         let (mut iterations, mut floor) = (0, None);
         let (mut least, mut since_least) = (f64::INFINITY, 0);
@@ -153,14 +153,15 @@ impl<T: Real> Iteration<T> {
             }
             iterations += 1;
             cycle = self.iterate(state, set, &mut search);
-            if cycle.is_none() {
-                return End::Breakdown;
+            let Some(cycle) = &mut cycle else { return End::Breakdown };
+            if self.is_another_area(state, cycle, iterations) {
+                cycle.products += self.deflate::<S>(state, is_mean_free);
             }
         }
     }
 
     /// 4.1 and 4.2 before the first iteration.
-    fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Search {
+    fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S, is_mean_free: bool) -> Search {
         self.forget_directions(state.grid.mx);
         self.debts.clear();
         self.find_contact(state);
@@ -181,7 +182,7 @@ impl<T: Real> Iteration<T> {
         self.fit_approach(state, &update);
         self.update_displacements::<S>(state, &update);
         self.segments.find(&state.contact);
-        let products = products + self.restrict_known(state);
+        let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_known(state);
         self.step_along_known(state);
         let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner the first forecast is missing.
@@ -205,7 +206,7 @@ impl<T: Real> Iteration<T> {
             return None;
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
-        let alpha = search.shortened(alpha);
+        let alpha = held_back.map_or(alpha, |forecast| alpha.min(LONGEST * forecast));
         let held_back = search.believed(alpha);
         let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
         if near {

@@ -50,7 +50,7 @@ pub(super) struct Known<T> {
     /// The sums of d^2, and of w^2 over the elements of d.
     length: f64,
     size: f64,
-    /// Whether d is a deflation direction (module `deflation`): then p is scaled beside it.
+    /// Whether d is a deflation direction (module `deflation`).
     pub(super) is_deflation: bool,
     /// Elements that left C, which are 0 in d but not in what w is of.
     outside: Vec<(usize, f64)>,
@@ -81,6 +81,11 @@ impl<T: Real> Known<T> {
         } else {
             (&self.d, &self.w)
         }
+    }
+
+    /// Elements that left d.
+    pub(super) fn left(&self) -> usize {
+        self.outside.len()
     }
 
     /// The 2-norm of d.

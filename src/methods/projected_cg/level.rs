@@ -140,14 +140,12 @@ impl Level {
                 monitor.count_products(1, work);
             }
             in_either!(inner, inner => inner.know(state, last, (window, whole.mx), units))?;
-            let products = in_either!(inner, inner => inner.deflate::<S>(state, is_mean_free))?;
-            monitor.count_products(products, work);
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;
                 monitor.cycle_done(&whole, cycle.changes, cycle.update / units.pressure(), cycle.residual)
             };
-            Ok(in_either!(inner, inner => inner.run(state, set, goal, after_cycle)))
+            Ok(in_either!(inner, inner => inner.run(state, set, (goal, is_mean_free), after_cycle)))
         })?
     }
 

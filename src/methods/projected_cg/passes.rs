@@ -135,8 +135,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Lowers t, as far as it is not held back, until its sum over C is `missing`: what is held back would add to it. The sum falls with the
-    /// shift, convex: Newton's method comes from one side.
+    /// Lowers t where it is not held back until its sum over C is `missing`: elements that are held back would add to the force. The sum falls
+    /// with the shift, convex: Newton's method comes from one side.
     fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
         for _ in 0..LOWERINGS {
             let (t, formula) = (&self.t[..], Free { forecast });

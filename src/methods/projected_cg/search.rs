@@ -1,4 +1,4 @@
-//! What an iteration leaves to the next: a forecast of its step length, and what its direction is conjugate to.
+//! Between two iterations: the forecast of the step length, and the direction that the next one is conjugate to.
 
 /// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
 /// forecasts, each the last alpha.
@@ -7,9 +7,9 @@ const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 
-/// A step is at most so many times as long as the forecast: what is held back for that would be truncated by far more than it gained. Strips of two
-/// periods do not converge without.
-const LONGEST: f64 = 2.0;
+/// A step is at most so many times as long as the forecast. Elements were held back for a step of that length: by a longer one far more would be
+/// truncated than it gains. Strips of two periods do not converge without.
+pub(super) const LONGEST: f64 = 2.0;
 
 /// What an iteration leaves to the next.
 pub(super) struct Search {
@@ -28,14 +28,6 @@ impl Search {
     /// Before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
         Search { forecast, may_hold_back: true, tq: 0.0, is_first: true, products: 0 }
-    }
-
-    /// alpha, but for a step that is far longer than the one that its direction was held back for.
-    pub(super) fn shortened(&self, alpha: f64) -> f64 {
-        match self.forecast.filter(|_| self.may_hold_back) {
-            Some(forecast) => alpha.min(LONGEST * forecast),
-            None => alpha,
-        }
     }
 
     /// The forecast, unless it was far off: then it holds nobody back.

@@ -1,0 +1,105 @@
+//! Two periods by approaches at and beyond the mean of h: contact areas that are given, and pressures that are limited, allow them. Conditions are
+//! tested with direct sums.
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Solver};
+
+use crate::periodic_by_approach::{displacements, rough};
+
+const M: usize = 24;
+/// Approaches, relative to the mean of h.
+const APPROACHES: [f64; 4] = [-0.1, 0.0, 0.05, 0.7];
+
+fn scene(h: &[f64], approach: f64) -> Scene<'_> {
+    Scene {
+        period: Some(Period { x: true, y: true }),
+        ..Scene::new(Grid::new(M, M, 1.0, 1.0).unwrap(), h, Bodies::same(1.0, 0.0), Load::Approach(approach))
+    }
+}
+
+/// h with the mean 0.
+fn surface() -> Vec<f64> {
+    let h = rough(M, 4, 5);
+    let mean = h.iter().sum::<f64>() / h.len() as f64;
+    h.iter().map(|h| h - mean).collect()
+}
+
+#[test]
+fn a_given_contact_area_needs_no_gap() {
+    let h = surface();
+    let contact: Vec<bool> = h.iter().map(|h| *h < 0.3).collect();
+    let pressure = vec![0.0; h.len()];
+    for method in [Method::Auto, Method::Norm, Method::ProjectedCg] {
+        let options = Options { method, active_set: ActiveSet::Fixed, tolerance: 1e-9, ..Options::default() };
+        let mut solver = Solver::new(&scene(&h, 0.0), &options).unwrap();
+        for approach in APPROACHES {
+            let guess = Some(Guess { pressure: &pressure, contact: &contact });
+            let (stop, _) = solver.solve(&scene(&h, approach), &options, guess, None).unwrap();
+            assert_eq!(stop, Outcome::Converged, "{method:?} {approach}");
+            let p = &solver.state().p;
+            let u = displacements(&scene(&h, approach), p);
+            let of = |value: &dyn Fn(usize) -> f64| {
+                (0..p.len()).filter(|&i| contact[i]).map(|i| value(i).powi(2)).sum::<f64>().sqrt()
+            };
+            let residual = of(&|i| h[i] - approach + u[i]) / of(&|i| h[i] - approach);
+            // The tolerance, and the round-off of two products.
+            assert!(residual <= 1.01e-9, "{method:?} {approach}: {residual}");
+            assert!((0..p.len()).all(|i| contact[i] || p[i] == 0.0));
+        }
+    }
+}
+
+/// Of all elements in contact any force fits, at one approach only.
+#[test]
+fn a_given_contact_area_that_is_full_takes_a_force() {
+    let h = surface();
+    let (contact, pressure) = (vec![true; h.len()], vec![0.0; h.len()]);
+    let guess = Some(Guess { pressure: &pressure, contact: &contact });
+    let options = Options { active_set: ActiveSet::Fixed, ..Options::default() };
+    let mut solver = Solver::new(&scene(&h, 0.0), &options).unwrap();
+    for approach in APPROACHES {
+        let refused = solver.solve(&scene(&h, approach), &options, guess, None).unwrap_err();
+        assert!(matches!(refused, Error::Infeasible(_)) && refused.to_string().contains("all elements"), "{refused}");
+    }
+    let by_force = Scene { load: Load::Force(1e3), ..scene(&h, 0.0) };
+    let mut solver = Solver::new(&by_force, &options).unwrap();
+    let (stop, report) = solver.solve(&by_force, &options, guess, None).unwrap();
+    // The mean of h, to the tolerance of the certificate.
+    assert_eq!(stop, Outcome::Converged);
+    assert!(report.measures.approach.abs() <= options.tolerance * 2.0, "{}", report.measures.approach);
+}
+
+/// Elements at their limit leave the mean distance to the others.
+#[test]
+fn limits_give_way_beyond_the_mean() {
+    let h = surface();
+    let one: Vec<f64> = (0..h.len()).map(|i| if i == 100 { 0.5 } else { f64::INFINITY }).collect();
+    let limits = [PressureLimit::Uniform(0.2), PressureLimit::Uniform(5.0), PressureLimit::PerElement(&one)];
+    for (k, limit) in limits.into_iter().enumerate() {
+        for approach in APPROACHES {
+            let scene = Scene { pressure_limit: Some(limit), ..scene(&h, approach) };
+            let what = format!("limit {k}, approach {approach}");
+            let options = Options { tolerance: 1e-8, ..Options::default() };
+            let (solver, stop, _) = solve(&scene, &options).unwrap();
+            assert_eq!(stop, Outcome::Converged, "{what}");
+            let p = &solver.state().p;
+            let u = displacements(&scene, p);
+            let most = |i: usize| match limit {
+                PressureLimit::Uniform(limit) => limit,
+                PressureLimit::PerElement(limits) => limits[i],
+            };
+            let scale = (0..p.len()).map(|i| (h[i] - approach).powi(2)).sum::<f64>().sqrt();
+            // The tolerance, of all elements together.
+            for i in 0..p.len() {
+                let e = (h[i] - approach + u[i]) / scale;
+                assert!(p[i] >= 0.0 && p[i] <= most(i), "{what}: {} of {}", p[i], most(i));
+                assert!(p[i] == 0.0 || e <= 1e-8, "{what}: element {i} carries {} at the distance {e}", p[i]);
+                assert!(p[i] == most(i) || e >= -1e-8, "{what}: element {i} penetrates by {e}");
+            }
+        }
+    }
+    let none = Scene { pressure_limit: Some(PressureLimit::Uniform(f64::INFINITY)), ..scene(&h, 0.1) };
+    assert!(matches!(solve(&none, &Options::default()), Err(Error::Infeasible(_))));
+}
