@@ -92,19 +92,31 @@ def pointer(array: npt.NDArray[Any], kind: Any = c_double) -> Any:
     return array.ctypes.data_as(POINTER(kind))
 
 
+def _has_mask(values: Any) -> bool:
+    """Whether an array has a mask, or one of those that a list holds."""
+    if isinstance(values, (list, tuple)):
+        return any(_has_mask(one) for one in values)
+    return isinstance(values, np.ma.MaskedArray)
+
+
 def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
     """`values` as an array of one of the `kinds` of numpy, without a mask."""
-    if isinstance(values, np.ma.MaskedArray):
+    array: npt.NDArray[Any] = np.asanyarray(values)
+    if type(values) is not np.ndarray and (isinstance(array, np.ma.MaskedArray) or _has_mask(values)):
         raise TypeError(f"{name} is a masked array; fill it: .filled(...), with inf where h has no surface")
-    array = np.asarray(values)
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} has dtype {array.dtype}; it must hold {rule}")
-    return array
+    return np.asarray(array)
+
+
+def real(name: str, values: Any) -> npt.NDArray[Any]:
+    """An array of real numbers, of any shape."""
+    return _plain(name, values, "fiub", "real numbers")
 
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
     """Contiguous doubles of `shape`, or with as many dimensions as `dimensions` names; copied only where they are not that."""
-    array = _plain(name, values, "fiub", "real numbers")
+    array = real(name, values)
     if array.ndim != dimensions.count(",") + 1:
         raise ValueError(f"{name} has shape {array.shape}; it must be {dimensions}")
     if shape is not None and array.shape != shape:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import concurrent.futures
+import multiprocessing
 import os
+import signal
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -164,27 +165,36 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
+    stop = multiprocessing.Event() if client is None else None
     if client is not None:
         executor = client.get_executor()
     else:
-        executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent)
+        executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent, initargs=(stop,))
     jobs: dict[Any, int] = {}
     try:
         jobs.update((executor.submit(plane, plan, index), index) for index in missing)
         for job in concurrent.futures.as_completed(jobs):
             yield jobs[job], job.result()
+        stop = None
     finally:
+        # What was given up here need not be computed to its end.
+        if stop is not None:
+            stop.set()
         for job in jobs:
             job.cancel()
         executor.shutdown(wait=client is None)
 
 
-def _leave_with_parent() -> None:
-    """Ends this process soon after its parent was killed: otherwise it would wait for work for ever."""
+def _leave_with_parent(stop: Any) -> None:
+    """Ends this process soon after its parent was killed, for it would wait for work for ever, or has set `stop`.
+
+    Signals of the terminal are the parent's: it stops its processes.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch(started_by: int) -> None:
-        while os.getppid() == started_by:
-            time.sleep(0.5)
+        while os.getppid() == started_by and not stop.wait(0.1):
+            pass
         os._exit(1)
 
     # That of a fork server is not the one who asks for the work, but it ends with it.

@@ -11,7 +11,7 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
-from ._library import check, initialised, last_error, library
+from ._library import check, initialised, library
 from ._result import _value
 from ._scene import Scene
 from ._structs import Report, names
@@ -89,7 +89,7 @@ def friction_batch(
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
     fields: bool = False,
-    progress: Callable[[Progress], Any] | None = None,
+    progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> FrictionBatch:
     """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
@@ -114,8 +114,9 @@ def friction_batch(
         The pressures of a normal problem that is solved already.
     fields : bool
         Whether tractions and slip are wanted, too.
-    progress : callable, optional
-        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels.
+    progress : callable or bool, optional
+        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
+        a bar on stderr.
     shear_modulus, poisson_ratio, influence, layer, pressure_limit, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
@@ -143,19 +144,17 @@ def friction_batch(
     if table.shape[1] != 3:
         raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")
     struct = options(given)
-    watched = Watched(progress, struct, scene.h.size)
+    watched = Watched(progress, struct, scene, len(table))
     found = FrictionBatch(len(table), scene.shape, fields)
     results, report = found._results(), initialised("report")
     untouched = -(2**31)
     found.status[:] = untouched
-    status = library.contact_normal_friction_batch(
-        ctypes.byref(scene.struct), None if pressures is None else pointer(pressures), ctypes.byref(struct), len(table),
-        pointer(table), ctypes.byref(results), ctypes.byref(report),
+    status, found.message = watched.call(
+        library.contact_normal_friction_batch, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
+        ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), keep=(scene, pressures, table, found),
     )
-    found.message = last_error() if status else ""
-    watched.finish()
     if not len(table) or untouched in found.status:
-        check(status)
+        check(status, found.message)
     hidden = ("struct_size", "ledger", "ledger_capacity")
     found.report = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
     return found

@@ -10,6 +10,7 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, integer, options
 from ._callbacks import Surface
+from ._calls import called
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
 from ._library import check, initialised, library
 from ._scene import Scene
@@ -127,11 +128,12 @@ def cost_of_accuracy(
         accuracy.surface = surface.callback
     n = len(targets)
     wanted, rows = (ctypes.c_double * n)(*targets), (PriceStruct * n)()
-    status = library.contact_normal_cost_of_accuracy(
-        ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), QUANTITIES[quantity], n, wanted, rows
+    status, message = called(
+        library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
+        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),
     )
     if surface:
         surface.finish()
-    check(status)
+    check(status, message)
     return [Price.of(row) for row in rows]
 

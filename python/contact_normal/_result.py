@@ -89,38 +89,43 @@ class Result:
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene) -> None:
         self.status, self.message = status, message
         self.pressure, self.deformed_distance, self.displacement = outputs.doubles
-        self._scene, self._outputs, self._report = scene, outputs, report
+        self._contact, self._rows, self._report, self._scene = outputs.contact, outputs.rows, report, scene
+        self._traction, self._slip, self._adhesion = outputs.traction, outputs.slip, outputs.adhesion
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Pickled and copied as plain numbers: structs of the library hold addresses.
+        state = {**self.__dict__, "report": self.report, "ledger": self.ledger}
+        return {name: value for name, value in state.items() if name not in ("_report", "_rows")}
 
     # What follows is made when it is first asked for: small problems take no longer than that would.
     @cached_property
     def contact(self) -> npt.NDArray[np.bool_]:
         """The contact area, with the elements at the pressure limit."""
-        of_any_kind: npt.NDArray[np.bool_] = self._outputs.contact != 0
+        of_any_kind: npt.NDArray[np.bool_] = self._contact != 0
         return of_any_kind
 
     @cached_property
     def at_limit(self) -> npt.NDArray[np.bool_]:
         """The elements at the pressure limit."""
-        at_limit: npt.NDArray[np.bool_] = self._outputs.contact == 2
+        at_limit: npt.NDArray[np.bool_] = self._contact == 2
         return at_limit
 
     @cached_property
     def traction(self) -> Doubles:
         """q on body 1, in x and y; zeros without friction."""
-        return self._outputs.traction if self._outputs.traction is not None else np.zeros((2, *self.pressure.shape))
+        return self._traction if self._traction is not None else np.zeros((2, *self.pressure.shape))
 
     @cached_property
     def slip(self) -> Doubles:
         """The slip of body 1 over body 2 in the step, in x and y; zeros without friction."""
-        return self._outputs.slip if self._outputs.slip is not None else np.zeros((2, *self.pressure.shape))
+        return self._slip if self._slip is not None else np.zeros((2, *self.pressure.shape))
 
     @cached_property
     def adhesion(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip; zeros without friction."""
-        adhesion = self._outputs.adhesion
-        return adhesion if adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+        return self._adhesion if self._adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -130,7 +135,7 @@ class Result:
     @cached_property
     def ledger(self) -> Ledger:
         """One dict per grid."""
-        rows = self._outputs.rows[: min(self._report.ledger_rows, _LEDGER_ROOM)]
+        rows = self._rows[: min(self._report.ledger_rows, _LEDGER_ROOM)]
         estimated = "force" if self._scene.struct.load == PRESCRIBED_APPROACH else "approach"
         return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), estimated)
 

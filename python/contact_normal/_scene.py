@@ -46,17 +46,30 @@ class Scene:
         self.struct.poisson_ratio = pair("poisson_ratio", poisson_ratio)
         self.struct.load, amount = load(approach, force)
         setattr(self.struct, "approach" if force is None else "force", amount)
+        self._given = dx, dy, shear_modulus, poisson_ratio, effects
         for name, value in effects.items():
             if name == "coating" and value is not None:
                 self._coat(value)
             elif value is not None:
                 self._name(name, value)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What stresses below the surface need of it: structs of the library hold addresses.
+        *numbers, effects = self._given
+        return _without_load, (self.shape, *numbers, {name: effects.get(name) for name in _OF_STRESSES})
+
     @property
     def shape(self) -> tuple[int, int]:
         """(my, mx)."""
         my, mx = self.h.shape
         return my, mx
+
+    @property
+    def effort(self) -> int:
+        """Elements, counted as often as a product with the matrix goes over them."""
+        factors = [effect.contents.rows if name == "row_tables" else effect.contents.count
+                   for name in ("row_tables", "patches") if (effect := getattr(self.struct, name))]
+        return int(self.h.size * max([1, *factors]))
 
     def _coat(self, value: Any) -> None:
         """Names the coatings of both bodies, None: none."""
@@ -80,6 +93,14 @@ class Scene:
             )(value)
         setattr(self.struct, name, ctypes.pointer(effect))
         self._kept += [effect, arrays]
+
+
+_OF_STRESSES = ("period", "patches", "coating", "influence", "row_tables")
+
+
+def _without_load(shape: tuple[int, int], dx: float, dy: float, shear_modulus: Any, poisson_ratio: Any, effects: Mapping[str, Any]) -> Scene:
+    """A scene with no load and no surface."""
+    return Scene(np.zeros(shape), dx, dy, None, 0.0, shear_modulus, poisson_ratio, effects)
 
 
 def coating_of(value: Any, name: str = "coating") -> Any:

@@ -4,29 +4,22 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
-from ctypes import c_void_p
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._arguments import Both, SolveOptions, integer, options
 from ._callbacks import Progress, Surface, Watched
-from ._library import check, initialised, last_error, library
+from ._calls import called
+from ._handle import Handle
+from ._library import check, initialised, library
 from ._result import Outputs, Result
 from ._scene import Scene
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
-
-
-def run(call: Callable[[Any, Any], int], scene: Scene, outputs: Outputs, watched: Watched) -> Result:
-    """The result of `call(fields, report)`."""
-    status = call(ctypes.byref(outputs.fields), ctypes.byref(outputs.report))
-    message = last_error() if status else ""
-    watched.finish()
-    check(status)
-    return Result(status, message, outputs, outputs.report, scene)
 
 
 def solve(
@@ -121,12 +114,12 @@ def solve(
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
     struct = options(given)
     outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
-    watched = Watched(progress, struct, scene.h.size)
-
-    def call(fields: Any, report: Any) -> int:
-        return int(library.contact_normal_solve(ctypes.byref(scene.struct), ctypes.byref(struct), fields, report))
-
-    return run(call, scene, outputs, watched)
+    watched = Watched(progress, struct, scene)
+    status, message = watched.call(
+        library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
+        ctypes.byref(outputs.report), keep=(scene, outputs),
+    )
+    return Result(check(status, message), message, outputs, outputs.report, scene)
 
 
 class AccurateResult(Result):
@@ -217,29 +210,30 @@ def solve_to_accuracy(
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, {})
     struct = options(given)
     watched = Watched(progress, struct, None)
-    accuracy, handle = initialised("accuracy"), c_void_p()
+    accuracy, handle = initialised("accuracy"), Handle()
     accuracy.target, accuracy.max_seconds = target, max_seconds
     accuracy.max_pressure_target, accuracy.contact_area_target = max_pressure_target, contact_area_target
     accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
     if surface:
         accuracy.surface = surface.callback
     ledger = Outputs((0, 0), None, None, struct, False)
+
+    def find(address: Any) -> int:
+        return int(library.contact_normal_solve_to_accuracy(
+            ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), address, ctypes.byref(ledger.report)
+        ))
+
     try:
-        status = library.contact_normal_solve_to_accuracy(
-            ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle),
-            ctypes.byref(ledger.report),
-        )
-        message = last_error() if status else ""
-        watched.finish()
+        status, message = watched.call(partial(handle.set_up, find), keep=(surface, scene))
         if surface:
             surface.finish()
-        check(status)
+        check(status, message)
         outputs = Outputs((accuracy.my, accuracy.mx), None, None, struct, False)
         outputs.rows = ledger.rows
         if handle:
-            check(library.contact_normal_solver_fields(handle, ctypes.byref(outputs.fields)))
+            check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))
     finally:
-        library.contact_normal_solver_free(handle)
+        handle.close()
     result = AccurateResult(status, message, outputs, ledger.report, scene)
     result.dx, result.dy, result.seconds = accuracy.dx, accuracy.dy, accuracy.seconds
     result.reached = accuracy.reached if accuracy.reached >= 0 else None

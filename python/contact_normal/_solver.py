@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import re
-import weakref
-from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_int32, c_void_p
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from ctypes import c_int32
+from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -14,17 +16,20 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, integer, options
 from ._callbacks import Progress, Watched
+from ._calls import called, is_short
 from ._constants import OK
-from ._library import check, last_error, library
+from ._handle import Handle
+from ._library import check, library
 from ._result import Outputs, Result
 from ._scene import Scene, influence as influence_of
-from ._solve import run
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
+
+_Problem = tuple[Scene, Outputs]
 
 
 class Solver:
@@ -79,16 +84,12 @@ class Solver:
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, *self._bodies,
                       {"influence": influence, "row_tables": row_tables, **self._effects})
-        struct, handle = options(given), c_void_p()
-        check(library.contact_normal_solver_new(ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(handle)))
-        self._address: int | None = handle.value
-        self._free = weakref.finalize(self, library.contact_normal_solver_free, handle)
+        struct, self._handle = options(given), Handle()
+        create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
+        check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))
 
-    @property
-    def _handle(self) -> c_void_p:
-        if self._address is None:
-            raise ValueError("this solver is closed")
-        return c_void_p(self._address)
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError("a Solver can be neither pickled nor copied: it is a handle of this process; set up another one")
 
     def _scene(self, h: Any, approach: float | None, force: float | None, pressure_limit: Any,
                friction: Any) -> Scene:
@@ -121,19 +122,15 @@ class Solver:
         -------
         Result
         """
-        handle = self._handle
         scene = self._scene(h, approach, force, pressure_limit, friction)
         struct = options({**self._given, **given})
         outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
-        watched = Watched(progress, struct, scene.h.size)
-
-        def call(fields: Any, report: Any) -> int:
-            status = library.contact_normal_solver_solve(
-                handle, ctypes.byref(scene.struct), ctypes.byref(struct), fields, report
-            )
-            return int(status)
-
-        return run(call, scene, outputs, watched)
+        watched = Watched(progress, struct, scene)
+        status, message = watched.call(
+            library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
+            ctypes.byref(outputs.report), handle=self._handle, keep=(scene, outputs),
+        )
+        return Result(check(status, message), message, outputs, outputs.report, scene)
 
     def solve_batch(
         self,
@@ -175,30 +172,34 @@ class Solver:
         ContactNormalError
             If the call itself is refused.
         """
-        handle, count, struct = self._handle, len(h), options({**self._given, **given})
+        self._handle.wait()
+        count, struct = len(h), options({**self._given, **given})
         loads = [None if values is None else np.broadcast_to(np.asarray(values), (count,)) for values in (approach, force)]
-        scenes, outputs = [], []
+        problems = []
         for i in range(count):
             one_approach, one_force = (None if values is None else float(values[i]) for values in loads)
-            scenes.append(self._scene(h[i], one_approach, one_force, pressure_limit, friction))
+            scene = self._scene(h[i], one_approach, one_force, pressure_limit, friction)
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            outputs.append(Outputs(self._shape, guess, area, struct, friction is not None))
-        reports = (Report * count)(*(each.report for each in outputs))
+            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None)))
+        threads = self._given.get("threads", 1) or os.cpu_count() or 1
+        return [found for part in _parts(problems, threads) for found in self._solved(part, struct)]
+
+    def _solved(self, problems: list[_Problem], struct: Any) -> list[Result]:
+        """The results of some problems of a batch."""
+        count = len(problems)
+        scenes = (SceneStruct * count)(*(scene.struct for scene, _ in problems))
+        fields = (Fields * count)(*(outputs.fields for _, outputs in problems))
+        reports = (Report * count)(*(outputs.report for _, outputs in problems))
         untouched = -(2**31)
         statuses = (c_int32 * count)(*[untouched] * count)
-        status = library.contact_normal_solver_solve_batch(
-            handle,
-            count,
-            (SceneStruct * count)(*(scene.struct for scene in scenes)),
-            ctypes.byref(struct),
-            (Fields * count)(*(each.fields for each in outputs)),
-            reports,
-            statuses,
+        status, message = called(
+            library.contact_normal_solver_solve_batch, count, scenes, ctypes.byref(struct), fields, reports, statuses,
+            handle=self._handle, keep=problems,
         )
         if untouched in statuses:
-            check(status)
-        messages = _messages(statuses, last_error() if status else "")
-        return [Result(statuses[i], messages[i], outputs[i], reports[i], scenes[i]) for i in range(count)]
+            check(status, message)
+        messages = _messages(statuses, message)
+        return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0]) for i in range(count)]
 
     def set_influence(self, influence: Any) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.
@@ -208,19 +209,35 @@ class Solver:
         influence : array_like, (2 cy, 2 cx), or (array_like, scale)
             As for `solve`.
         """
-        effect, _table = influence_of(influence)
-        check(library.contact_normal_solver_set_influence(self._handle, ctypes.byref(effect)))
+        effect, table = influence_of(influence)
+        check(*called(library.contact_normal_solver_set_influence, ctypes.byref(effect), handle=self._handle, keep=table))
 
     def close(self) -> None:
-        """Frees the handle; a second call does nothing."""
-        self._address = None
-        self._free()
+        """Frees the handle, at once or when the call that uses it returns; a second call does nothing."""
+        self._handle.close()
 
     def __enter__(self) -> Solver:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+# A signal ends a batch between two calls of the library: each takes some tenths of a second.
+_SECONDS = 0.2
+
+
+def _parts(problems: list[_Problem], threads: int) -> Iterator[list[_Problem]]:
+    """The problems in parts that take as long as a signal may wait: each as many as the time of the one before tells."""
+    begin, size = 0, threads
+    while begin < len(problems) or not begin:
+        began = time.perf_counter()
+        yield problems[begin : begin + size]
+        if not problems:
+            return
+        begin += size
+        seconds = time.perf_counter() - began
+        size = max(threads, min(4 * size, int(size * _SECONDS / max(seconds, 1e-6))))
 
 
 def _messages(statuses: Any, told: str) -> list[str]:

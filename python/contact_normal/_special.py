@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _structs
 from ._arguments import Both, integer, pair, pointer
+from ._calls import called
 from ._library import check, library
 from ._scene import load
 
@@ -102,5 +103,5 @@ def influence_half_space(
     # Sizes that are no sizes are left to the library, whose message says so.
     table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
     bodies = pair("shear_modulus", shear_modulus), pair("poisson_ratio", poisson_ratio)
-    check(library.contact_normal_influence_half_space(cx, cy, dx, dy, *bodies, pointer(table)))
+    check(*called(library.contact_normal_influence_half_space, cx, cy, dx, dy, *bodies, pointer(table), keep=table))
     return table

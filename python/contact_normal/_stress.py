@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import doubles, integer, options, pointer
+from ._callbacks import Watched
 from ._library import check, initialised, library
 from ._structs import StressMaximum
 
@@ -123,11 +124,11 @@ def subsurface(
     tractions = [None, None] if traction is None else [doubles(f"traction[{k}]", traction[k], scene.shape) for k in range(2)]
     given = [None if array is None else pointer(array) for array in (pressure, *tractions)]
     struct = options({"threads": threads})
-    status = library.contact_normal_subsurface_stress(
-        ctypes.byref(scene.struct), integer("body", body), *given, pointer(levels), levels.size, ctypes.byref(struct),
-        ctypes.byref(outputs),
-    )
-    check(status)
+    watched = Watched(None, struct, None)
+    check(*watched.call(
+        library.contact_normal_subsurface_stress, ctypes.byref(scene.struct), integer("body", body), *given, pointer(levels),
+        levels.size, ctypes.byref(struct), ctypes.byref(outputs), keep=(scene, given, levels, found, largest),
+    ))
     my, mx = scene.shape
     middle = {"x": 0.5 * mx * found.dx, "y": 0.5 * my * found.dy}
     for at, name in zip(largest, ("largest_von_mises", "largest_shear")):
