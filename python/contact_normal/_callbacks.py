@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._arguments import integer, real
+from ._arguments import distances, integer
 from ._bar import SolveBar
 from ._calls import asked, called, given_up, is_short, on_main_thread
 from ._constants import LOG_INFO, OK
@@ -116,7 +116,7 @@ class Surface:
                 return 1
             x = self._corner[0] + (np.arange(mx) + 0.5) * dx
             y = self._corner[1] + (np.arange(my) + 0.5) * dy
-            values = real("what h(x, y) returns", asked(lambda: self._surface(x[None, :], y[:, None])))
+            values = distances("what h(x, y) returns", asked(lambda: self._surface(x[None, :], y[:, None])))
             try:
                 np.ctypeslib.as_array(h, (my, mx))[:] = values
             except ValueError:

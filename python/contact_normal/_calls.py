@@ -12,7 +12,7 @@ import math
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -26,6 +26,8 @@ T = TypeVar("T")
 
 # A call that was given up is waited for as long as this: most end with their next cycle, within that time.
 _PATIENCE = 0.1
+# Seconds that one part of many pieces of work takes.
+_PART = 0.2
 # Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
 # A worker costs some 15 us a solve where the machine is idle, 60 where it is not; the usual solve of so many elements takes 200.
 _SHORT = 1_050_000
@@ -227,6 +229,22 @@ def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Hand
     with _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
         return status, last_error() if status else ""
+
+
+def parts(count: int, first: int) -> Iterator[slice]:
+    """So many pieces of work in parts between which a signal is heard: each takes some tenths of a second, by the time of the one before.
+
+    There is one part at least, which may be empty.
+    """
+    begin, size = 0, first
+    while True:
+        began = time.perf_counter()
+        yield slice(begin, min(begin + size, count))
+        begin += size
+        if begin >= count:
+            return
+        seconds = time.perf_counter() - began
+        size = max(first, min(4 * size, int(size * _PART / max(seconds, 1e-6))))
 
 
 def _end_workers() -> None:

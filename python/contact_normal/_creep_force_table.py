@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _creep_force_store as store
+from . import _netcdf as netcdf
 from ._arguments import integer
 from ._bar import Bar
 from ._creep_force_plane import AXES, Plan, plane, prepared
@@ -103,7 +104,7 @@ def creep_force_table(
     plan = _plan(xi, eta, phi, axis_ratio, poisson_ratio, surface, elements, tolerance)
     journal = None
     if path is not None:
-        store.xarray()
+        netcdf.xarray()
         if Path(path).exists():
             table = CreepForceTable.read(path)
             if table._key != store.key(plan):

@@ -70,6 +70,11 @@ class Handle:
             self._is_closed = True
             self._free_if_unused()
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._is_closed
+
     def _refuse_closed(self) -> None:
         if self._is_closed:
             raise ValueError("this solver is closed")

@@ -5,8 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int32
 from functools import partial
 from types import TracebackType
@@ -14,16 +13,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, doubles, integer, options
+from ._arguments import Both, SolveOptions, distances, integer, options, shaped
+from ._bodies import Loads, bodies, loads_of_each
 from ._callbacks import Progress, Watched
-from ._calls import called, is_short
+from ._calls import called, is_short, parts
 from ._constants import OK
 from ._handle import Handle
 from ._library import check, library
-from ._result import Outputs, Result
+from ._outputs import Outputs
+from ._result import Result
 from ._scene import Scene, influence as influence_of
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -43,7 +45,7 @@ class Solver:
         Elements in y and x.
     dx, dy : float
         Element sizes.
-    shear_modulus, poisson_ratio, influence, layer, period, patches, row_tables, coating, **given
+    shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
 
     Examples
@@ -65,24 +67,28 @@ class Solver:
         dx: float,
         dy: float,
         *,
-        shear_modulus: Both,
-        poisson_ratio: Both,
+        shear_modulus: Both | None = None,
+        poisson_ratio: Both | None = None,
+        young_modulus: Both | None = None,
+        e_star: float | None = None,
         influence: Any = None,
         layer: npt.ArrayLike | None = None,
         period: str | None = None,
         patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         row_tables: Any = None,
         coating: Any = None,
+        units: tuple[str, str] | None = None,
         **given: Unpack[SolveOptions],
     ) -> None:
         self._shape = integer("my", my), integer("mx", mx)
         self._size = dx, dy
-        self._bodies = shear_modulus, poisson_ratio
+        self._bodies = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
+        self._units = checked(units)
         self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
-        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, *self._bodies,
+        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, (None, 0.0, None), self._bodies,
                       {"influence": influence, "row_tables": row_tables, **self._effects})
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
@@ -91,10 +97,13 @@ class Solver:
     def __reduce_ex__(self, protocol: Any) -> Any:
         raise TypeError("a Solver can be neither pickled nor copied: it is a handle of this process; set up another one")
 
-    def _scene(self, h: Any, approach: float | None, force: float | None, pressure_limit: Any,
-               friction: Any) -> Scene:
+    def __repr__(self) -> str:
+        my, mx = self._shape
+        return f"<Solver: {mx} x {my} elements{', closed' if self._handle.is_closed else ''}>"
+
+    def _scene(self, h: Any, loads: Loads, pressure_limit: Any, friction: Any) -> Scene:
         effects = {"pressure_limit": pressure_limit, "friction": friction, **self._effects}
-        return Scene(doubles("h", h, self._shape), *self._size, approach, force, *self._bodies, effects)
+        return Scene(shaped("h", distances("h", h), self._shape), *self._size, loads, self._bodies, effects)
 
     def solve(
         self,
@@ -102,6 +111,7 @@ class Solver:
         *,
         approach: float | None = None,
         force: float | None = None,
+        mean_pressure: float | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
         pressure: npt.ArrayLike | None = None,
@@ -115,22 +125,22 @@ class Solver:
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
-        approach, force, pressure_limit, friction, pressure, contact, progress, **given
+        approach, force, mean_pressure, pressure_limit, friction, pressure, contact, progress, **given
             As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
         -------
         Result
         """
-        scene = self._scene(h, approach, force, pressure_limit, friction)
-        struct = options({**self._given, **given})
-        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
+        scene = self._scene(h, (approach, force, mean_pressure), pressure_limit, friction)
+        struct, outputs = options({**self._given, **given}), Outputs(scene.shape, friction is not None)
+        outputs.start(scene, pressure, contact, struct)
         watched = Watched(progress, struct, scene)
         status, message = watched.call(
             library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
             ctypes.byref(outputs.report), handle=self._handle, keep=(scene, outputs),
         )
-        return Result(check(status, message), message, outputs, outputs.report, scene)
+        return Result(check(status, message), message, outputs, outputs.report, scene, self._units)
 
     def solve_batch(
         self,
@@ -138,6 +148,7 @@ class Solver:
         *,
         approach: npt.ArrayLike | None = None,
         force: npt.ArrayLike | None = None,
+        mean_pressure: npt.ArrayLike | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
         pressure: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
@@ -150,7 +161,7 @@ class Solver:
         ----------
         h : sequence of array_like, (count, my, mx)
             Undeformed distances.
-        approach, force : float or array_like, (count,)
+        approach, force, mean_pressure : float or array_like, (count,)
             One of them: one value for all problems, or one for each.
         pressure_limit : float or array_like, (my, mx), optional
             For all problems.
@@ -174,15 +185,17 @@ class Solver:
         """
         self._handle.wait()
         count, struct = len(h), options({**self._given, **given})
-        loads = [None if values is None else np.broadcast_to(np.asarray(values), (count,)) for values in (approach, force)]
+        for name, values in (("pressure", pressure), ("contact", contact)):
+            if values is not None and len(values) != count:
+                raise ValueError(f"{name} has {len(values)} parts; it must have {count}: one for each problem")
         problems = []
-        for i in range(count):
-            one_approach, one_force = (None if values is None else float(values[i]) for values in loads)
-            scene = self._scene(h[i], one_approach, one_force, pressure_limit, friction)
+        for i, loads in enumerate(loads_of_each(count, approach, force, mean_pressure)):
+            scene, outputs = self._scene(h[i], loads, pressure_limit, friction), Outputs(self._shape, friction is not None)
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None)))
+            outputs.start(scene, guess, area, struct)
+            problems.append((scene, outputs))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
-        return [found for part in _parts(problems, threads) for found in self._solved(part, struct)]
+        return [found for part in parts(count, threads) for found in self._solved(problems[part], struct)]
 
     def _solved(self, problems: list[_Problem], struct: Any) -> list[Result]:
         """The results of some problems of a batch."""
@@ -199,7 +212,7 @@ class Solver:
         if untouched in statuses:
             check(status, message)
         messages = _messages(statuses, message)
-        return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0]) for i in range(count)]
+        return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
     def set_influence(self, influence: Any) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.
@@ -221,23 +234,6 @@ class Solver:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
-
-
-# A signal ends a batch between two calls of the library: each takes some tenths of a second.
-_SECONDS = 0.2
-
-
-def _parts(problems: list[_Problem], threads: int) -> Iterator[list[_Problem]]:
-    """The problems in parts that take as long as a signal may wait: each as many as the time of the one before tells."""
-    begin, size = 0, threads
-    while begin < len(problems) or not begin:
-        began = time.perf_counter()
-        yield problems[begin : begin + size]
-        if not problems:
-            return
-        begin += size
-        seconds = time.perf_counter() - began
-        size = max(threads, min(4 * size, int(size * _SECONDS / max(seconds, 1e-6))))
 
 
 def _messages(statuses: Any, told: str) -> list[str]:

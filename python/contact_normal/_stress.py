@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import ctypes
+import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import doubles, integer, options, pointer
+from ._arguments import both, doubles, flag, integer, options, pair, pointer, real, shaped
+from ._bodies import Bodies
 from ._callbacks import Watched
+from ._calls import called, parts
 from ._library import check, initialised, library
+from ._scene import Scene
 from ._structs import StressMaximum
+from ._units import Units, checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from ._arguments import Doubles
-    from ._scene import Scene
 
-COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
+COMPONENTS = (*_TENSOR, "von_mises", "maximum_shear")
 
 
 class SubsurfaceStress:
@@ -29,9 +35,11 @@ class SubsurfaceStress:
     ----------
     depths : ndarray, (n,)
         The depths, into the body.
-    xx, yy, zz, xy, xz, yz : ndarray, (n, my, mx)
-        The components.
-    von_mises, maximum_shear : ndarray, (n, my, mx)
+    x, y : ndarray, (mx,) and (my,)
+        Centres of the elements, from the middle of the grid.
+    xx, yy, zz, xy, xz, yz : ndarray, (n, my, mx), or None
+        The components; None: not asked for.
+    von_mises, maximum_shear : ndarray, (n, my, mx), or None
         The von Mises stress, and the largest shear stress.
     principal : ndarray, (3, n, my, mx) or None
         The principal stresses, the largest first; None unless asked for.
@@ -42,19 +50,61 @@ class SubsurfaceStress:
         of the grid.
     dx, dy : float
         Element sizes.
+    units : (str, str) or None
+        Names of the units of lengths and forces, which pictures and files then have. May be set.
     """
 
-    def __init__(self, depths: Doubles, stress: Doubles, scene: Scene) -> None:
+    def __init__(self, depths: Doubles, scene: Scene, components: Iterable[str], principal: bool) -> None:
         self.depths = depths
-        self.xx, self.yy, self.zz, self.xy, self.xz, self.yz = stress
-        self.von_mises: Doubles = np.zeros(stress.shape[1:])
-        self.maximum_shear: Doubles = np.zeros(stress.shape[1:])
-        self.principal: Doubles | None = None
-        self.directions: Doubles | None = None
+        shape = (depths.size, *scene.shape)
+        fields: list[Doubles | None] = [np.zeros(shape) if name in components else None for name in COMPONENTS]
+        self.xx, self.yy, self.zz, self.xy, self.xz, self.yz, self.von_mises, self.maximum_shear = fields
+        self.principal: Doubles | None = np.zeros((3, *shape)) if principal else None
+        self.directions: Doubles | None = np.zeros((3, *shape, 3)) if principal else None
         self.largest_von_mises: dict[str, float] = {}
         self.largest_shear: dict[str, float] = {}
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
+        my, mx = scene.shape
+        self.x: Doubles = (np.arange(mx) + 0.5 - 0.5 * mx) * self.dx
+        self.y: Doubles = (np.arange(my) + 0.5 - 0.5 * my) * self.dy
+        self._units: Units = None
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
+        return self._units
+
+    @units.setter
+    def units(self, units: Any) -> None:
+        self._units = checked(units)
+
+    def place(self, middle: tuple[float, float], units: Units) -> None:
+        """Moves the middle of the grid there."""
+        self.x, self.y, self._units = self.x + middle[0], self.y + middle[1], units
+        for largest in (self.largest_von_mises, self.largest_shear):
+            if largest:
+                largest["x"] += middle[0]
+                largest["y"] += middle[1]
+
+    def __repr__(self) -> str:
+        my, mx = len(self.y), len(self.x)
+        told = [f"{name} {found['value']:.5g} at ({found['x']:.4g}, {found['y']:.4g}, {found['z']:.4g})"
+                for name, found in (("von_mises", self.largest_von_mises), ("maximum_shear", self.largest_shear)) if found]
+        return f"<SubsurfaceStress: {mx} x {my} elements, {len(self.depths)} depths; largest {', '.join(told) or 'values not asked for'}>"
+
+    def to_xarray(self) -> Any:
+        """All that was asked for as an `xarray.Dataset` with coordinates, names and, if `units` are told, units. Needs xarray."""
+        from ._datasets import of_stress
+
+        return of_stress(self)
+
+    def to_netcdf(self, path: str | os.PathLike[str]) -> None:
+        """Writes the dataset of `to_xarray` as a file, whole or not at all. Needs xarray and netCDF4."""
+        from ._netcdf import write, xarray
+
+        xarray()
+        write(path, self.to_xarray())
 
     def plot_section(self, x: float | None = None, y: float | None = None, of: str = "von_mises", axes: Axes | None = None) -> Axes:
         """Draws a stress in a plane across the body, with a cross at the largest.
@@ -62,7 +112,7 @@ class SubsurfaceStress:
         Parameters
         ----------
         x, y : float, optional
-            The plane, from the middle of the grid: exactly one of them. Neither: y = 0.
+            The plane: one of them. Neither: the y of the middle of the grid.
         of : str
             "von_mises", "maximum_shear", or a component: "zz".
         axes : matplotlib.axes.Axes, optional
@@ -77,13 +127,13 @@ class SubsurfaceStress:
 
         return plot_section(self, x, y, of, axes)
 
-    def plot_depth(self, x: float = 0.0, y: float = 0.0, axes: Axes | None = None) -> Axes:
+    def plot_depth(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
         """Draws stresses over the depth, below one element.
 
         Parameters
         ----------
-        x, y : float
-            The place, from the middle of the grid.
+        x, y : float, optional
+            The place, by default the middle of the grid.
         axes : matplotlib.axes.Axes, optional
             Where to draw; by default the axes of a new figure.
 
@@ -99,39 +149,183 @@ class SubsurfaceStress:
 
 def subsurface(
     scene: Scene,
-    pressure: Doubles,
+    pressure: Doubles | None,
     depths: npt.ArrayLike,
-    traction: tuple[npt.ArrayLike, npt.ArrayLike] | None,
+    traction: Any,
     body: int,
+    components: Iterable[str] | None,
     principal: bool,
     threads: int,
 ) -> SubsurfaceStress:
-    """See `Result.subsurface`."""
-    levels = doubles("depths", np.atleast_1d(depths), dimensions="n")
-    shape = (levels.size, *scene.shape)
+    """See `Solved.subsurface`."""
+    scene.bodies.needs_poisson("a stress")
+    levels = shaped("depths", np.atleast_1d(real("depths", depths)), dimensions="n")
+    wanted = _wanted(components)
+    found = SubsurfaceStress(levels, scene, wanted, flag("principal", principal))
     outputs = initialised("stress_outputs")
-    stress = np.zeros((6, *shape))
-    found = SubsurfaceStress(levels, stress, scene)
-    for c in range(6):
-        outputs.stress[c] = pointer(stress[c])
-    outputs.von_mises, outputs.maximum_shear = pointer(found.von_mises), pointer(found.maximum_shear)
-    if principal:
-        found.principal, found.directions = np.zeros((3, *shape)), np.zeros((3, *shape, 3))
+    for c, name in enumerate(_TENSOR):
+        if name in wanted:
+            outputs.stress[c] = pointer(getattr(found, name))
+    for name in ("von_mises", "maximum_shear"):
+        if name in wanted:
+            setattr(outputs, name, pointer(getattr(found, name)))
+    if found.principal is not None and found.directions is not None:
         for k in range(3):
             outputs.principal[k], outputs.directions[k] = pointer(found.principal[k]), pointer(found.directions[k])
-    largest = [StressMaximum(), StressMaximum()]
-    outputs.largest_von_mises, outputs.largest_shear = map(ctypes.pointer, largest)
-    tractions = [None, None] if traction is None else [doubles(f"traction[{k}]", traction[k], scene.shape) for k in range(2)]
-    given = [None if array is None else pointer(array) for array in (pressure, *tractions)]
+    largest = {"von_mises": StressMaximum(), "maximum_shear": StressMaximum()}
+    for name, member in (("von_mises", "largest_von_mises"), ("maximum_shear", "largest_shear")):
+        if name in wanted:
+            setattr(outputs, member, ctypes.pointer(largest[name]))
+    given = _loads(pressure, traction, scene.shape)
     struct = options({"threads": threads})
     watched = Watched(None, struct, None)
-    check(*watched.call(
+    status, message = watched.call(
         library.contact_normal_subsurface_stress, ctypes.byref(scene.struct), integer("body", body), *given, pointer(levels),
         levels.size, ctypes.byref(struct), ctypes.byref(outputs), keep=(scene, given, levels, found, largest),
-    ))
-    my, mx = scene.shape
-    middle = {"x": 0.5 * mx * found.dx, "y": 0.5 * my * found.dy}
-    for at, name in zip(largest, ("largest_von_mises", "largest_shear")):
-        values: dict[str, Any] = {key: getattr(at, key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
-        setattr(found, name, {key: value - middle.get(key, 0.0) for key, value in values.items()})
+    )
+    check(status, message)
+    corner = _corner(scene)
+    for name, member in (("von_mises", "largest_von_mises"), ("maximum_shear", "largest_shear")):
+        if name in wanted:
+            values: dict[str, Any] = {key: getattr(largest[name], key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
+            setattr(found, member, {**values, "x": values["x"] + corner[0], "y": values["y"] + corner[1]})
     return found
+
+
+def at_points(
+    scene: Scene, pressure: Doubles | None, points: npt.ArrayLike, traction: Any, body: int, threads: int, middle: tuple[float, float]
+) -> Doubles:
+    """See `Solved.stress_at_points`."""
+    scene.bodies.needs_poisson("a stress")
+    places = doubles("points", points, dimensions="(n, 3)")
+    if places.shape[1] != 3:
+        raise ValueError(f"points has shape {places.shape}; it must be (n, 3)")
+    corner = _corner(scene)
+    # The library counts from the corner.
+    moved = places - np.array([corner[0] + middle[0], corner[1] + middle[1], 0.0])
+    given, struct = _loads(pressure, traction, scene.shape), options({"threads": threads})
+    stress = np.zeros((len(moved), 6))
+    for part in parts(len(moved), 100):
+        check(*called(
+            library.contact_normal_stress_at_points, ctypes.byref(scene.struct), integer("body", body), *given, pointer(moved[part]),
+            len(moved[part]), ctypes.byref(struct), pointer(stress[part]), keep=(scene, given, moved, stress),
+        ))
+    return stress
+
+
+def subsurface_stress(
+    pressure: npt.ArrayLike | None,
+    dx: float,
+    dy: float,
+    depths: npt.ArrayLike,
+    *,
+    poisson_ratio: Any,
+    traction: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    body: int = 1,
+    period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    components: Iterable[str] | None = None,
+    principal: bool = False,
+    threads: int = 1,
+    units: tuple[str, str] | None = None,
+) -> SubsurfaceStress:
+    """The stresses below the surface of one body, from pressures and tractions of one's own, constant on each element.
+
+    Parameters
+    ----------
+    pressure : array_like, (my, mx), or None
+        Pressures; None: tractions only.
+    dx, dy : float
+        Element sizes.
+    depths, traction, body, components, principal, threads
+        As for `Result.subsurface`.
+    poisson_ratio : float or pair of floats
+        Of both bodies, or of each.
+    period, patches, units
+        As for `solve`.
+
+    Returns
+    -------
+    SubsurfaceStress
+
+    Examples
+    --------
+    Deep below a square of uniform pressure, as of a point force: szz = -3 F/(2 pi z^2)
+
+    >>> import numpy as np, contact_normal
+    >>> stress = contact_normal.subsurface_stress(np.ones((9, 9)), 0.1, 0.1, [20.0], poisson_ratio=0.3, components=["zz"])
+    >>> float(round(stress.zz[0, 4, 4] * 2 * np.pi * 20.0**2 / (3 * 0.81), 2))
+    -1.0
+    """
+    scene, pressures = _loaded(pressure, traction, dx, dy, poisson_ratio, period, patches)
+    found = subsurface(scene, pressures, depths, traction, body, components, principal, threads)
+    found.units = units
+    return found
+
+
+def stress_at_points(
+    pressure: npt.ArrayLike | None,
+    dx: float,
+    dy: float,
+    points: npt.ArrayLike,
+    *,
+    poisson_ratio: Any,
+    traction: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    body: int = 1,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    threads: int = 1,
+) -> Doubles:
+    """The stresses at single points of one body, from pressures and tractions of one's own, constant on each element.
+
+    Parameters
+    ----------
+    pressure, dx, dy, poisson_ratio, traction, body, patches, threads
+        As for `subsurface_stress`.
+    points : array_like, (n, 3)
+        x and y from the middle of the grid, and the depth. At depth 0 no point may be on the edge of an element.
+
+    Returns
+    -------
+    ndarray, (n, 6)
+        xx, yy, zz, xy, xz, yz of each point, positive in tension.
+
+    Examples
+    --------
+    >>> import numpy as np, contact_normal
+    >>> stress = contact_normal.stress_at_points(np.ones((3, 3)), 0.1, 0.1, [(0.0, 0.0, 0.0)], poisson_ratio=0.3)
+    >>> float(round(stress[0, 2], 12))
+    -1.0
+    """
+    scene, pressures = _loaded(pressure, traction, dx, dy, poisson_ratio, None, patches)
+    return at_points(scene, pressures, points, traction, body, threads, (0.0, 0.0))
+
+
+def _loaded(pressure: Any, traction: Any, dx: Any, dy: Any, poisson_ratio: Any, period: Any, patches: Any) -> tuple[Scene, Doubles | None]:
+    """A scene for stresses by loads of one's own. Moduli do not matter."""
+    pressures = None if pressure is None else doubles("pressure", pressure)
+    if pressures is None and traction is None:
+        raise TypeError("give pressure, or traction, or both")
+    shape = pressures.shape if pressures is not None else doubles("traction[0]", both("traction", traction)[0]).shape
+    constants = Bodies(pair("shear_modulus", 1.0), pair("poisson_ratio", poisson_ratio))
+    return Scene(np.zeros(shape), dx, dy, (None, 0.0, None), constants, {"period": period, "patches": patches}), pressures
+
+
+def _loads(pressure: Any, traction: Any, shape: tuple[int, int]) -> list[Any]:
+    """Pressures and tractions as pointers."""
+    given = both("traction", traction) if traction is not None else (None, None)
+    tractions = [None if one is None else doubles(f"traction[{k}]", one, shape) for k, one in enumerate(given)]
+    return [None if array is None else pointer(array) for array in (pressure, *tractions)]
+
+
+def _corner(scene: Scene) -> tuple[float, float]:
+    """The outer corner of element (0, 0), from which the library counts places, from the middle of the grid."""
+    my, mx = scene.shape
+    return -0.5 * mx * scene.struct.dx, -0.5 * my * scene.struct.dy
+
+
+def _wanted(components: Iterable[str] | None) -> tuple[str, ...]:
+    wanted = COMPONENTS if components is None else (components,) if isinstance(components, str) else tuple(components)
+    for name in wanted:
+        if name not in COMPONENTS:
+            raise ValueError(f"components has {name!r}; there are: {', '.join(COMPONENTS)}")
+    return wanted
