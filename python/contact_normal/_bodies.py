@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -57,10 +57,6 @@ def _refuse_unless_positive(name: str, values: Any) -> None:
             raise ValueError(f"{name} is {value}; it must be positive")
 
 
-# Approach, force and mean pressure, of which one is given.
-Loads = tuple[Union[float, None], Union[float, None], Union[float, None]]
-
-
 def load(approach: Any, force: Any, mean_pressure: Any = None, area: float = 0.0) -> tuple[int, float]:
     """Which load is prescribed, and its amount: a mean pressure is a force over the area of the grid."""
     if (approach is not None) + (force is not None) + (mean_pressure is not None) != 1:
@@ -72,7 +68,7 @@ def load(approach: Any, force: Any, mean_pressure: Any = None, area: float = 0.0
     return PRESCRIBED_FORCE, number("mean_pressure", mean_pressure) * area
 
 
-def loads_of_each(count: int, approach: Any, force: Any, mean_pressure: Any) -> list[Loads]:
+def loads_of_each(count: int, approach: Any, force: Any, mean_pressure: Any) -> list[dict[str, Any]]:
     """The loads of a batch: one value for all problems, or one for each."""
 
     def of_each(name: str, values: Any) -> list[Any]:
@@ -84,4 +80,5 @@ def loads_of_each(count: int, approach: Any, force: Any, mean_pressure: Any) -> 
         return [float(value) for value in np.broadcast_to(array, (count,))]
 
     names = ("approach", "force", "mean_pressure")
-    return list(zip(*(of_each(name, values) for name, values in zip(names, (approach, force, mean_pressure)))))
+    columns = (of_each(name, values) for name, values in zip(names, (approach, force, mean_pressure)))
+    return [dict(zip(names, loads)) for loads in zip(*columns)]

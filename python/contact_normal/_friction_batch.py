@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
-from ._bodies import bodies
 from ._callbacks import Progress, Watched
 from ._library import check, initialised, library
 from ._solved import reported
@@ -140,8 +139,9 @@ def friction_batch(
         If the call itself is refused; an entry that is refused has a negative `status`.
     """
     scene, pressures = with_pressures(
-        h, pressure, dx, dy, (approach, force, mean_pressure), bodies(shear_modulus, poisson_ratio, young_modulus, None),
-        {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
+        h, pressure, dx, dy, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus,
+        effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
     )
     table = doubles("entries", entries, dimensions="(n, 3)")
     if table.shape[1] != 3:

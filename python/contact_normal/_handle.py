@@ -71,6 +71,11 @@ class Handle:
             self._free_if_unused()
 
     @property
+    def _as_parameter_(self) -> c_void_p:
+        # What ctypes passes in its place.
+        return self._address
+
+    @property
     def is_closed(self) -> bool:
         """Whether `close` was called."""
         return self._is_closed

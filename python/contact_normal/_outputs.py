@@ -23,14 +23,17 @@ _ROWS = LedgerRow * LEDGER_ROOM
 
 
 class Outputs:
-    """New arrays for one problem and the structs that point to them. Those of friction only where there is friction: to clear and write
+    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess. Those of friction only where there is friction: to clear and write
     them takes some .25 ms of 10 on 256 x 256 elements."""
 
     traction: Doubles | None = None
     slip: Doubles | None = None
     adhesion: npt.NDArray[np.int32] | None = None
 
-    def __init__(self, shape: tuple[int, int], has_friction: bool = False) -> None:
+    def __init__(
+        self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
+        scene: Scene | None = None,
+    ) -> None:
         self._shape = shape
         self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
         self.contact = np.zeros(shape, dtype=np.int32)
@@ -41,8 +44,10 @@ class Outputs:
             self._hold_friction()
         self.rows = _ROWS()
         self.report.ledger, self.report.ledger_capacity = self.rows, LEDGER_ROOM
+        if pressure is not None or contact is not None:
+            self._start(pressure, contact, options, scene)
 
-    def start(self, scene: Scene, pressure: Any, contact: Any, options: Any) -> None:
+    def _start(self, pressure: Any, contact: Any, options: Any, scene: Scene | None) -> None:
         """Takes an initial guess: the pressures, or the contact area, or both; or the contact area that is fixed."""
         if contact is not None:
             self.contact[:] = integers("contact", contact, self._shape)
@@ -50,10 +55,11 @@ class Outputs:
             self.doubles[0][:] = doubles("pressure", pressure, self._shape)
             if contact is None:
                 self.contact[:] = self.doubles[0] > 0
-        elif contact is not None and options.active_set != ACTIVE_SET_FIXED:
+        elif options.active_set == ACTIVE_SET_FIXED:
+            return
+        elif scene is not None:
             self.doubles[0][:] = scene.pressures_of(self.contact)
-        is_guess = pressure is not None or contact is not None and options.active_set != ACTIVE_SET_FIXED
-        if is_guess and options.initial_guess == INITIAL_GUESS_NONE:
+        if options.initial_guess == INITIAL_GUESS_NONE:
             options.initial_guess = INITIAL_GUESS_GIVEN
 
     def _hold_friction(self) -> None:

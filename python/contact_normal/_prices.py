@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ._arguments import Both, SolveOptions, doubles, options
-from ._bodies import bodies
 from ._calls import called
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
 from ._library import check, library
@@ -116,8 +115,10 @@ def cost_of_accuracy(
     """
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
-    scene, surface, _ = on_any_grid(h, dx, dy, shape, corner, (approach, force, mean_pressure),
-                                    bodies(shear_modulus, poisson_ratio, young_modulus, e_star))
+    scene, surface, _ = on_any_grid(
+        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
+    )
     struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
     relative = doubles("targets", targets, dimensions="n")
     n = len(relative)

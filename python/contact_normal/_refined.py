@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,26 +11,23 @@ from ._callbacks import Surface
 from ._library import initialised
 from ._scene import Scene
 
-if TYPE_CHECKING:
-    from ._bodies import Bodies, Loads
-
 
 def on_any_grid(
-    h: Any, dx: Any, dy: Any, shape: Any, corner: Any, loads: Loads, constants: Bodies
+    h: Any, dx: Any, dy: Any, shape: Any, corner: Any, **loaded: Any
 ) -> tuple[Scene, Surface | None, tuple[float, float]]:
-    """The scene on the first grid, the callback of a callable surface, and the middle of its rectangle."""
+    """The scene on the first grid by its loads and elastic constants, the callback of a callable surface, and the middle of its rectangle."""
     if not callable(h):
         for name, value in (("shape", shape), ("corner", corner)):
             if value is not None:
                 raise TypeError(f"{name} is for a surface that is a callable")
-        return Scene(h, dx, dy, loads, constants, {}), None, (0.0, 0.0)
+        return Scene(h, dx, dy, effects={}, **loaded), None, (0.0, 0.0)
     if shape is None:
         raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
     my, mx = (integer("shape", m) for m in both("shape", shape))
     half = 0.5 * mx * number("dx", dx), 0.5 * my * number("dy", dy)
     x, y = (-half[0], -half[1]) if corner is None else two("corner", corner)
     # The distances of this grid are not read.
-    scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, loads, constants, {})
+    scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects={}, **loaded)
     return scene, Surface(h, (x, y)), (0.0, 0.0) if corner is None else (x + half[0], y + half[1])
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._constants import PRESCRIBED_APPROACH
 from ._ledger import Ledger
-from ._outputs import LEDGER_ROOM
+from ._outputs import LEDGER_ROOM, Outputs
 from ._solved import Solved
 from ._structs import LedgerRow, names
 from ._units import with_unit
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from ._outputs import Outputs
     from ._scene import Scene
 
 _ROW = [name for name in names(LedgerRow) if name != "reserved"]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import both, distances, doubles, integer, integers, number, pair, pointer, shaped
-from ._bodies import Bodies, Loads, load
+from ._arguments import both, distances, doubles, integer, integers, number, pointer, shaped
+from ._bodies import bodies, load
 from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
 from ._friction import friction
 from ._library import initialised
@@ -28,41 +28,44 @@ class Scene:
         Undeformed distance (my, mx); masked: no surface.
     dx, dy : float
         Element sizes.
-    loads : (approach, force, mean pressure)
+    approach, force, mean_pressure : float or None
         Exactly one of them is prescribed.
-    bodies : Bodies
-        The elastic constants.
+    shear_modulus, poisson_ratio, young_modulus, e_star
+        The elastic constants; see `solve`.
     effects : mapping
         Effects by name, None: not simulated; see `solve`.
     """
 
-    def __init__(self, h: Any, dx: Any, dy: Any, loads: Loads, bodies: Bodies, effects: Mapping[str, Any]) -> None:
+    def __init__(
+        self, h: Any, dx: Any, dy: Any, approach: Any, force: Any, shear_modulus: Any, poisson_ratio: Any, effects: Mapping[str, Any],
+        *, mean_pressure: Any = None, young_modulus: Any = None, e_star: Any = None,
+    ) -> None:
         self.h = shaped("h", distances("h", h))
         self.struct = initialised("scene")
-        self.bodies, self.remark = bodies, ""
+        self.bodies, self.remark = bodies(shear_modulus, poisson_ratio, young_modulus, e_star), ""
         self._kept: list[Any] = []
         self._effects = effects
+        self._constants = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self.struct.my, self.struct.mx = (integer(name, m) for name, m in zip(("my", "mx"), self.h.shape))
         self.struct.dx, self.struct.dy = number("dx", dx), number("dy", dy)
         self.struct.undeformed_distance = pointer(self.h)
-        self.struct.shear_modulus, self.struct.poisson_ratio = bodies.shear_modulus, bodies.poisson_ratio
-        self.struct.load, amount = load(*loads, self.h.size * self.struct.dx * self.struct.dy)
+        self.struct.shear_modulus, self.struct.poisson_ratio = self.bodies.shear_modulus, self.bodies.poisson_ratio
+        self.struct.load, amount = load(approach, force, mean_pressure, self.h.size * self.struct.dx * self.struct.dy)
         setattr(self.struct, "approach" if self.struct.load == PRESCRIBED_APPROACH else "force", amount)
         for name, value in effects.items():
             if value is not None:
                 if name in ("coating", "friction"):
-                    bodies.needs_poisson(name)
+                    self.bodies.needs_poisson(name)
                 self._name(name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # What stresses below the surface need of it: structs of the library hold addresses.
         effects = {name: self._effects.get(name) for name in _OF_STRESSES}
-        bodies = tuple(self.bodies.shear_modulus), tuple(self.bodies.poisson_ratio), self.bodies.poisson_is_known
-        return _without_load, (self.shape, self.struct.dx, self.struct.dy, bodies, effects)
+        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, effects)
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
         """The same bodies, without effects and load, on another grid."""
-        return Scene(np.zeros(shape), dx, dy, (None, 0.0, None), self.bodies, {})
+        return _without_load(shape, dx, dy, self._constants, {})
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -121,11 +124,9 @@ class Scene:
 _OF_STRESSES = ("period", "patches", "coating", "influence", "row_tables")
 
 
-def _without_load(shape: tuple[int, int], dx: float, dy: float, constants: tuple[Any, Any, bool], effects: Mapping[str, Any]) -> Scene:
+def _without_load(shape: tuple[int, int], dx: float, dy: float, constants: Mapping[str, Any], effects: Mapping[str, Any]) -> Scene:
     """A scene with no load and no surface."""
-    shear_modulus, poisson_ratio, is_known = constants
-    known = Bodies(pair("shear_modulus", shear_modulus), pair("poisson_ratio", poisson_ratio), is_known)
-    return Scene(np.zeros(shape), dx, dy, (None, 0.0, None), known, effects)
+    return Scene(np.zeros(shape), dx, dy, None, 0.0, effects=effects, **constants)
 
 
 def coating_of(value: Any, name: str = "coating") -> Any:

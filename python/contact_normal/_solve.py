@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ._arguments import Both, SolveOptions, number, options
-from ._bodies import bodies
 from ._callbacks import Progress, Watched
 from ._calls import called
 from ._handle import Handle
@@ -125,10 +124,10 @@ def solve(
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction}
-    constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
-    scene = Scene(h, dx, dy, (approach, force, mean_pressure), constants, effects)
-    struct, outputs = options(given), Outputs(scene.shape, friction is not None)
-    outputs.start(scene, pressure, contact, struct)
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
+                  e_star=e_star)
+    struct = options(given)
+    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
         library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
@@ -231,8 +230,10 @@ def solve_to_accuracy(
     >>> result.status, result.reached <= 1e-3
     (0, True)
     """
-    scene, surface, middle = on_any_grid(h, dx, dy, shape, corner, (approach, force, mean_pressure),
-                                         bodies(shear_modulus, poisson_ratio, young_modulus, e_star))
+    scene, surface, middle = on_any_grid(
+        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
+    )
     struct, units = options(given), checked(units)
     watched = Watched(progress, struct, None)
     accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()

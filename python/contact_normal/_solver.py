@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import Both, SolveOptions, distances, integer, options, shaped
-from ._bodies import Loads, bodies, loads_of_each
+from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
 from ._calls import called, is_short, parts
 from ._constants import OK
@@ -82,14 +82,14 @@ class Solver:
     ) -> None:
         self._shape = integer("my", my), integer("mx", mx)
         self._size = dx, dy
-        self._bodies = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
+        self._bodies = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self._units = checked(units)
         self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
-        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, (None, 0.0, None), self._bodies,
-                      {"influence": influence, "row_tables": row_tables, **self._effects})
+        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
+                      effects={"influence": influence, "row_tables": row_tables, **self._effects})
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
         check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))
@@ -101,9 +101,10 @@ class Solver:
         my, mx = self._shape
         return f"<Solver: {mx} x {my} elements{', closed' if self._handle.is_closed else ''}>"
 
-    def _scene(self, h: Any, loads: Loads, pressure_limit: Any, friction: Any) -> Scene:
+    def _scene(self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any) -> Scene:
         effects = {"pressure_limit": pressure_limit, "friction": friction, **self._effects}
-        return Scene(shaped("h", distances("h", h), self._shape), *self._size, loads, self._bodies, effects)
+        dx, dy = self._size
+        return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
 
     def solve(
         self,
@@ -132,9 +133,9 @@ class Solver:
         -------
         Result
         """
-        scene = self._scene(h, (approach, force, mean_pressure), pressure_limit, friction)
-        struct, outputs = options({**self._given, **given}), Outputs(scene.shape, friction is not None)
-        outputs.start(scene, pressure, contact, struct)
+        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction)
+        struct = options({**self._given, **given})
+        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
         watched = Watched(progress, struct, scene)
         status, message = watched.call(
             library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
@@ -190,10 +191,9 @@ class Solver:
                 raise ValueError(f"{name} has {len(values)} parts; it must have {count}: one for each problem")
         problems = []
         for i, loads in enumerate(loads_of_each(count, approach, force, mean_pressure)):
-            scene, outputs = self._scene(h[i], loads, pressure_limit, friction), Outputs(self._shape, friction is not None)
+            scene = self._scene(h[i], loads, pressure_limit, friction)
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            outputs.start(scene, guess, area, struct)
-            problems.append((scene, outputs))
+            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
         return [found for part in parts(count, threads) for found in self._solved(problems[part], struct)]
 

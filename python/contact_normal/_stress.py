@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import both, doubles, flag, integer, options, pair, pointer, real, shaped
-from ._bodies import Bodies
+from ._arguments import both, doubles, flag, integer, options, pointer, real, shaped
 from ._callbacks import Watched
 from ._calls import called, parts
 from ._library import check, initialised, library
@@ -306,8 +305,7 @@ def _loaded(pressure: Any, traction: Any, dx: Any, dy: Any, poisson_ratio: Any, 
     if pressures is None and traction is None:
         raise TypeError("give pressure, or traction, or both")
     shape = pressures.shape if pressures is not None else doubles("traction[0]", both("traction", traction)[0]).shape
-    constants = Bodies(pair("shear_modulus", 1.0), pair("poisson_ratio", poisson_ratio))
-    return Scene(np.zeros(shape), dx, dy, (None, 0.0, None), constants, {"period": period, "patches": patches}), pressures
+    return Scene(np.zeros(shape), dx, dy, None, 0.0, 1.0, poisson_ratio, {"period": period, "patches": patches}), pressures
 
 
 def _loads(pressure: Any, traction: Any, shape: tuple[int, int]) -> list[Any]:

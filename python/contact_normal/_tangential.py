@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
-from ._bodies import Bodies, Loads, bodies
 from ._callbacks import Progress, Watched
 from ._library import check, library
 from ._outputs import Outputs
@@ -24,16 +23,17 @@ if TYPE_CHECKING:
 
 
 def with_pressures(
-    h: Any, pressure: Any, dx: Any, dy: Any, loads: Loads, constants: Bodies, effects: Mapping[str, Any]
+    h: Any, pressure: Any, dx: Any, dy: Any, loads: Mapping[str, Any], **given: Any
 ) -> tuple[Scene, Doubles | None]:
     """The scene of a surface, or of pressures that are given: then neither the surface nor the load matters."""
     if pressure is None:
         if h is None:
             raise TypeError("give either h or pressure")
-        return Scene(h, dx, dy, loads, constants, effects), None
+        return Scene(h, dx, dy, **loads, **given), None
     pressures = doubles("pressure", pressure)
-    no_load = all(load is None for load in loads)
-    scene = Scene(np.zeros(pressures.shape) if h is None else h, dx, dy, (0.0, None, None) if no_load else loads, constants, effects)
+    if all(load is None for load in loads.values()):
+        loads = {"approach": 0.0, "force": None}
+    scene = Scene(np.zeros(pressures.shape) if h is None else h, dx, dy, **loads, **given)
     return scene, doubles("pressure", pressures, scene.shape)
 
 
@@ -90,10 +90,10 @@ def solve_tangential(
     (9.6, True)
     """
     effects = {"influence": influence, "layer": layer, "period": period, "friction": friction}
-    none = (None, None, None)
-    scene, pressures = with_pressures(None, pressure, dx, dy, none, bodies(shear_modulus, poisson_ratio, young_modulus, None), effects)
+    scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
+                                      young_modulus=young_modulus, effects=effects)
     assert pressures is not None
-    struct, outputs = options(given), Outputs(scene.shape, True)
+    struct, outputs = options(given), Outputs(scene.shape, has_friction=True)
     outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
     outputs.contact[:] = outputs.doubles[0] > 0.0
     # What is known is not written.
