@@ -21,7 +21,8 @@ from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
 from ._special import HertzSolution, coating_compliance, hertz, influence_half_space
-from ._stress import SubsurfaceStress, stress_at_points, subsurface_stress
+from ._stress import SubsurfaceStress
+from ._subsurface import stress_at_points, subsurface_stress
 from ._tangential import solve_tangential
 
 __version__ = VERSION

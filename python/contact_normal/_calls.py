@@ -89,9 +89,10 @@ class Call(Generic[T]):
             raise raised
         return answer
 
-    def result(self) -> T:
-        """On the thread that waits: answers what is asked until the result is there. What else ends the wait gives the call up."""
+    def result(self, worker: _Worker) -> T:
+        """On the thread that waits: answers what is asked until the worker has the result. What else ends the wait gives the call up."""
         try:
+            worker.give(self)
             while True:
                 self._news.acquire()
                 question, self._question = self._question, None
@@ -205,9 +206,7 @@ def made(work: Callable[[], T], short: bool = False) -> T:
         worker = _resting() or _Worker()
     except RuntimeError:  # no thread is to be had: the interpreter ends, or the system has no more
         return work()
-    call = Call(work)
-    worker.give(call)
-    return call.result()
+    return Call(work).result(worker)
 
 
 def called(

@@ -89,7 +89,8 @@ def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str
                          "and may have rolling_direction, spin_centre, spin_offset")
     h = shaped("surface['h']", distances("surface['h']", surface["h"]))
     (my, mx), (x, y) = h.shape, surface.get("spin_centre", (0.0, 0.0))
-    dx, dy, mu = number("surface['dx']", surface["dx"]), number("surface['dy']", surface["dy"]), real("surface['coefficient']", surface["coefficient"])
+    dx, dy = (number(f"surface['{name}']", surface[name]) for name in ("dx", "dy"))
+    mu = real("surface['coefficient']", surface["coefficient"])
     # Padding moves the middle of the grid.
     centre = x - 0.5 * (mx % 2) * dx, y - 0.5 * (my % 2) * dy
     fine = {**surface, "h": h, "coefficient": mu}

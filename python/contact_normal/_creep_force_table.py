@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _creep_force_store as store
 from . import _netcdf as netcdf
-from ._arguments import integer
+from ._arguments import integer, number, real
 from ._bar import Bar
 from ._creep_force_plane import AXES, Plan, plane, prepared
 from ._creep_forces import CreepForceTable
@@ -125,7 +125,7 @@ def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surf
     if surface is not None:
         axis_ratio, poisson_ratio = 1.0, 0.0
     for name, values in zip(AXES, (axis_ratio, poisson_ratio, phi, eta, xi)):
-        axis = np.atleast_1d(np.asarray(values, dtype=float))
+        axis = np.atleast_1d(real(name, values))
         if axis.ndim != 1 or not axis.size or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all():
             raise ValueError(f"{name} is {values!r}; it must be increasing and finite")
         if surface is None and name in ("xi", "phi") and axis[0] < 0:
@@ -136,7 +136,7 @@ def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surf
     if integer("elements", elements) < 4:
         raise ValueError(f"elements is {elements}; it must be at least 4")
     parts = None if surface is None else prepared(surface, tolerance)
-    return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=float(tolerance), surface=parts)
+    return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=number("tolerance", tolerance), surface=parts)
 
 
 def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
@@ -155,6 +155,8 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
                 bar.draw(entries / total, f"{entries} of {total} entries")
             elif progress:
                 progress(entries, total)
+        if bar:
+            bar.draw(1.0, f"{each * plan.planes} of {each * plan.planes} entries")
     finally:
         if bar:
             bar.close()

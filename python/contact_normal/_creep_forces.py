@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _netcdf as netcdf
+from ._arguments import both, flag, real
 from ._creep_force_plane import AXES
 
 if TYPE_CHECKING:
@@ -108,7 +109,8 @@ class CreepForceTable:
             poisson_ratio = self.poisson_ratio[0]
         if self.of_surface:
             axis_ratio, poisson_ratio = self.axis_ratio[0], self.poisson_ratio[0]
-        given = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (axis_ratio, poisson_ratio, phi, eta, xi)))
+        keys = (real(name, value) for name, value in zip(AXES, (axis_ratio, poisson_ratio, phi, eta, xi)))
+        given, hold = np.broadcast_arrays(*keys), flag("hold", hold)
         ratio, nu, spin, lateral, longitudinal = (np.array(value) for value in given)
         sign, mirror = np.ones(spin.shape), np.ones(spin.shape)
         if not self.of_surface:
@@ -163,8 +165,8 @@ class CreepForceTable:
         a, b = semi_axes
         c, bound = np.sqrt(a * b), coefficient * normal_force
         unit = shear_modulus * c * c / bound
-        x, y, moment, _ = self.forces(unit * np.asarray(creepage[0]), unit * np.asarray(creepage[1]), unit * c * np.asarray(spin),
-                                      axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
+        along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
+        x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment
 
 

@@ -47,7 +47,8 @@ class Handle:
     def __enter__(self) -> tuple[c_void_p]:
         """The address, as the first arguments of one call of the library."""
         with self._lock:
-            self._refuse_closed()
+            if self._is_closed:
+                raise ValueError("this solver is closed")
             self._users += 1
             self._call = here()
         return (self._address,)
@@ -58,8 +59,7 @@ class Handle:
             self._free_if_unused()
 
     def wait(self) -> None:
-        """Waits for a call that was given up and has not returned yet. One that is closed is refused."""
-        self._refuse_closed()
+        """Waits for a call that was given up and has not returned yet."""
         call = self._call
         if call is not None and call.given_up:
             call.wait()
@@ -79,10 +79,6 @@ class Handle:
     def is_closed(self) -> bool:
         """Whether `close` was called."""
         return self._is_closed
-
-    def _refuse_closed(self) -> None:
-        if self._is_closed:
-            raise ValueError("this solver is closed")
 
     def _free_if_unused(self) -> None:
         if self._is_closed and not self._users and self._free is not None:

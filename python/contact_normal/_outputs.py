@@ -23,8 +23,10 @@ _ROWS = LedgerRow * LEDGER_ROOM
 
 
 class Outputs:
-    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess. Those of friction only where there is friction: to clear and write
-    them takes some .25 ms of 10 on 256 x 256 elements."""
+    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess.
+
+    Those of friction only where there is friction: to clear and write them takes some .25 ms of 10 on 256 x 256 elements.
+    """
 
     traction: Doubles | None = None
     slip: Doubles | None = None

@@ -211,7 +211,7 @@ class Solved:
         >>> round(stress.largest_shear["value"] / result.max_pressure, 2)
         0.31
         """
-        from ._stress import subsurface
+        from ._subsurface import subsurface
 
         found = subsurface(self._scene, self.pressure, depths, self._tractions_on(body, traction), body, components, principal, threads)
         found.place(self._centre, self.units)
@@ -239,7 +239,7 @@ class Solved:
         ndarray, (n, 6)
             xx, yy, zz, xy, xz, yz of each point, positive in tension.
         """
-        from ._stress import at_points
+        from ._subsurface import at_points
 
         return at_points(self._scene, self.pressure, points, self._tractions_on(body, traction), body, threads, self._centre)
 

@@ -184,7 +184,6 @@ class Solver:
         ContactNormalError
             If the call itself is refused.
         """
-        self._handle.wait()
         count, struct = len(h), options({**self._given, **given})
         for name, values in (("pressure", pressure), ("contact", contact)):
             if values is not None and len(values) != count:

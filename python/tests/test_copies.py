@@ -183,7 +183,8 @@ class Logs(unittest.TestCase):
     def test_what_is_refused_changes_nothing(self):
         found = []
         cn.set_log(lambda at, text: found.append(text))
-        for bad, kind in ((("print", 2), TypeError), ((print, 7), cn.ContactNormalError), ((print, 1.5), TypeError), ((None, 7), cn.ContactNormalError)):
+        refused = cn.ContactNormalError
+        for bad, kind in ((("print", 2), TypeError), ((print, 7), refused), ((print, 1.5), TypeError), ((None, 7), refused)):
             with self.assertRaises(kind):
                 cn.set_log(*bad)
         refuse_to_converge()

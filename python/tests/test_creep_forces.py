@@ -1,14 +1,16 @@
 """Tables of creep forces: entries, errors, symmetries, interpolation, surfaces, processes."""
 
 import concurrent.futures
+import io
 import multiprocessing
 import unittest
+from contextlib import redirect_stderr
 from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
-from contact_normal import _creep_force_plane
+from contact_normal import _creep_force_plane, _creep_force_table
 from contact_normal._creep_force_plane import halved
 
 XI, ETA, PHI = [0.0, 0.1, 0.3, 0.8], [-0.15, 0.0, 0.15], [0.0, 0.5]
@@ -93,6 +95,13 @@ class Work(unittest.TestCase):
         marked = []
         with mock.patch.object(_creep_force_plane, "friction_batch", both):
             np.testing.assert_array_equal(cn.creep_force_table(**self.AXES).status, cn.ITERATION_LIMIT)
+
+    def test_a_bar_of_what_was_done_before_is_full(self):
+        plan = _creep_force_table._plan(surface=None, poisson_ratio=0.28, tolerance=1e-4, **self.AXES)
+        done = {index: _creep_force_plane.plane(plan, index) for index in range(plan.planes)}
+        with redirect_stderr(io.StringIO()) as err, mock.patch.dict("sys.modules", {"tqdm": None}):
+            self.assertEqual(_creep_force_table._planes(plan, mock.Mock(done=lambda: done), 1, None, True), done)
+        self.assertIn("[" + 30 * "#" + "]", err.getvalue())
 
     def test_processes_end_with_the_table(self):
         alone = cn.creep_force_table(**self.AXES)

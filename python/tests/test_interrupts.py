@@ -1,5 +1,6 @@
 """Signals end what the library does: Ctrl-C, Jupyter's Interrupt, handlers that raise. Each call here would go on for hours otherwise."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -7,10 +8,12 @@ import sys
 import threading
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
+from contact_normal import _callbacks, _calls
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 M, D = 64, 0.1
@@ -78,6 +81,17 @@ class Interrupts(unittest.TestCase):
                 again = solver.solve(H, force=1000.0, method="PROJECTED_CG")
                 np.testing.assert_array_equal(again.pressure, expected)
 
+    def test_a_solver_waits_for_what_was_given_up(self):
+        def slow(watched, told, user, call=_callbacks.Watched._call):
+            # In C, so that no signal wakes it.
+            ctypes.CDLL(None).usleep(400000)
+            return call(watched, told, user)
+
+        with cn.Solver(M, M, D, D, **ENDLESS, **STEEL) as solver:
+            with mock.patch.object(_callbacks.Watched, "_call", slow):
+                self.interrupted(lambda: solver.solve(H, force=1000.0))
+            self.assertEqual(solver.solve(H, force=1000.0, method="PROJECTED_CG").status, cn.OK)
+
     def test_a_batch(self):
         with cn.Solver(M, M, D, D, **{**ENDLESS, "max_cycles": 50}, **STEEL) as solver:
             self.interrupted(lambda: solver.solve_batch([H] * 10000, force=1000.0))
@@ -118,6 +132,21 @@ class Threads(unittest.TestCase):
         thread.start()
         thread.join()
         self.assertEqual(found[0][0], {found[0][1]})
+
+    def test_other_threads_call_the_library_themselves(self):
+        _calls._end_workers()
+        names = []
+
+        def solve():
+            cn.solve(H, D, D, force=1000.0, progress=lambda told: names.extend(one.name for one in threading.enumerate()), **STEEL)
+
+        thread = threading.Thread(target=solve)
+        thread.start()
+        thread.join()
+        self.assertTrue(names)
+        self.assertNotIn("contact-normal", names)
+        solve()
+        self.assertIn("contact-normal", names)
 
     def test_a_solve_within_a_callback(self):
         alone = cn.solve(H, D, D, force=500.0, **STEEL).pressure
@@ -168,7 +197,7 @@ def send():
         # A callback that sleeps in C: the worker has not ended when the interpreter does.
         ended = self.end_of("""
 import ctypes
-from contact_normal import _callbacks
+from contact_normal import _callbacks, _calls
 def asleep(told, user):
     ctypes.CDLL(None).usleep(600000)
     return _callbacks.given_up()

@@ -63,7 +63,8 @@ class Numbers(unittest.TestCase):
             refused = solver.solve_batch([H], force=-1.0)[0]
         self.assertEqual(repr(solver), "<Solver: 26 x 20 elements, closed>")
         self.assertRegex(repr(refused), "^<Result: an invalid argument; 26 x 20 elements; force is -1")
-        self.assertRegex(repr(found.subsurface([0.1, 0.2])), r"^<SubsurfaceStress: 26 x 20 elements, 2 depths; largest von_mises \d+\.?\d* at \(.*\), ")
+        self.assertRegex(repr(found.subsurface([0.1, 0.2])),
+                         r"^<SubsurfaceStress: 26 x 20 elements, 2 depths; largest von_mises \d+\.?\d* at \(.*\), ")
         batch = cn.friction_batch(H, DX, DY, [(1e-4, 0.0, 0.0)], force=100.0, friction={"coefficient": 0.3}, **STEEL)
         self.assertRegex(repr(batch), r"^<FrictionBatch: 1 of 1 entries solved, largest residual ")
 
@@ -88,11 +89,12 @@ class Bodies(unittest.TestCase):
             self.assertAlmostEqual(found.approach, expected.approach, delta=1e-9)
         steel = {"young_modulus": 2 * G * (1 + NU), "poisson_ratio": NU}
         rigid = solve(young_modulus=(steel["young_modulus"], np.inf), poisson_ratio=NU)
-        np.testing.assert_allclose(rigid.pressure, cn.solve(H, DX, DY, force=100.0, shear_modulus=(G, np.inf), poisson_ratio=NU).pressure, rtol=1e-9)
+        by_shear = cn.solve(H, DX, DY, force=100.0, shear_modulus=(G, np.inf), poisson_ratio=NU)
+        np.testing.assert_allclose(rigid.pressure, by_shear.pressure, rtol=1e-9)
         for one, other in (
             (cn.hertz(0.01, 0.02, force=1.0, **steel), cn.hertz(0.01, 0.02, force=1.0, **STEEL)),
             (cn.influence_half_space(4, 4, DX, DY, **steel), cn.influence_half_space(4, 4, DX, DY, **STEEL)),
-            (cn.to_accuracy(H, DX, DY, force=100.0, target=0.1, **steel).pressure, cn.to_accuracy(H, DX, DY, force=100.0, target=0.1, **STEEL).pressure),
+            *[[cn.to_accuracy(H, DX, DY, force=100.0, target=0.1, **bodies).pressure for bodies in (steel, STEEL)]],
             (cn.Solver(MY, MX, DX, DY, **steel).solve(H, force=100.0).pressure, solve().pressure),
             (cn.friction_batch(H, DX, DY, [(1e-4, 0, 0)], force=100.0, friction={"coefficient": 0.3}, **steel).force,
              cn.friction_batch(H, DX, DY, [(1e-4, 0, 0)], force=100.0, friction={"coefficient": 0.3}, **STEEL).force),
@@ -254,7 +256,8 @@ class Bars(unittest.TestCase):
         ):
             found, filled = self.drawn(call)
             self.assertEqual((found.status, filled), (cn.OK, 30))
-        batch, filled = self.drawn(lambda: cn.friction_batch(H, DX, DY, np.zeros((40, 3)) + 1e-5, force=100.0, friction={"coefficient": 0.3}, progress=True, **STEEL))
+        entries = np.zeros((40, 3)) + 1e-5
+        batch, filled = self.drawn(lambda: cn.friction_batch(H, DX, DY, entries, force=100.0, friction={"coefficient": 0.3}, progress=True, **STEEL))
         self.assertEqual((batch.message, filled), ("", 30))
         _, filled = self.drawn(lambda: cn.creep_force_table(xi=[0.0, 0.5], eta=[0.0], phi=[0.0, 0.5], elements=9, progress=True))
         self.assertEqual(filled, 30)

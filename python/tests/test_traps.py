@@ -121,12 +121,13 @@ class Numbers(unittest.TestCase):
 
     def test_batches(self):
         with cn.Solver(M, M, D, D, **STEEL) as solver:
-            for bad, words in (([1.0, 2.0, 3.0], r"force has shape \(3,\); it must be one value, or 2"), ([1.0], "one value, or 2"), ([[1.0], [2.0]], "one value"),
-                               ([True, False], "dtype bool"), ([1j, 2.0], "dtype complex"), (["1", "2"], "dtype")):
+            for bad, words in (([1.0, 2.0, 3.0], r"force has shape \(3,\); it must be one value, or 2"),
+                               ([1.0], "one value, or 2"), ([[1.0], [2.0]], "one value"), ([True, False], "dtype bool"), ([1j, 2.0], "dtype complex"), (["1", "2"], "dtype")):
                 self.assert_refused(words, lambda: solver.solve_batch([H, H], force=bad))
             for name in ("pressure", "contact"):
                 for count in (1, 3):
-                    self.assert_refused(f"{name} has {count} parts; it must have 2", lambda: solver.solve_batch([H, H], force=1.0, **{name: [H > 0] * count}))
+                    given = {name: [1.0 * (H > 0)] * count}
+                    self.assert_refused(f"{name} has {count} parts; it must have 2", lambda: solver.solve_batch([H, H], force=1.0, **given))
 
     def test_friction(self):
         for bad, words in (
@@ -202,6 +203,15 @@ class Tables(unittest.TestCase):
                     self.assertTrue(np.isfinite(values[1]))
                 with self.assertRaisesRegex(ValueError, f"^{name} has values outside the table"):
                     filled.forces(**keys)
+        for bad in (np.ma.masked_array([0.2, 0.3], [True, False]), [np.ma.masked, 0.2], None, "0.2", 0.2 + 0j, True):
+            with self.assertRaisesRegex(TypeError, "^xi "):
+                one.forces(bad, 0.0, 0.0)
+            with self.assertRaisesRegex(TypeError, "^xi "):
+                cn.creep_force_table(xi=bad, eta=[0.0], phi=[0.0], elements=9)
+            with self.assertRaisesRegex(TypeError, "^creepage.1. "):
+                one.wheel_rail((0.0, bad), 0.0, semi_axes=(1.0, 1.0), normal_force=1.0, coefficient=0.3, shear_modulus=1.0)
+        with self.assertRaisesRegex(TypeError, "hold is 'no'"):
+            one.forces(0.2, 0.0, 0.0, hold="no")
         rail = {"semi_axes": (1.0, 1.0), "normal_force": 1.0, "coefficient": 0.3, "shear_modulus": 1.0, "hold": True}
         for creepage, spin in (((np.nan, 0.0), 0.0), ((0.0, np.nan), 0.0), ((0.0, 0.0), np.nan)):
             self.assertTrue(np.isnan(one.wheel_rail(creepage, spin, **rail)).all())

@@ -72,12 +72,16 @@ class Datasets(unittest.TestCase):
         np.testing.assert_array_equal(dataset.zz.sel(depth=0.3).values, stress.zz[1])
         np.testing.assert_array_equal(dataset.directions.sel(component="z").values, stress.directions[..., 2])
         self.assertEqual((dataset.zz.attrs["units"], dataset.depth.attrs["units"]), ("Pa", "m"))
-        accurate = cn.to_accuracy(lambda x, y: 0.02 * ((x - 5) ** 2 + y * y), 0.2, 0.2, shape=(16, 16), corner=(3.4, -1.6), force=10.0, target=0.1, **STEEL)
+        given = {"shape": (16, 16), "corner": (3.4, -1.6), "force": 10.0, "target": 0.1, **STEEL}
+        accurate = cn.to_accuracy(lambda x, y: 0.02 * ((x - 5) ** 2 + y * y), 0.2, 0.2, **given)
         self.assertAlmostEqual(float(accurate.to_xarray().x.mean()), 5.0)
 
     def test_without_the_packages(self):
         found = cn.solve(H, 0.1, 0.12, force=100.0, **STEEL)
-        for missing, call in (("xarray", found.to_xarray), ("xarray", lambda: found.to_netcdf(self.path)), ("netCDF4", lambda: found.to_netcdf(self.path))):
+        def write():
+            found.to_netcdf(self.path)
+
+        for missing, call in (("xarray", found.to_xarray), ("xarray", write), ("netCDF4", write)):
             with mock.patch.dict(sys.modules, {missing: None}), self.assertRaisesRegex(ImportError, "contact-normal\\[tables\\]"):
                 call()
         with mock.patch.dict(sys.modules, {"netCDF4": None}):
