@@ -26,6 +26,8 @@ T = TypeVar("T")
 
 # A call that was given up is waited for as long as this: most end with their next cycle, within that time.
 _PATIENCE = 0.1
+# Signals are heard once in so many seconds at least.
+_LISTEN = 0.05
 # Seconds that one part of many pieces of work takes.
 _PART = 0.2
 # Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
@@ -94,7 +96,9 @@ class Call(Generic[T]):
         try:
             worker.give(self)
             while True:
-                self._news.acquire()
+                # A signal that the system gives to another thread does not wake this one.
+                while not self._news.acquire(timeout=_LISTEN):
+                    pass
                 question, self._question = self._question, None
                 if question is None:
                     break
@@ -254,7 +258,8 @@ def _end_workers() -> None:
 
 
 def _forget_workers() -> None:
-    """In a forked process: it has none of the threads."""
+    """In a forked process: it has none of the threads, and the one that forked makes no call there."""
+    _here.call = None
     for call in list(_given_up):
         call.end()
 

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ from . import _creep_force_store as store
 from . import _netcdf as netcdf
 from ._arguments import integer, number, real
 from ._bar import Bar
+from ._calls import made
 from ._creep_force_plane import AXES, Plan, plane, prepared
 from ._creep_forces import CreepForceTable
 
@@ -174,18 +176,24 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     else:
         executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent, initargs=(stop,))
     jobs: dict[Any, int] = {}
-    try:
+
+    def submit() -> None:
         jobs.update((executor.submit(plane, plan, index), index) for index in missing)
-        for job in concurrent.futures.as_completed(jobs):
+
+    try:
+        # By a worker: a signal that interrupts an executor leaves it half begun.
+        made(submit)
+        done = concurrent.futures.as_completed(jobs)
+        while (job := made(partial(next, done, None))) is not None:
             yield jobs[job], job.result()
         stop = None
     finally:
         # What was given up here need not be computed to its end.
         if stop is not None:
             stop.set()
-        for job in jobs:
+        for job in list(jobs):
             job.cancel()
-        executor.shutdown(wait=client is None)
+        made(partial(executor.shutdown, wait=client is None))
 
 
 def _leave_with_parent(stop: Any) -> None:
@@ -196,7 +204,7 @@ def _leave_with_parent(stop: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch(started_by: int) -> None:
-        while os.getppid() == started_by and not stop.wait(0.1):
+        while os.getppid() == started_by and not stop.wait(0.05):
             pass
         os._exit(1)
 

@@ -23,6 +23,11 @@ H = 0.2 * (X[None, :] ** 2 + X[:, None] ** 2)
 ENDLESS = {"method": "MULTIGRID", "smoother": "JACOBI", "relaxation": 1e-9, "max_cycles": 2**31 - 1}
 
 
+def setUpModule():
+    # A shell lets what it starts in the background ignore SIGINT.
+    unittest.addModuleCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+
+
 def send(number=signal.SIGINT, seconds=0.2):
     """Sends this process a signal soon."""
     timer = threading.Timer(seconds, os.kill, (os.getpid(), number))
@@ -148,6 +153,11 @@ class Threads(unittest.TestCase):
         solve()
         self.assertIn("contact-normal", names)
 
+    def test_where_no_thread_is_to_be_had(self):
+        _calls._end_workers()
+        with mock.patch.object(_calls, "_Worker", side_effect=RuntimeError("can't start new thread")):
+            self.assertEqual(cn.solve(H, D, D, force=1000.0, progress=lambda told: None, **STEEL).status, cn.OK)
+
     def test_a_solve_within_a_callback(self):
         alone = cn.solve(H, D, D, force=500.0, **STEEL).pressure
         found = []
@@ -196,7 +206,7 @@ def send():
     def test_the_process_ends_with_a_solve_that_goes_on_for_a_while(self):
         # A callback that sleeps in C: the worker has not ended when the interpreter does.
         ended = self.end_of("""
-import ctypes
+import atexit, ctypes
 from contact_normal import _callbacks, _calls
 def asleep(told, user):
     ctypes.CDLL(None).usleep(600000)
@@ -206,9 +216,11 @@ send()
 try:
     cn.solve(h, 0.1, 0.1, **given)
 except KeyboardInterrupt:
-    print("interrupted")
+    print("interrupted,", len(_calls._given_up))
+atexit._run_exitfuncs()
+print("ended,", len(_calls._given_up))
 """)
-        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted\n", ""))
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted, 1\nended, 0\n", ""))
 
     def test_a_solve_at_the_end_of_the_process(self):
         ended = self.end_of("""

@@ -8,6 +8,7 @@ from unittest import mock
 import numpy as np
 
 import contact_normal as cn
+from contact_normal._bar import SolveBar
 
 G, NU = 82000.0, 0.28
 STEEL = {"shear_modulus": G, "poisson_ratio": NU}
@@ -268,6 +269,26 @@ class Bars(unittest.TestCase):
             found, filled = self.drawn(call)
             self.assertEqual(found.status, cn.ITERATION_LIMIT)
             self.assertLess(filled, 30)
+
+    def test_it_never_goes_back(self):
+        def told(m, residual, cycles=1):
+            return cn.Progress(m, m, cycles, 0, 1.0, 1.0, 0.0, residual)
+
+        # Of one grid; of grids that are not known beforehand; of entries.
+        for bar, steps in ((SolveBar(64 * 64, 1e-6), [(32, 1e-5), (64, 1e-3), (64, 1e-2), (64, 1e-5), (64, np.nan)]),
+                           (SolveBar(None, 1e-6), [(16, 1e-3), (16, 1e-7), (32, 0.5), (32, 1e-3), (16, 1e-1), (64, 0.9), (64, 1e-6)]),
+                           (SolveBar(64 * 64, 1e-6, 10), [(64, 1e-9, 3), (64, 1e-9, 1), (64, 1e-9, 7)])):
+            parts = []
+            with mock.patch.object(bar._bar, "draw", lambda part, text, parts=parts: parts.append(part)):
+                for step in steps:
+                    bar._due = 0.0
+                    bar.tell(told(*step))
+                bar.close(False)
+                bar.close(True)
+            self.assertEqual(parts, sorted(parts))
+            self.assertLess(parts[-2], 1.0)
+            self.assertEqual(parts[-1], 1.0)
+            self.assertGreater(len(set(parts)), 2)
 
     def test_with_tqdm(self):
         tqdm = mock.MagicMock()
