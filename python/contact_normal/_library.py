@@ -160,8 +160,10 @@ def initialised(name: str) -> Any:
     """A struct as its `_init` of the library fills it."""
     kind = SIZED[name]
     if name not in _INITIALISED:
-        _INITIALISED[name] = kind()
-        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(_INITIALISED[name]))
+        struct = kind()
+        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(struct))
+        # Only now: another thread may look for it at any time.
+        _INITIALISED[name] = struct
     return kind.from_buffer_copy(_INITIALISED[name])
 
 

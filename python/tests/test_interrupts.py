@@ -185,7 +185,7 @@ class Threads(unittest.TestCase):
 
 
 class Ends(unittest.TestCase):
-    def end_of(self, script):
+    def end_of(self, script, **process):
         script = f"""
 import os, signal, threading
 import numpy as np, contact_normal as cn
@@ -196,7 +196,7 @@ def send():
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 """ + script
         # It would hang, not fail, where the process waits for a solve: the test of the tests ends it then.
-        return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, **process)
 
     def test_the_process_ends_after_an_interrupt(self):
         ended = self.end_of("send(); cn.solve(h, 0.1, 0.1, **given)")
@@ -221,6 +221,18 @@ atexit._run_exitfuncs()
 print("ended,", len(_calls._given_up))
 """)
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted, 1\nended, 0\n", ""))
+
+    def test_a_terminal_interrupts_all_processes_of_a_table(self):
+        ended = self.end_of("""
+axis = np.linspace(0.0, 1.0, 400)
+threading.Timer(0.5, os.killpg, (0, signal.SIGINT)).start()
+try:
+    cn.creep_force_table(xi=axis, eta=axis, phi=[0.0], axis_ratio=[0.5, 1.0, 2.0], workers=2)
+except KeyboardInterrupt:
+    print("interrupted")
+""", start_new_session=True)
+        # Nothing is told by the processes that computed.
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted\n", ""))
 
     def test_a_solve_at_the_end_of_the_process(self):
         ended = self.end_of("""

@@ -2,11 +2,14 @@
 
 import ctypes
 import os
+import threading
 import unittest
 from unittest import mock
 
 from contact_normal import _library
 from contact_normal._constants import ABI_VERSION
+
+LIBRARY = _library.library
 
 
 class Function:
@@ -28,7 +31,7 @@ class Another:
         self.functions = {f"contact_normal_{name}": Function(call) for name, call in functions.items()}
 
     def __getattr__(self, name):
-        return self.functions[name] if name in self.functions else getattr(_library.library, name)
+        return self.functions[name] if name in self.functions else getattr(LIBRARY, name)
 
 
 def loaded(another):
@@ -49,6 +52,24 @@ class Libraries(unittest.TestCase):
             self.assertEqual(_library.candidates(), ["/nowhere/libcontact_normal.so"])
             with self.assertRaisesRegex(ImportError, "/nowhere/libcontact_normal.so: .*; name the library in CONTACT_NORMAL_LIBRARY"):
                 _library.load()
+
+    def test_threads_meet_no_struct_that_is_half_initialised(self):
+        begun, ended = threading.Event(), threading.Event()
+
+        def slow(struct):
+            begun.set()
+            ended.wait()
+            LIBRARY.contact_normal_scene_init(struct)
+
+        with mock.patch.dict(_library._INITIALISED, clear=True), mock.patch.object(_library, "library", Another(scene_init=slow)) as another:
+            thread = threading.Thread(target=_library.initialised, args=("scene",))
+            thread.start()
+            begun.wait()
+            another.functions["contact_normal_scene_init"].call = LIBRARY.contact_normal_scene_init
+            size = _library.initialised("scene").struct_size
+            ended.set()
+            thread.join()
+        self.assertEqual(size, ctypes.sizeof(_library.SIZED["scene"]))
 
     def test_sizes_of_structs(self):
         for name, kind in _library.SIZED.items():
