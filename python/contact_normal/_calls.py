@@ -136,10 +136,12 @@ class _Worker(threading.Thread):
 
     def __init__(self) -> None:
         super().__init__(name="contact-normal", daemon=True)
-        self._given = threading.Lock()
+        self._given, self._ready = threading.Lock(), threading.Lock()
         self._given.acquire()
+        self._ready.acquire()
         self._call: Call[Any] | None = None
         self.start()
+        self._ready.acquire()
 
     def give(self, call: Call[Any] | None) -> None:
         """What it shall do next."""
@@ -148,6 +150,9 @@ class _Worker(threading.Thread):
 
     def run(self) -> None:
         """Makes calls."""
+        # It joins the others itself: a signal may interrupt the thread that made it.
+        _idle.append(self)
+        self._ready.release()
         while True:
             self._given.acquire()
             call, self._call = self._call, None
@@ -207,7 +212,8 @@ def made(work: Callable[[], T], short: bool = False) -> T:
     if short or not on_main_thread():
         return work()
     try:
-        worker = _resting() or _Worker()
+        while (worker := _resting()) is None:
+            _Worker()
     except RuntimeError:  # no thread is to be had: the interpreter ends, or the system has no more
         return work()
     return Call(work).result(worker)
