@@ -157,7 +157,7 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
                 bar.draw(entries / total, f"{entries} of {total} entries")
             elif progress:
                 progress(entries, total)
-        if bar:
+        if bar and not missing:
             bar.draw(1.0, f"{each * plan.planes} of {each * plan.planes} entries")
     finally:
         if bar:

@@ -118,6 +118,10 @@ class Interrupts(unittest.TestCase):
 
 
 class Threads(unittest.TestCase):
+    def setUp(self):
+        # What other tests gave up may still be on its way to the end of a cycle.
+        _calls._wait_for_given_up()
+
     def test_callbacks_run_on_the_thread_that_asks(self):
         def threads_of(solve):
             found = set()
