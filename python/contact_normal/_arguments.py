@@ -135,6 +135,9 @@ def pointer(array: npt.NDArray[Any], kind: Any = c_double) -> Any:
     return array.ctypes.data_as(POINTER(kind))
 
 
+_DOUBLE = np.dtype(np.float64)
+
+
 def _has_mask(values: Any) -> bool:
     """Whether an array has a mask, or one of those that a list holds."""
     if isinstance(values, (list, tuple)):
@@ -154,6 +157,8 @@ def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
 
 def real(name: str, values: Any) -> Doubles:
     """An array of doubles, of any shape. What a double cannot hold is refused."""
+    if type(values) is np.ndarray and values.dtype is _DOUBLE:
+        return values
     array = _plain(name, values, "fiu", "real numbers")
     if array.dtype == np.float64:
         return array

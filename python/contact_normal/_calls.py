@@ -31,7 +31,7 @@ _LISTEN = 0.05
 # Seconds that one part of many pieces of work takes.
 _PART = 0.2
 # Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
-# A worker costs some 15 us a solve where the machine is idle, 60 where it is not; the usual solve of so many elements takes 200.
+# A worker costs some 50 us a solve, with its callbacks; the usual solve of so many elements takes 200.
 _SHORT = 1_050_000
 
 
