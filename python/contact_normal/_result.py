@@ -107,7 +107,7 @@ class Result(Solved):
 
 
 class TangentialResult(Solved):
-    """What `solve_tangential` found: the tractions of pressures that were given.
+    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` but for `plot`.
 
     Attributes
     ----------
