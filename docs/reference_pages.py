@@ -113,11 +113,16 @@ def fortran_page(parts: list[str], examples: Examples) -> str:
 def python_members() -> str:
     """Directives for every public name of the package: functions, the solver, and what they take, return and raise."""
     package = importlib.import_module("contact_normal")
-    functions, classes = [], []
+    functions, classes, told = [], [], set()
     for name in package.__all__:
         member = getattr(package, name)
         if inspect.isclass(member):
             members = "" if issubclass(member, (tuple, dict, Exception)) else "   :members:\n"
+            # What classes have in common stands with the first of them.
+            hidden = {base for base in member.__bases__ if base.__module__.startswith("contact_normal._") and base.__name__ not in package.__all__}
+            if hidden - told:
+                members += "   :inherited-members:\n"
+            told |= hidden
             classes.append((name, f".. autoclass:: {name}\n{members}\n"))
         elif inspect.isfunction(member) and member.__name__ == name:
             functions.append((name, f".. autofunction:: {name}\n\n"))

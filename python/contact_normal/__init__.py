@@ -2,7 +2,7 @@
 
     import contact_normal
     result = contact_normal.solve(h, dx, dy, force=82.0e3, shear_modulus=82000.0, poisson_ratio=0.28)
-    result.pressure, result.contact, result.approach, result.report["residual"], result.ledger
+    result.pressure, result.contact, result.approach, result.max_pressure, result.ledger
     result.plot()
 
 Arrays are (my, mx), C order: x runs along a row. Constants have the names of include/contact_normal.h without the prefix.
@@ -14,13 +14,16 @@ from ._constants import *  # noqa: F403
 from ._creep_force_table import creep_force_table
 from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
+from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
 from ._prices import Price, cost_of_accuracy
-from ._result import Ledger, Result
+from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
-from ._special import HertzSolution, hertz, influence_half_space
+from ._special import HertzSolution, coating_compliance, hertz, influence_half_space
 from ._stress import SubsurfaceStress
+from ._subsurface import stress_at_points, subsurface_stress
+from ._tangential import solve_tangential
 
 __version__ = VERSION
 
@@ -37,7 +40,9 @@ __all__ = [
     "SolveOptions",
     "Solver",
     "SubsurfaceStress",
+    "TangentialResult",
     "VERSION",
+    "coating_compliance",
     "cost_of_accuracy",
     "creep_force_table",
     "friction_batch",
@@ -45,6 +50,9 @@ __all__ = [
     "influence_half_space",
     "set_log",
     "solve",
+    "solve_tangential",
     "solve_to_accuracy",
+    "stress_at_points",
+    "subsurface_stress",
     "to_accuracy",
 ]

@@ -74,12 +74,55 @@ class SolveOptions(TypedDict, total=False):
 def integer(name: str, value: Any, bits: int = 32) -> int:
     """`value` as an integer that a C integer of `bits` bits can hold."""
     try:
+        if isinstance(value, bool):
+            raise TypeError
         whole = operator.index(value)
     except TypeError:
         raise TypeError(f"{name} is {value!r}; it must be an integer") from None
     if not -(2 ** (bits - 1)) <= whole < 2 ** (bits - 1):
         raise ValueError(f"{name} is {whole}; it must fit into {bits} bits")
     return whole
+
+
+def number(name: str, value: Any) -> float:
+    """`value` as a double."""
+    if type(value) is float:
+        return value
+    refused = (bool, np.bool_, str, bytes, complex, np.complexfloating, np.ma.MaskedArray)
+    try:
+        if isinstance(value, refused) or np.ndim(value) or isinstance(value, np.ndarray) and value.dtype.kind not in "fiu":
+            raise TypeError
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name} is {value}; it must fit into a double") from None
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {value!r}; it must be a real number") from None
+
+
+def flag(name: str, value: Any) -> bool:
+    """`value` as true or false: no word and no array is one of them."""
+    if isinstance(value, (bool, np.bool_)) or isinstance(value, int) and value in (0, 1):
+        return bool(value)
+    raise TypeError(f"{name} is {value!r}; it must be True or False")
+
+
+def two(name: str, value: Any) -> tuple[float, float]:
+    """Two numbers."""
+    x, y = both(name, value, "two numbers")
+    return number(f"{name}[0]", x), number(f"{name}[1]", y)
+
+
+def both(name: str, values: Any, rule: str = "a pair") -> tuple[Any, Any]:
+    """The parts of what has two."""
+    try:
+        count = 0 if isinstance(values, (str, bytes, Mapping)) else len(values)
+    except TypeError:
+        count = 0
+    if not count:
+        raise TypeError(f"{name} is {values!r}; it must be {rule}")
+    if count != 2:
+        raise ValueError(f"{name} has {count} parts; it must be {rule}")
+    return values[0], values[1]
 
 
 _PAIR = c_double * 2
@@ -92,24 +135,75 @@ def pointer(array: npt.NDArray[Any], kind: Any = c_double) -> Any:
     return array.ctypes.data_as(POINTER(kind))
 
 
+_DOUBLE = np.dtype(np.float64)
+
+
+def _has_mask(values: Any) -> bool:
+    """Whether an array has a mask, or one of those that a list holds."""
+    if isinstance(values, (list, tuple)):
+        return any(_has_mask(one) for one in values)
+    return isinstance(values, np.ma.MaskedArray)
+
+
 def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
     """`values` as an array of one of the `kinds` of numpy, without a mask."""
-    if isinstance(values, np.ma.MaskedArray):
-        raise TypeError(f"{name} is a masked array; fill it: .filled(...), with inf where h has no surface")
-    array = np.asarray(values)
+    array: npt.NDArray[Any] = np.asanyarray(0.0 if (has_mask := _has_mask(values)) else values)
+    if has_mask or isinstance(array, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array; fill it: .filled(...)")
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} has dtype {array.dtype}; it must hold {rule}")
-    return array
+    return np.asarray(array)
+
+
+def real(name: str, values: Any) -> Doubles:
+    """An array of doubles, of any shape. What a double cannot hold is refused."""
+    if type(values) is np.ndarray and values.dtype is _DOUBLE:
+        return values
+    array = _plain(name, values, "fiu", "real numbers")
+    if array.dtype == np.float64:
+        return array
+    with np.errstate(over="ignore"):
+        doubled: Doubles = array.astype(np.float64)
+    if array.dtype.kind in "iu" and array.dtype.itemsize == 8 and array.size:
+        largest = max(abs(int(array.min())), abs(int(array.max())))
+        if largest > 2**53:
+            raise ValueError(f"{name} holds {largest}; it must be at most 2^53, for a double to hold it")
+    elif array.dtype.itemsize > 8 and not np.array_equal(np.isinf(doubled), np.isinf(array)):
+        raise ValueError(f"{name} holds a number that does not fit into a double")
+    return doubled
+
+
+def _without_mask(name: str, values: Any) -> Any:
+    """With +infinity in the places of what is masked."""
+    if isinstance(values, (list, tuple)):
+        return [_without_mask(name, one) for one in values]
+    if not isinstance(values, np.ma.MaskedArray):
+        return values
+    filled = np.array(real(name, values.filled(0)))
+    filled[np.ma.getmaskarray(values)] = np.inf
+    return filled
+
+
+def distances(name: str, values: Any) -> Doubles:
+    """Undeformed distances: what is masked has no surface, and so a distance of +infinity."""
+    if type(values) is np.ndarray:
+        return real(name, values)
+    array: Any = np.asanyarray(values) if not isinstance(values, (list, tuple)) else values
+    return real(name, _without_mask(name, array if isinstance(array, np.ma.MaskedArray) else values))
 
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
     """Contiguous doubles of `shape`, or with as many dimensions as `dimensions` names; copied only where they are not that."""
-    array = _plain(name, values, "fiub", "real numbers")
+    return shaped(name, real(name, values), shape, dimensions)
+
+
+def shaped(name: str, array: Doubles, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
+    """The array, contiguous, if it has that shape."""
     if array.ndim != dimensions.count(",") + 1:
         raise ValueError(f"{name} has shape {array.shape}; it must be {dimensions}")
     if shape is not None and array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return np.ascontiguousarray(array)
 
 
 def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
@@ -146,5 +240,5 @@ def options(given: Mapping[str, Any]) -> Any:
             raise TypeError(f"no option {name}; there are: {', '.join(sorted(_OPTIONS))}")
         if isinstance(value, str):
             value = _constants.value_of(name, value)
-        setattr(struct, name, integer(name, value) if _OPTIONS[name] is c_int32 else value)
+        setattr(struct, name, integer(name, value) if _OPTIONS[name] is c_int32 else number(name, value))
     return struct

@@ -1,11 +1,15 @@
-"""The bar that `progress=True` draws."""
+"""The bars that `progress=True` draws. One that is done ends at 100 %."""
 
 from __future__ import annotations
 
 import importlib
+import math
 import sys
 import time
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from ._callbacks import Progress
 
 
 class Bar:
@@ -39,3 +43,51 @@ class Bar:
             self._tqdm.close()
         else:
             self._file.write("\n")
+
+
+class SolveBar:
+    """A bar that draws how far the residual has come on its way to the tolerance, ten times a second at most. It never goes back.
+
+    Parameters
+    ----------
+    elements : int or None
+        Of the finest grid: cycles on coarser ones do not fill the bar. None: not known; each grid that is finer than those before then has
+        half of what is left.
+    tolerance : float
+        Of the residual.
+    entries : int
+        Tangential problems that are solved: if there are some, the bar is filled by those that are done.
+    """
+
+    def __init__(self, elements: int | None, tolerance: float, entries: int = 0) -> None:
+        self._bar = Bar()
+        self._elements, self._tolerance, self._entries = elements, tolerance, entries
+        self._part, self._due, self._text = 0.0, 0.0, ""
+        self._finest, self._begin = 0, 0.0
+
+    def tell(self, told: Progress) -> None:
+        """The progress callback."""
+        self._part = max(self._part, self._part_of(told))
+        self._text = f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}"
+        if told.seconds >= self._due:
+            self._due = told.seconds + 0.1
+            self._bar.draw(self._part, self._text)
+
+    def _part_of(self, told: Progress) -> float:
+        if self._entries:
+            return min(1.0, told.cycles / self._entries)
+        share = 1.0
+        if self._elements is None:
+            if told.mx * told.my > self._finest:
+                self._finest, self._begin = told.mx * told.my, 0.5 * (1.0 + self._begin) if self._finest else 0.0
+            share = 0.5 * (1.0 - self._begin)
+        elif told.mx * told.my != self._elements:
+            return 0.0
+        if not (0 < told.residual < 1 and 0 < self._tolerance < 1):
+            return self._begin
+        return self._begin + share * min(1.0, math.log(told.residual) / math.log(self._tolerance))
+
+    def close(self, is_done: bool) -> None:
+        """Draws what was told last, full if all is done, and goes to the next line."""
+        self._bar.draw(1.0 if is_done else self._part, self._text)
+        self._bar.close()

@@ -1,17 +1,25 @@
-"""Python callables as the callbacks of the C ABI. An exception in one cancels the call and is raised after it."""
+"""Python callables as the callbacks of the C ABI, called on the thread that asked for the solve.
+
+An exception in one cancels the call and is raised after it; what is none, as KeyboardInterrupt, is raised at once.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._bar import Bar
-from ._constants import LOG_INFO
+from ._arguments import distances, integer
+from ._bar import SolveBar
+from ._calls import asked, called, given_up, is_short, on_main_thread
+from ._constants import LOG_INFO, OK
 from ._library import check, library
 from ._structs import LogCallback, ProgressCallback, SurfaceCallback
+
+if TYPE_CHECKING:
+    from ._handle import Handle
+    from ._scene import Scene
 
 
 class Progress(NamedTuple):
@@ -44,50 +52,54 @@ class Progress(NamedTuple):
 
 
 class Watched:
-    """The progress callback of one call: a callable, True for a bar, or nothing."""
+    """The calls of a solve, with its progress callback: a callable, True for a bar, or nothing.
 
-    def __init__(self, progress: Callable[[Progress], Any] | bool | None, options: Any, elements: int | None) -> None:
+    Parameters
+    ----------
+    progress : callable, bool or None
+        As `solve` has it.
+    options : Options
+        The struct that gets the callback.
+    scene : Scene or None
+        What is solved; None: on grids that are not known beforehand.
+    entries : int
+        Tangential problems that are solved, too.
+    """
+
+    def __init__(self, progress: Callable[[Progress], Any] | bool | None, options: Any, scene: Scene | None, entries: int = 0) -> None:
+        if progress is not None and not isinstance(progress, bool) and not callable(progress):
+            raise TypeError(f"progress is {progress!r}; it must be a callable, or True for a bar")
         self._error: BaseException | None = None
-        self._bar = Bar() if progress is True else None
-        self._told = _residual_drawn(self._bar, elements, options.tolerance) if self._bar else progress
-        if self._told:
+        self._bar = SolveBar(scene.h.size if scene else None, options.tolerance, entries) if progress is True else None
+        self._told: Any = self._bar.tell if self._bar else progress
+        self._is_short = not self._told and not _log and scene is not None and is_short(scene.effort * (entries + 1), options.max_cycles)
+        if self._told or not self._is_short and on_main_thread():
             self._callback = ProgressCallback(self._call)
             options.progress = self._callback
 
     def _call(self, told: Any, _user: Any) -> int:
         try:
-            assert callable(self._told)
-            return 1 if self._told(Progress(*(getattr(told.contents, name) for name in Progress._fields))) else 0
+            if given_up():
+                return 1
+            if not self._told:
+                return 0
+            progress = Progress(*(getattr(told.contents, name) for name in Progress._fields))
+            return 1 if asked(lambda: self._told(progress)) else 0
         except BaseException as error:  # it must not cross the C frames
             self._error = error
             return 1
 
-    def finish(self) -> None:
-        """Closes the bar; raises what the callable raised."""
-        if self._bar:
-            self._bar.close()
+    def call(self, function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None) -> tuple[int, str]:
+        """As `called`. Raises what the callable raised, and closes the bar."""
+        status = -1
+        try:
+            status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short)
+        finally:
+            if self._bar:
+                self._bar.close(status == OK)
         if self._error is not None:
             raise self._error
-
-
-def _residual_drawn(bar: Bar, elements: int | None, tolerance: float) -> Callable[[Progress], None]:
-    """A callback that draws how far the residual has come on its way to the tolerance, ten times a second at most.
-
-    Cycles on coarser grids than the finest, which has so many elements (None: not known beforehand), do not fill the bar. NORM starts its
-    inner solve anew when the contact area changes: its residual, and so its bar, goes back then.
-    """
-    part, due = 0.0, 0.0
-
-    def draw(told: Progress) -> None:
-        nonlocal part, due
-        if told.seconds < due:
-            return
-        due = told.seconds + 0.1
-        if 0 < told.residual < 1 and elements in (None, told.mx * told.my) and 0 < tolerance < 1:
-            part = min(1.0, math.log(told.residual) / math.log(tolerance))
-        bar.draw(part, f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}")
-
-    return draw
+        return status, message
 
 
 class Surface:
@@ -100,9 +112,15 @@ class Surface:
 
     def _call(self, mx: int, my: int, dx: float, dy: float, h: Any, _user: Any) -> int:
         try:
+            if given_up():
+                return 1
             x = self._corner[0] + (np.arange(mx) + 0.5) * dx
             y = self._corner[1] + (np.arange(my) + 0.5) * dy
-            np.ctypeslib.as_array(h, (my, mx))[:] = self._surface(x[None, :], y[:, None])
+            values = distances("what h(x, y) returns", asked(lambda: self._surface(x[None, :], y[:, None])))
+            try:
+                np.ctypeslib.as_array(h, (my, mx))[:] = values
+            except ValueError:
+                raise ValueError(f"what h(x, y) returns has shape {values.shape}; it must be {(my, mx)}, or what numpy makes that of") from None
             return 0
         except BaseException as error:  # it must not cross the C frames
             self._error = error
@@ -129,15 +147,24 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
     >>> set_log(lambda level, message: print(message))
     >>> set_log(None)
     """
-    global _log_callback  # the library keeps the pointer: the object must live
-
-    def call(at: int, message: bytes, _user: Any) -> None:
-        assert callback is not None
-        callback(at, message.decode())
-
-    new = LogCallback(call) if callback else LogCallback()
-    check(library.contact_normal_set_log(new, level, None))
-    _log_callback = new
+    if callback is not None and not callable(callback):
+        raise TypeError(f"callback is {callback!r}; it must be a callable, or None")
+    check(library.contact_normal_set_log(LogCallback() if callback is None else _LOGGED, integer("level", level), None))
+    _log[:] = [] if callback is None else [callback]
 
 
-_log_callback: Any = None
+def _logged(level: int, message: bytes, _user: Any) -> None:
+    # A thread may be on its way to here while another replaces the callable.
+    callbacks = list(_log)
+    try:
+        if callbacks and not given_up():
+            asked(lambda: callbacks[0](level, message.decode()))
+    except Exception:
+        if not given_up():
+            raise
+
+
+# The callable that gets messages, if any.
+_log: list[Callable[[int, str], Any]] = []
+# The library may call it at any time: it is never freed.
+_LOGGED = LogCallback(_logged)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._arguments import distances, number, real, shaped
 from ._constants import OK
 from ._friction_batch import FrictionBatch, friction_batch
 from ._solve import solve
@@ -86,9 +87,10 @@ def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str
     if unknown or missing or ("force" in surface) == ("approach" in surface):
         raise ValueError(f"surface has {', '.join(surface)}; it must have {', '.join(_NEEDED)}, either force or approach, "
                          "and may have rolling_direction, spin_centre, spin_offset")
-    h = np.asarray(surface["h"], dtype=float)
+    h = shaped("surface['h']", distances("surface['h']", surface["h"]))
     (my, mx), (x, y) = h.shape, surface.get("spin_centre", (0.0, 0.0))
-    dx, dy, mu = surface["dx"], surface["dy"], np.asarray(surface["coefficient"], dtype=float)
+    dx, dy = (number(f"surface['{name}']", surface[name]) for name in ("dx", "dy"))
+    mu = real("surface['coefficient']", surface["coefficient"])
     # Padding moves the middle of the grid.
     centre = x - 0.5 * (mx % 2) * dx, y - 0.5 * (my % 2) * dy
     fine = {**surface, "h": h, "coefficient": mu}

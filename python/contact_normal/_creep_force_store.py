@@ -1,9 +1,8 @@
-"""What of a table is done: planes in a folder beside it, each written whole or not at all, and the table itself as NetCDF."""
+"""What of a table is done: planes in a folder beside it, each written whole or not at all."""
 
 from __future__ import annotations
 
 import hashlib
-import importlib
 import json
 import os
 import shutil
@@ -14,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from ._creep_force_plane import AXES, Plan
-from ._library import VERSION
 
 
 def key(plan: Plan) -> str:
@@ -28,15 +26,6 @@ def key(plan: Plan) -> str:
             digest.update(name.encode())
             digest.update(value.encode() if isinstance(value, str) else np.ascontiguousarray(value, dtype=float).tobytes())
     return digest.hexdigest()
-
-
-def xarray() -> Any:
-    """xarray with what it writes NetCDF by."""
-    try:
-        importlib.import_module("netCDF4")
-        return importlib.import_module("xarray")
-    except ImportError as error:
-        raise ImportError(f"{error}; tables in files need xarray and netCDF4: pip install 'contact-normal[tables]'") from error
 
 
 class Journal:
@@ -90,18 +79,3 @@ def _replace(file: Path, content: bytes) -> None:
     unfinished = file.with_suffix(".unfinished")
     unfinished.write_bytes(content)
     os.replace(unfinished, file)
-
-
-def write(path: str | os.PathLike[str], dataset: Any) -> None:
-    """Writes NetCDF, whole or not at all."""
-    target = Path(path)
-    unfinished = target.with_name(target.name + ".unfinished")
-    coding = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars if dataset[name].ndim}
-    dataset.assign_attrs(made_by=f"contact-normal {VERSION}").to_netcdf(unfinished, engine="netcdf4", encoding=coding)
-    os.replace(unfinished, target)
-
-
-def read(path: str | os.PathLike[str]) -> Any:
-    """The dataset of a file, in memory."""
-    with xarray().open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load()

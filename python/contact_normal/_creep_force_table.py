@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import concurrent.futures
+import multiprocessing
 import os
+import signal
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _creep_force_store as store
-from ._arguments import integer
+from . import _netcdf as netcdf
+from ._arguments import integer, number, real
 from ._bar import Bar
+from ._calls import made
 from ._creep_force_plane import AXES, Plan, plane, prepared
 from ._creep_forces import CreepForceTable
 
@@ -102,7 +106,7 @@ def creep_force_table(
     plan = _plan(xi, eta, phi, axis_ratio, poisson_ratio, surface, elements, tolerance)
     journal = None
     if path is not None:
-        store.xarray()
+        netcdf.xarray()
         if Path(path).exists():
             table = CreepForceTable.read(path)
             if table._key != store.key(plan):
@@ -123,7 +127,7 @@ def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surf
     if surface is not None:
         axis_ratio, poisson_ratio = 1.0, 0.0
     for name, values in zip(AXES, (axis_ratio, poisson_ratio, phi, eta, xi)):
-        axis = np.atleast_1d(np.asarray(values, dtype=float))
+        axis = np.atleast_1d(real(name, values))
         if axis.ndim != 1 or not axis.size or not np.isfinite(axis).all() or not (np.diff(axis) > 0).all():
             raise ValueError(f"{name} is {values!r}; it must be increasing and finite")
         if surface is None and name in ("xi", "phi") and axis[0] < 0:
@@ -134,7 +138,7 @@ def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surf
     if integer("elements", elements) < 4:
         raise ValueError(f"elements is {elements}; it must be at least 4")
     parts = None if surface is None else prepared(surface, tolerance)
-    return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=float(tolerance), surface=parts)
+    return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=number("tolerance", tolerance), surface=parts)
 
 
 def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
@@ -153,6 +157,8 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
                 bar.draw(entries / total, f"{entries} of {total} entries")
             elif progress:
                 progress(entries, total)
+        if bar and not missing:
+            bar.draw(1.0, f"{each * plan.planes} of {each * plan.planes} entries")
     finally:
         if bar:
             bar.close()
@@ -164,27 +170,42 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
+    stop = multiprocessing.Event() if client is None else None
     if client is not None:
         executor = client.get_executor()
     else:
-        executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent)
+        executor = concurrent.futures.ProcessPoolExecutor(workers or os.cpu_count(), initializer=_leave_with_parent, initargs=(stop,))
     jobs: dict[Any, int] = {}
-    try:
+
+    def submit() -> None:
         jobs.update((executor.submit(plane, plan, index), index) for index in missing)
-        for job in concurrent.futures.as_completed(jobs):
+
+    try:
+        # By a worker: a signal that interrupts an executor leaves it half begun.
+        made(submit)
+        done = concurrent.futures.as_completed(jobs)
+        while (job := made(partial(next, done, None))) is not None:
             yield jobs[job], job.result()
+        stop = None
     finally:
-        for job in jobs:
+        # What was given up here need not be computed to its end.
+        if stop is not None:
+            stop.set()
+        for job in list(jobs):
             job.cancel()
-        executor.shutdown(wait=client is None)
+        made(partial(executor.shutdown, wait=client is None))
 
 
-def _leave_with_parent() -> None:
-    """Ends this process soon after its parent was killed: otherwise it would wait for work for ever."""
+def _leave_with_parent(stop: Any) -> None:
+    """Ends this process soon after its parent was killed, for it would wait for work for ever, or has set `stop`.
+
+    Signals of the terminal are the parent's: it stops its processes.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch(started_by: int) -> None:
-        while os.getppid() == started_by:
-            time.sleep(0.5)
+        while os.getppid() == started_by and not stop.wait(0.05):
+            pass
         os._exit(1)
 
     # That of a fork server is not the one who asks for the work, but it ends with it.

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _creep_force_store as store
+from . import _netcdf as netcdf
+from ._arguments import both, flag, real
 from ._creep_force_plane import AXES
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ class CreepForceTable:
 
     def to_xarray(self) -> Any:
         """The table as an `xarray.Dataset` with the names of the attributes."""
-        dataset = store.xarray().Dataset(
+        dataset = netcdf.xarray(in_files=False).Dataset(
             {name: (AXES, getattr(self, name)) for name in VALUES}, {name: getattr(self, name) for name in AXES},
             {"elements": self.elements, "tolerance": self.tolerance, "of_surface": int(self.of_surface),
              "mirrored": int(self._mirrored), "plan": self._key})
@@ -64,12 +65,12 @@ class CreepForceTable:
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes the table as NetCDF, whole or not at all. Needs xarray and netCDF4."""
-        store.write(path, self.to_xarray())
+        netcdf.write(path, self.to_xarray())
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> CreepForceTable:
         """A table that `write` or `creep_force_table` has written."""
-        dataset = store.read(path)
+        dataset = netcdf.read(path)
         if not set(VALUES) <= set(dataset.data_vars):
             raise ValueError(f"{path} is no table of creep forces")
         told = dataset.attrs
@@ -91,7 +92,7 @@ class CreepForceTable:
         axis_ratio, poisson_ratio : array_like
             Of an ellipse; the Poisson ratio may be left out where the table has one only. Not used for a surface.
         hold : bool
-            Beyond the ends of an axis: the value at its end. Otherwise that is an error.
+            Beyond the ends of an axis: the value at its end, and NaN where a value is NaN. Otherwise both are errors.
 
         Returns
         -------
@@ -108,7 +109,8 @@ class CreepForceTable:
             poisson_ratio = self.poisson_ratio[0]
         if self.of_surface:
             axis_ratio, poisson_ratio = self.axis_ratio[0], self.poisson_ratio[0]
-        given = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (axis_ratio, poisson_ratio, phi, eta, xi)))
+        keys = (real(name, value) for name, value in zip(AXES, (axis_ratio, poisson_ratio, phi, eta, xi)))
+        given, hold = np.broadcast_arrays(*keys), flag("hold", hold)
         ratio, nu, spin, lateral, longitudinal = (np.array(value) for value in given)
         sign, mirror = np.ones(spin.shape), np.ones(spin.shape)
         if not self.of_surface:
@@ -119,7 +121,9 @@ class CreepForceTable:
             sign = np.where(spin < 0, -1.0, 1.0)
         places = ratio, nu, sign * mirror * spin, sign * mirror * lateral, sign * longitudinal
         corners = [self._between(name, place, hold) for name, place in zip(AXES, places)]
-        force_x, force_y, moment, error = (_interpolated(getattr(self, name), corners) for name in ("force_x", "force_y", "moment", "error"))
+        unknown = np.isnan(places).any(axis=0)
+        force_x, force_y, moment, error = (np.where(unknown, np.nan, _interpolated(getattr(self, name), corners))
+                                           for name in ("force_x", "force_y", "moment", "error"))
         return sign * force_x, sign * mirror * force_y, sign * mirror * moment, error
 
     def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
@@ -161,8 +165,8 @@ class CreepForceTable:
         a, b = semi_axes
         c, bound = np.sqrt(a * b), coefficient * normal_force
         unit = shear_modulus * c * c / bound
-        x, y, moment, _ = self.forces(unit * np.asarray(creepage[0]), unit * np.asarray(creepage[1]), unit * c * np.asarray(spin),
-                                      axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
+        along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
+        x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment
 
 

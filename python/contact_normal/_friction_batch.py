@@ -11,10 +11,10 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
-from ._library import check, initialised, last_error, library
-from ._result import _value
-from ._scene import Scene
-from ._structs import Report, names
+from ._library import check, initialised, library
+from ._solved import reported
+from ._structs import names
+from ._tangential import with_pressures
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -62,6 +62,12 @@ class FrictionBatch:
             self.traction, self.slip = np.full((count, 2, *shape), np.nan), np.full((count, 2, *shape), np.nan)
             self.adhesion = np.zeros((count, *shape), dtype=np.int32)
 
+    def __repr__(self) -> str:
+        solved = int((self.status == 0).sum())
+        message = f"; {self.message.splitlines()[0]}" if self.message else ""
+        largest = f", largest residual {np.nanmax(self.residual):.1e}" if solved else ""
+        return f"<FrictionBatch: {solved} of {len(self.status)} entries solved{largest}{message}>"
+
     def _results(self) -> Any:
         """The struct that points to these arrays."""
         results = initialised("friction_results")
@@ -80,16 +86,18 @@ def friction_batch(
     entries: npt.ArrayLike,
     *,
     friction: Mapping[str, Any],
-    shear_modulus: Both,
-    poisson_ratio: Both,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
     approach: float | None = None,
     force: float | None = None,
+    mean_pressure: float | None = None,
     pressure: npt.ArrayLike | None = None,
     influence: Any = None,
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
     fields: bool = False,
-    progress: Callable[[Progress], Any] | None = None,
+    progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> FrictionBatch:
     """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
@@ -107,16 +115,18 @@ def friction_batch(
     entries : array_like, (n, 3)
         Of each entry what is prescribed in x and in y, and the spin.
     friction : mapping
-        As for `solve`. Its creepages, forces and spin are not used; in a direction whose "force" is not None, entries are forces.
-    approach, force : float
+        As for `solve`. Its creepages, forces and spin are not used; in a direction whose "force" is not None, entries are forces. Creepages
+        are lengths, and spins angles, where "motion" is "SHIFT", the default.
+    approach, force, mean_pressure : float
         Exactly one of them, where there is no `pressure`.
     pressure : array_like, (my, mx), optional
         The pressures of a normal problem that is solved already.
     fields : bool
         Whether tractions and slip are wanted, too.
-    progress : callable, optional
-        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels.
-    shear_modulus, poisson_ratio, influence, layer, pressure_limit, **given
+    progress : callable or bool, optional
+        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
+        a bar on stderr.
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
@@ -128,34 +138,25 @@ def friction_batch(
     ContactNormalError
         If the call itself is refused; an entry that is refused has a negative `status`.
     """
-    pressures = None if pressure is None else doubles("pressure", pressure)
-    if h is None:
-        if pressures is None:
-            raise TypeError("give either h or pressure")
-        h = np.zeros(pressures.shape)
-    if pressures is not None and approach is None and force is None:
-        approach = 0.0  # not used
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio,
-                  {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction})
-    if pressures is not None:
-        pressures = doubles("pressure", pressures, scene.shape)
+    scene, pressures = with_pressures(
+        h, pressure, dx, dy, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus,
+        effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
+    )
     table = doubles("entries", entries, dimensions="(n, 3)")
     if table.shape[1] != 3:
         raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")
     struct = options(given)
-    watched = Watched(progress, struct, scene.h.size)
+    watched = Watched(progress, struct, scene, len(table))
     found = FrictionBatch(len(table), scene.shape, fields)
     results, report = found._results(), initialised("report")
     untouched = -(2**31)
     found.status[:] = untouched
-    status = library.contact_normal_friction_batch(
-        ctypes.byref(scene.struct), None if pressures is None else pointer(pressures), ctypes.byref(struct), len(table),
-        pointer(table), ctypes.byref(results), ctypes.byref(report),
+    status, found.message = watched.call(
+        library.contact_normal_friction_batch, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
+        ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), keep=(scene, pressures, table, found),
     )
-    found.message = last_error() if status else ""
-    watched.finish()
     if not len(table) or untouched in found.status:
-        check(status)
-    hidden = ("struct_size", "ledger", "ledger_capacity")
-    found.report = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
+        check(status, found.message)
+    found.report = reported(report)
     return found

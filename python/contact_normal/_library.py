@@ -160,8 +160,10 @@ def initialised(name: str) -> Any:
     """A struct as its `_init` of the library fills it."""
     kind = SIZED[name]
     if name not in _INITIALISED:
-        _INITIALISED[name] = kind()
-        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(_INITIALISED[name]))
+        struct = kind()
+        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(struct))
+        # Only now: another thread may look for it at any time.
+        _INITIALISED[name] = struct
     return kind.from_buffer_copy(_INITIALISED[name])
 
 
@@ -181,14 +183,18 @@ class ContactNormalError(Exception):
         super().__init__(f"{message or text} (status {status}: {text})")
         self.status, self.message = status, message
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Exceptions are made anew from their text: this one has two arguments.
+        return type(self), (self.status, self.message), self.__dict__
+
 
 def last_error() -> str:
     """The message of the last call on this thread that did not return OK."""
     return str(library.contact_normal_last_error().decode())
 
 
-def check(status: int) -> int:
-    """The status, if it is not negative; raises ContactNormalError otherwise."""
+def check(status: int, message: str | None = None) -> int:
+    """The status, if it is not negative; raises ContactNormalError otherwise, with the message of the last call if none is given."""
     if status < 0:
-        raise ContactNormalError(status, last_error())
+        raise ContactNormalError(status, last_error() if message is None else message)
     return status

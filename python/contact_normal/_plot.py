@@ -3,44 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ._units import Units, label, unit, with_unit
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from ._arguments import Doubles
-
-
-class Solved(Protocol):
-    """What is drawn of a `Result`."""
-
-    pressure: Doubles
-    dx: float
-    dy: float
-
-    @property
-    def traction(self) -> Doubles: ...
-
-    @property
-    def adhesion(self) -> npt.NDArray[np.int32]: ...
-
-    @property
-    def contact(self) -> npt.NDArray[np.bool_]: ...
-
-    @property
-    def report(self) -> dict[str, Any]: ...
-
-
-class Below(Protocol):
-    """What is drawn of a `SubsurfaceStress`."""
-
-    depths: Doubles
-    zz: Doubles
-    dx: float
-    dy: float
+    from ._result import Result
+    from ._solved import Solved
+    from ._stress import SubsurfaceStress
 
 
 def _new_axes(size: tuple[float, float]) -> Axes:
@@ -52,11 +27,19 @@ def _new_axes(size: tuple[float, float]) -> Axes:
     return axes
 
 
-def plot_pressure(result: Solved, axes: Axes | None) -> Axes:
+def _edges(centres: Any, d: float) -> Any:
+    return np.append(centres - 0.5 * d, centres[-1:] + 0.5 * d)
+
+
+def _name_axes(axes: Axes, units: Units) -> None:
+    axes.set(xlabel=label("x", "length", units), ylabel=label("y", "length", units), aspect="equal")
+
+
+def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     """See `Result.plot`."""
     axes = axes or _new_axes((8.0, 6.0))
     my, mx = result.pressure.shape
-    x_edges, y_edges = ((np.arange(m + 1) - 0.5 * m) * d for m, d in ((mx, result.dx), (my, result.dy)))
+    x_edges, y_edges = _edges(result.x, result.dx), _edges(result.y, result.dy)
     shown = np.ma.masked_where(~result.contact, result.pressure)
     image = axes.imshow(
         shown,
@@ -68,9 +51,10 @@ def plot_pressure(result: Solved, axes: Axes | None) -> Axes:
     )
     axes.set_facecolor("0.94")
     _outline(axes, result.contact, x_edges, y_edges)
-    axes.figure.colorbar(image, ax=axes, shrink=0.9, label="pressure")
-    axes.set(xlabel="x", ylabel="y", aspect="equal")
-    axes.set_title(f"force {result.report['force']:.5g}, approach {result.report['approach']:.5g}, {mx} × {my} elements", fontsize=10)
+    axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
+    _name_axes(axes, result.units)
+    force, approach = with_unit(f"{result.force:.5g}", "force", result.units), with_unit(f"{result.approach:.5g}", "length", result.units)
+    axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
     return axes
 
 
@@ -78,7 +62,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
     axes = axes or _new_axes((8.0, 6.0))
     my, mx = result.adhesion.shape
-    x_edges, y_edges = ((np.arange(m + 1) - 0.5 * m) * d for m, d in ((mx, result.dx), (my, result.dy)))
+    x_edges, y_edges = _edges(result.x, result.dx), _edges(result.y, result.dy)
     colours = {1: (0.78, 0.87, 0.96), 2: (0.99, 0.85, 0.74)}
     shown = np.ones((my, mx, 3)) * 0.94
     for side, colour in colours.items():
@@ -90,13 +74,13 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     chosen = np.zeros((my, mx), dtype=bool)
     chosen[step // 2 :: step, step // 2 :: step] = True
     iy, ix = np.nonzero(chosen & (result.adhesion > 0))
-    x, y = x_edges[ix] + 0.5 * result.dx, y_edges[iy] + 0.5 * result.dy
-    axes.quiver(x, y, result.traction[0, iy, ix], result.traction[1, iy, ix], angles="xy", pivot="mid", width=0.003)
+    axes.quiver(result.x[ix], result.y[iy], result.traction[0, iy, ix], result.traction[1, iy, ix], angles="xy", pivot="mid", width=0.003)
     _outline(axes, result.adhesion > 0, x_edges, y_edges)
     _outline(axes, result.adhesion == 1, x_edges, y_edges)
-    fx, fy = result.report["tangential_force"]
-    axes.set(xlabel="x", ylabel="y", aspect="equal")
-    axes.set_title(f"tractions: force ({fx:.4g}, {fy:.4g}); stick blue, slip orange", fontsize=10)
+    fx, fy = result.tangential_force
+    _name_axes(axes, result.units)
+    force = with_unit(f"({fx:.4g}, {fy:.4g})", "force", result.units)
+    axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)
     return axes
 
 
@@ -142,52 +126,64 @@ def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes |
     return axes
 
 
-def _nearest(place: float, d: float, m: int, name: str) -> int:
-    """The element at a place from the middle of the grid."""
-    k = int(np.floor(place / d + 0.5 * m))
-    if not 0 <= k < m:
-        raise ValueError(f"{name} is {place}; it must lie within the grid, at most {0.5 * m * d} from its middle")
+def _nearest(place: float, centres: Any, d: float, name: str) -> int:
+    """The element at a place."""
+    k = int(np.floor((place - centres[0]) / d + 0.5))
+    if not 0 <= k < len(centres):
+        raise ValueError(f"{name} is {place}; it must lie within the grid, from {centres[0] - 0.5 * d} to {centres[-1] + 0.5 * d}")
     return k
 
 
-def plot_section(stress: Below, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
+def _middle(centres: Any) -> float:
+    return float(0.5 * (centres[0] + centres[-1]))
+
+
+def _field(stress: SubsurfaceStress, name: str) -> Any:
+    field = getattr(stress, name, None)
+    if field is None or name not in ("xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear"):
+        raise ValueError(f"{name} is not there to be drawn: it was not asked for, or is no stress")
+    return field
+
+
+def plot_section(stress: SubsurfaceStress, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
     """See `SubsurfaceStress.plot_section`."""
     if x is not None and y is not None:
         raise TypeError("give either x or y: the plane of the section")
-    field = getattr(stress, of)
-    my, mx = field.shape[1:]
+    field, units = _field(stress, of), stress.units
     axes = axes or _new_axes((8.0, 4.5))
     if x is None:
-        where, across, m, d, name = y or 0.0, "x", mx, stress.dx, "y"
-        shown = field[:, _nearest(where, stress.dy, my, "y"), :]
+        where, across, places, name = _middle(stress.y) if y is None else y, "x", stress.x, "y"
+        shown = field[:, _nearest(where, stress.y, stress.dy, "y"), :]
     else:
-        where, across, m, d, name = x, "y", my, stress.dy, "x"
-        shown = field[:, :, _nearest(where, stress.dx, mx, "x")]
+        where, across, places, name = x, "y", stress.y, "x"
+        shown = field[:, :, _nearest(where, stress.x, stress.dx, "x")]
     order = np.argsort(stress.depths)
-    places, depths = (np.arange(m) + 0.5 - 0.5 * m) * d, stress.depths[order]
+    depths = stress.depths[order]
     filled = axes.contourf(places, depths, shown[order], 24, cmap="magma")
     row, column = np.unravel_index(np.argmax(np.abs(shown[order])), shown.shape)
     for colour, width in (("black", 4), ("white", 2)):
         axes.plot(places[column], depths[row], "+", color=colour, markersize=10 + width, markeredgewidth=width)
-    axes.figure.colorbar(filled, ax=axes, label={"von_mises": "von Mises"}.get(of, of.replace("_", " ")))
-    axes.set(xlabel=across, ylabel="depth z", aspect="equal")
-    axes.set_title(f"{name} = {where:.4g}: largest {shown[order][row, column]:.4g} at {across} = {places[column]:.4g}, z = {depths[row]:.4g}",
+    axes.figure.colorbar(filled, ax=axes, label=label({"von_mises": "von Mises"}.get(of, of.replace("_", " ")), "pressure", units))
+    axes.set(xlabel=label(across, "length", units), ylabel=label("depth z", "length", units), aspect="equal")
+    largest, length = with_unit(f"{shown[order][row, column]:.4g}", "pressure", units), f" {unit('length', units)}" if units else ""
+    axes.set_title(f"{name} = {where:.4g}{length}: largest {largest} at {across} = {places[column]:.4g}{length}, z = {depths[row]:.4g}{length}",
                    fontsize=10)
     axes.set_ylim(depths[-1], depths[0])
     return axes
 
 
-def plot_depth(stress: Below, x: float, y: float, axes: Axes | None) -> Axes:
+def plot_depth(stress: SubsurfaceStress, x: float | None, y: float | None, axes: Axes | None) -> Axes:
     """See `SubsurfaceStress.plot_depth`."""
     axes = axes or _new_axes((6.0, 4.5))
-    my, mx = stress.zz.shape[1:]
-    element = (slice(None), _nearest(y, stress.dy, my, "y"), _nearest(x, stress.dx, mx, "x"))
+    x, y = _middle(stress.x) if x is None else x, _middle(stress.y) if y is None else y
+    element = (slice(None), _nearest(y, stress.y, stress.dy, "y"), _nearest(x, stress.x, stress.dx, "x"))
     order = np.argsort(stress.depths)
-    for name, label in (("xx", "$\\sigma_{xx}$"), ("yy", "$\\sigma_{yy}$"), ("zz", "$\\sigma_{zz}$"), ("von_mises", "von Mises"),
-                        ("maximum_shear", "largest shear")):
-        axes.plot(getattr(stress, name)[element][order], stress.depths[order], label=label)
+    for name, text in (("xx", "$\\sigma_{xx}$"), ("yy", "$\\sigma_{yy}$"), ("zz", "$\\sigma_{zz}$"), ("von_mises", "von Mises"),
+                       ("maximum_shear", "largest shear")):
+        if getattr(stress, name) is not None:
+            axes.plot(getattr(stress, name)[element][order], stress.depths[order], label=text)
     axes.invert_yaxis()
     axes.axvline(0.0, color="0.8", zorder=0)
-    axes.set(xlabel="stress", ylabel="depth z")
+    axes.set(xlabel=label("stress", "pressure", stress.units), ylabel=label("depth z", "length", stress.units))
     axes.legend(fontsize="small")
     return axes

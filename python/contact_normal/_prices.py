@@ -6,13 +6,11 @@ import ctypes
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
-from ._arguments import Both, SolveOptions, integer, options
-from ._callbacks import Surface
+from ._arguments import Both, SolveOptions, doubles, options
+from ._calls import called
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
-from ._library import check, initialised, library
-from ._scene import Scene
+from ._library import check, library
+from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
 
 if TYPE_CHECKING:
@@ -76,22 +74,27 @@ def cost_of_accuracy(
     corner: tuple[float, float] | None = None,
     approach: float | None = None,
     force: float | None = None,
-    shear_modulus: Both,
-    poisson_ratio: Both,
+    mean_pressure: float | None = None,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    e_star: float | None = None,
     **given: Unpack[SolveOptions],
 ) -> list[Price]:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 
     Parameters
     ----------
-    h, dx, dy, shape, corner, approach, force, shear_modulus, poisson_ratio, **given
+    h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, **given
         As for `solve_to_accuracy`.
     targets : sequence of float
         Relative errors; one row each.
     quantity : str
         Of what: "force" (of the approach, if the force is prescribed), "max_pressure" or "contact_area".
-    max_seconds, max_bytes, max_elements : number
+    max_seconds, max_bytes : number
         Limits: a row beyond one says so in its `obstacle`, and what it would take; 0: no limit.
+    max_elements : int
+        Likewise; 0: 4096 x 4096.
 
     Returns
     -------
@@ -112,26 +115,20 @@ def cost_of_accuracy(
     """
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
-    surface = None
-    if callable(h):
-        if shape is None:
-            raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
-        my, mx = (integer("shape", m) for m in shape)
-        surface = Surface(h, (-0.5 * mx * dx, -0.5 * my * dy) if corner is None else corner)
-        h = np.zeros((my, mx))  # not read
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, {})
-    struct, accuracy = options(given), initialised("accuracy")
-    accuracy.max_seconds = max_seconds
-    accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
-    if surface:
-        accuracy.surface = surface.callback
-    n = len(targets)
-    wanted, rows = (ctypes.c_double * n)(*targets), (PriceStruct * n)()
-    status = library.contact_normal_cost_of_accuracy(
-        ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), QUANTITIES[quantity], n, wanted, rows
+    scene, surface, _ = on_any_grid(
+        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
+    )
+    struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
+    relative = doubles("targets", targets, dimensions="n")
+    n = len(relative)
+    wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)()
+    status, message = called(
+        library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
+        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),
     )
     if surface:
         surface.finish()
-    check(status)
+    check(status, message)
     return [Price.of(row) for row in rows]
 

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import doubles, integer, integers, pair, pointer
-from ._constants import MOTION_SHIFT, PRESCRIBED_APPROACH, PRESCRIBED_FORCE, PRESCRIBED_TANGENTIAL_FORCE, value_of
+from ._arguments import both, distances, doubles, integer, integers, number, pointer, shaped
+from ._bodies import bodies, load
+from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
+from ._friction import friction
 from ._library import initialised
 
 if TYPE_CHECKING:
-    from ._arguments import Doubles
+    from ._arguments import Doubles, Integers
 
 
 class Scene:
@@ -23,34 +25,47 @@ class Scene:
     Parameters
     ----------
     h : array_like
-        Undeformed distance (my, mx).
+        Undeformed distance (my, mx); masked: no surface.
     dx, dy : float
         Element sizes.
-    approach, force : float or None
+    approach, force, mean_pressure : float or None
         Exactly one of them is prescribed.
-    shear_modulus, poisson_ratio : float or pair of floats
-        Of both bodies, or of each.
+    shear_modulus, poisson_ratio, young_modulus, e_star
+        The elastic constants; see `solve`.
     effects : mapping
         Effects by name, None: not simulated; see `solve`.
     """
 
-    def __init__(self, h: Any, dx: float, dy: float, approach: float | None, force: float | None, shear_modulus: Any,
-                 poisson_ratio: Any, effects: Mapping[str, Any]) -> None:
-        self.h = doubles("h", h)
+    def __init__(
+        self, h: Any, dx: Any, dy: Any, approach: Any, force: Any, shear_modulus: Any, poisson_ratio: Any, effects: Mapping[str, Any],
+        *, mean_pressure: Any = None, young_modulus: Any = None, e_star: Any = None,
+    ) -> None:
+        self.h = shaped("h", distances("h", h))
         self.struct = initialised("scene")
+        self.bodies, self.remark = bodies(shear_modulus, poisson_ratio, young_modulus, e_star), ""
         self._kept: list[Any] = []
+        self._effects = effects
+        self._constants = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self.struct.my, self.struct.mx = (integer(name, m) for name, m in zip(("my", "mx"), self.h.shape))
-        self.struct.dx, self.struct.dy = dx, dy
+        self.struct.dx, self.struct.dy = number("dx", dx), number("dy", dy)
         self.struct.undeformed_distance = pointer(self.h)
-        self.struct.shear_modulus = pair("shear_modulus", shear_modulus)
-        self.struct.poisson_ratio = pair("poisson_ratio", poisson_ratio)
-        self.struct.load, amount = load(approach, force)
-        setattr(self.struct, "approach" if force is None else "force", amount)
+        self.struct.shear_modulus, self.struct.poisson_ratio = self.bodies.shear_modulus, self.bodies.poisson_ratio
+        self.struct.load, amount = load(approach, force, mean_pressure, self.h.size * self.struct.dx * self.struct.dy)
+        setattr(self.struct, "approach" if self.struct.load == PRESCRIBED_APPROACH else "force", amount)
         for name, value in effects.items():
-            if name == "coating" and value is not None:
-                self._coat(value)
-            elif value is not None:
+            if value is not None:
+                if name in ("coating", "friction"):
+                    self.bodies.needs_poisson(name)
                 self._name(name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What stresses below the surface need of it: structs of the library hold addresses.
+        effects = {name: self._effects.get(name) for name in _OF_STRESSES}
+        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, effects)
+
+    def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
+        """The same bodies, without effects and load, on another grid."""
+        return _without_load(shape, dx, dy, self._constants, {})
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -58,20 +73,36 @@ class Scene:
         my, mx = self.h.shape
         return my, mx
 
-    def _coat(self, value: Any) -> None:
-        """Names the coatings of both bodies, None: none."""
-        if len(value) != 2:
-            raise ValueError(f"coating has {len(value)} parts; it must be a pair: that of body 1 and of body 2, None where there is none")
-        for body, coating in enumerate(value):
-            if coating is not None:
-                effect = coating_of(coating, f"coating[{body}]")
-                self.struct.coating[body] = ctypes.pointer(effect)
-                self._kept.append(effect)
+    @property
+    def effort(self) -> int:
+        """Elements, counted as often as a product with the matrix goes over them."""
+        factors = [effect.contents.rows if name == "row_tables" else effect.contents.count
+                   for name in ("row_tables", "patches") if (effect := getattr(self.struct, name))]
+        return int(self.h.size * max([1, *factors]))
+
+    def pressures_of(self, contact: Integers) -> Doubles:
+        """Pressures for a contact area that is guessed: the same everywhere in it, and about as large as the load needs."""
+        inside = contact != 0
+        area = inside.sum() * self.struct.dx * self.struct.dy
+        if not area:
+            return np.zeros(self.shape)
+        if self.struct.load == PRESCRIBED_FORCE:
+            pressure = self.struct.force / area
+        else:
+            # On a circle of this area: a pressure p pushes its own area in by 16/(3 pi) p a/E* in the mean.
+            depth = np.maximum(self.struct.approach - np.where(inside, self.h, np.inf), 0.0)[inside].mean()
+            compliance = sum((1.0 - nu) / (2.0 * g) for g, nu in zip(self.struct.shear_modulus, self.struct.poisson_ratio))
+            pressure = depth * 3.0 * np.pi / 16.0 / np.sqrt(area / np.pi) / compliance if compliance > 0.0 else 0.0
+        return np.where(inside, pressure if np.isfinite(pressure) else 0.0, 0.0)
 
     def _name(self, name: str, value: Any) -> None:
         """Names the effect `name` in the scene."""
+        if name == "coating":
+            self._coat(value)
+            return
+        arrays: Any
         if name == "friction":
-            effect, arrays = _friction(value, self.shape)
+            effect, arrays, self.remark = friction(value, self.shape)
         elif name in ("layer", "pressure_limit"):
             effect, arrays = _per_element(name, value, self.shape)
         else:
@@ -81,30 +112,39 @@ class Scene:
         setattr(self.struct, name, ctypes.pointer(effect))
         self._kept += [effect, arrays]
 
+    def _coat(self, value: Any) -> None:
+        """Names the coatings of both bodies, None: none."""
+        for body, coating in enumerate(both("coating", value, "a pair: that of body 1 and of body 2, None where there is none")):
+            if coating is not None:
+                effect = coating_of(coating, f"coating[{body}]")
+                self.struct.coating[body] = ctypes.pointer(effect)
+                self._kept.append(effect)
+
+
+_OF_STRESSES = ("period", "patches", "coating", "influence", "row_tables")
+
+
+def _without_load(shape: tuple[int, int], dx: float, dy: float, constants: Mapping[str, Any], effects: Mapping[str, Any]) -> Scene:
+    """A scene with no load and no surface."""
+    return Scene(np.zeros(shape), dx, dy, None, 0.0, effects=effects, **constants)
+
 
 def coating_of(value: Any, name: str = "coating") -> Any:
     """A `contact_normal_coating` of `(thickness, shear_modulus, poisson_ratio)`."""
-    if len(value) != 3:
-        raise ValueError(f"{name} has {len(value)} parts; it must be (thickness, shear_modulus, poisson_ratio)")
+    if not isinstance(value, (tuple, list)) or len(value) != 3:
+        count = f"has {len(value)} parts" if isinstance(value, (tuple, list)) else f"is {value!r}"
+        raise ValueError(f"{name} {count}; it must be (thickness, shear_modulus, poisson_ratio)")
     coating = initialised("coating")
-    coating.thickness, coating.shear_modulus, coating.poisson_ratio = value
+    for member, one in zip(("thickness", "shear_modulus", "poisson_ratio"), value):
+        setattr(coating, member, number(f"{name}: {member}", one))
     return coating
-
-
-def load(approach: float | None, force: float | None) -> tuple[int, float]:
-    """Which load is prescribed, and its amount."""
-    if approach is not None and force is None:
-        return PRESCRIBED_APPROACH, approach
-    if force is not None and approach is None:
-        return PRESCRIBED_FORCE, force
-    raise TypeError("give either approach or force")
 
 
 def _scaled(values: Any) -> tuple[Any, float]:
     """Coefficients and their scale, of `coefficients` or `(coefficients, scale)`."""
     if isinstance(values, tuple):
-        coefficients, scale = values
-        return coefficients, float(scale)
+        coefficients, scale = both("influence", values, "coefficients and their scale")
+        return coefficients, number("the scale of the coefficients", scale)
     return values, 1.0
 
 
@@ -122,10 +162,10 @@ def influence(value: Any) -> tuple[Any, Doubles]:
 
 def _per_element(name: str, value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
     """An effect of one number, or of one per element."""
-    number, array = {"layer": ("compliance", "compliances"), "pressure_limit": ("limit", "limits")}[name]
+    one, array = {"layer": ("compliance", "compliances"), "pressure_limit": ("limit", "limits")}[name]
     effect = initialised(name)
     if np.ndim(value) == 0:
-        setattr(effect, number, value)
+        setattr(effect, one, number(name, value))
         return effect, None
     values = doubles(name, value, shape)
     setattr(effect, array, pointer(values))
@@ -133,7 +173,7 @@ def _per_element(name: str, value: Any, shape: tuple[int, int]) -> tuple[Any, An
 
 
 def _period(value: Any) -> tuple[Any, None]:
-    if value not in ("x", "y", "xy"):
+    if not isinstance(value, str) or value not in ("x", "y", "xy"):
         raise ValueError(f"period is {value!r}; it must be 'x', 'y' or 'xy'")
     effect = initialised("period")
     effect.x, effect.y = "x" in value, "y" in value
@@ -141,77 +181,13 @@ def _period(value: Any) -> tuple[Any, None]:
 
 
 def _patches(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    if len(value) != 2:
-        raise ValueError(f"patches has {len(value)} parts; it must be a pair: the patch of each element and the factors")
-    patch, factors = integers("patches[0]", value[0], shape), doubles("patches[1]", value[1], dimensions="(count, count)")
+    of_element, of_patches = both("patches", value, "a pair: the patch of each element and the factors")
+    patch, factors = integers("patches[0]", of_element, shape), doubles("patches[1]", of_patches, dimensions="(count, count)")
     if factors.shape[0] != factors.shape[1]:
         raise ValueError(f"patches[1], the factors, has shape {factors.shape}; it must be square")
     effect = initialised("patches")
     effect.count, effect.patch, effect.factors = len(factors), pointer(patch, c_int32), pointer(factors)
     return effect, (patch, factors)
-
-
-_FRICTION_NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
-_FRICTION_PAIRS = ("previous_traction", "rigid_slip")
-
-
-_FRICTION = ("coefficient", "motion", "creepage", "force", "continues", "sensitivities", "spin_centre", "influence", "influence_cross",
-             *_FRICTION_NUMBERS, *_FRICTION_PAIRS)
-
-
-def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    unknown = sorted(set(value).difference(_FRICTION))
-    if unknown:
-        raise ValueError(f"friction has {', '.join(unknown)}; it may have {', '.join(_FRICTION)}")
-    effect, kept = initialised("friction"), []
-    coefficient = value.get("coefficient", 0.0)
-    if isinstance(coefficient, float) or np.ndim(coefficient) == 0:
-        effect.coefficient = coefficient
-    else:
-        kept.append(doubles("friction['coefficient']", coefficient, shape))
-        effect.coefficients = pointer(kept[-1])
-    motion = value.get("motion", MOTION_SHIFT)
-    effect.motion = value_of("motion", motion) if isinstance(motion, str) else motion
-    effect.continues = bool(value.get("continues", False))
-    effect.sensitivities = bool(value.get("sensitivities", False))
-    effect.creepage = pair("friction['creepage']", value.get("creepage", 0.0))
-    effect.spin_centre = pair("friction['spin_centre']", value.get("spin_centre", 0.0))
-    forces = value.get("force", (None, None))
-    if not isinstance(forces, (tuple, list)) and np.ndim(forces) == 0 or len(forces) != 2:
-        raise ValueError(f"friction['force'] is {forces!r}; it must be a pair, None where the creepage is given")
-    for k, force in enumerate(forces):
-        if force is not None:
-            effect.prescribed[k], effect.force[k] = PRESCRIBED_TANGENTIAL_FORCE, force
-    for name in _FRICTION_NUMBERS:
-        if name in value:
-            setattr(effect, name, value[name])
-    for name in _FRICTION_PAIRS:
-        for k, field in enumerate(value.get(name) if value.get(name) is not None else ()):
-            kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
-            getattr(effect, name)[k] = pointer(kept[-1])
-    if value.get("influence") is not None:
-        kept.extend(_tangential_influence(effect, value["influence"]))
-        for k, table in enumerate(value["influence_cross"] if value.get("influence_cross") is not None else ()):
-            kept.append(doubles(f"friction['influence_cross'][{k}]", table, kept[-1].shape))
-            effect.influence_cross[k] = pointer(kept[-1])
-    elif value.get("influence_cross") is not None:
-        raise ValueError("friction['influence_cross'] is given without friction['influence']")
-    return effect, kept
-
-
-def _tangential_influence(effect: Any, tables: Any) -> list[Any]:
-    if len(tables) not in (3, 4):
-        raise ValueError(f"friction['influence'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
-    kept = [doubles(f"friction['influence'][{k}]", table, dimensions="(2 cy, 2 cx)") for k, table in enumerate(tables[:3])]
-    shape = kept[0].shape
-    if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
-        raise ValueError(f"friction['influence'] has shapes {[table.shape for table in kept]}; all must be (2 cy, 2 cx)")
-    effect.influence_cy, effect.influence_cx = shape[0] // 2, shape[1] // 2
-    for k, table in enumerate(kept):
-        effect.influence[k] = pointer(table)
-    if len(tables) == 4:
-        effect.influence_scale = tables[3]
-    return kept
 
 
 def _row_tables(value: Any) -> tuple[Any, Doubles]:

@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
-from ctypes import c_void_p
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from ._arguments import Both, SolveOptions, integer, options
-from ._callbacks import Progress, Surface, Watched
-from ._library import check, initialised, last_error, library
-from ._result import Outputs, Result
+from ._arguments import Both, SolveOptions, number, options
+from ._callbacks import Progress, Watched
+from ._calls import called
+from ._handle import Handle
+from ._library import check, library
+from ._outputs import Outputs
+from ._refined import limits, on_any_grid
+from ._result import Result
 from ._scene import Scene
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
-
-
-def run(call: Callable[[Any, Any], int], scene: Scene, outputs: Outputs, watched: Watched) -> Result:
-    """The result of `call(fields, report)`."""
-    status = call(ctypes.byref(outputs.fields), ctypes.byref(outputs.report))
-    message = last_error() if status else ""
-    watched.finish()
-    check(status)
-    return Result(status, message, outputs, outputs.report, scene)
 
 
 def solve(
@@ -36,8 +30,11 @@ def solve(
     *,
     approach: float | None = None,
     force: float | None = None,
-    shear_modulus: Both,
-    poisson_ratio: Both,
+    mean_pressure: float | None = None,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    e_star: float | None = None,
     influence: Any = None,
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
@@ -48,6 +45,7 @@ def solve(
     friction: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
+    units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> Result:
@@ -56,13 +54,18 @@ def solve(
     Parameters
     ----------
     h : array_like, (my, mx)
-        Undeformed distance, a length; inf: no surface there. Any consistent units: mm, N and N/mm2, or m, N and Pa.
+        Undeformed distance, a length; inf or masked: no surface there. Any consistent units: mm, N and N/mm2, or m, N and Pa.
     dx, dy : float
         Element sizes in x (along rows) and y.
-    approach, force : float
-        Exactly one of them: the approach of the bodies, or the normal force.
-    shear_modulus, poisson_ratio : float or pair of floats
-        Of both bodies, or of each; a shear modulus of inf is a rigid body.
+    approach, force, mean_pressure : float
+        Exactly one of them: the approach of the bodies, or the normal force, or that over the area of the grid.
+    shear_modulus, young_modulus : float or pair of floats
+        One of them, of both bodies, or of each; inf: a rigid body.
+    poisson_ratio : float or pair of floats
+        Of both bodies, or of each.
+    e_star : float
+        In the place of either modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. The Poisson ratio may then be left out where there
+        is no friction and no coating. Bodies give way alike.
     influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
         Own influence coefficients instead of the half-space, times a scale.
     layer : float or array_like, (my, mx), optional
@@ -87,7 +90,10 @@ def solve(
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz).
         docs/friction.md has the signs.
     pressure, contact : array_like, (my, mx), optional
-        Initial guess; `contact` (booleans or integers) is the contact area with `active_set="FIXED"`.
+        Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
+        the contact area.
+    units : (str, str), optional
+        Names of the units of lengths and forces, as ("mm", "N"), for pictures and files. They change no number.
     progress : callable or bool, optional
         Called with a `Progress` after each cycle, a true result cancels; True: draws a bar on stderr.
     **given : SolveOptions
@@ -118,15 +124,16 @@ def solve(
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction}
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects)
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
+                  e_star=e_star)
     struct = options(given)
-    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
-    watched = Watched(progress, struct, scene.h.size)
-
-    def call(fields: Any, report: Any) -> int:
-        return int(library.contact_normal_solve(ctypes.byref(scene.struct), ctypes.byref(struct), fields, report))
-
-    return run(call, scene, outputs, watched)
+    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
+    watched = Watched(progress, struct, scene)
+    status, message = watched.call(
+        library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
+        ctypes.byref(outputs.report), keep=(scene, outputs),
+    )
+    return Result(check(status, message), message, outputs, outputs.report, scene, units)
 
 
 class AccurateResult(Result):
@@ -142,6 +149,16 @@ class AccurateResult(Result):
 
     reached: float | None
     seconds: float
+
+    def take(self, accuracy: Any, middle: tuple[float, float]) -> None:
+        """The grid that was taken, and what it reached."""
+        self.dx, self.dy, self.seconds, self._centre = accuracy.dx, accuracy.dy, accuracy.seconds, middle
+        self._scene = self._scene.on_grid(self.pressure.shape, self.dx, self.dy)
+        self.reached = accuracy.reached if accuracy.reached >= 0 else None
+
+    def __repr__(self) -> str:
+        reached = "not known" if self.reached is None else f"{self.reached:.1e}"
+        return f"{super().__repr__()[:-1]}; reached {reached}>"
 
 
 def solve_to_accuracy(
@@ -159,8 +176,12 @@ def solve_to_accuracy(
     corner: tuple[float, float] | None = None,
     approach: float | None = None,
     force: float | None = None,
-    shear_modulus: Both,
-    poisson_ratio: Both,
+    mean_pressure: float | None = None,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    e_star: float | None = None,
+    units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> AccurateResult:
@@ -179,13 +200,15 @@ def solve_to_accuracy(
         Relative error of the force (of the approach, if the force is prescribed).
     max_pressure_target, contact_area_target : float
         Relative errors of the largest pressure and of the corrected contact area; 0: not asked for.
-    max_seconds, max_bytes, max_elements : number
+    max_seconds, max_bytes : number
         What it may cost; 0: no limit.
+    max_elements : int
+        Elements of a grid at most; 0: 4096 x 4096.
     shape : (my, mx), optional
         Elements of the first grid, needed where `h` is a callable.
     corner : (x, y), optional
         Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
-    approach, force, shear_modulus, poisson_ratio, progress, **given
+    approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
 
     Returns
@@ -207,42 +230,36 @@ def solve_to_accuracy(
     >>> result.status, result.reached <= 1e-3
     (0, True)
     """
-    surface = None
-    if callable(h):
-        if shape is None:
-            raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
-        my, mx = (integer("shape", m) for m in shape)
-        surface = Surface(h, (-0.5 * mx * dx, -0.5 * my * dy) if corner is None else corner)
-        h = np.zeros((my, mx))  # not read
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, {})
-    struct = options(given)
+    scene, surface, middle = on_any_grid(
+        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
+    )
+    struct, units = options(given), checked(units)
     watched = Watched(progress, struct, None)
-    accuracy, handle = initialised("accuracy"), c_void_p()
-    accuracy.target, accuracy.max_seconds = target, max_seconds
-    accuracy.max_pressure_target, accuracy.contact_area_target = max_pressure_target, contact_area_target
-    accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
-    if surface:
-        accuracy.surface = surface.callback
-    ledger = Outputs((0, 0), None, None, struct, False)
+    accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()
+    accuracy.target = number("target", target)
+    accuracy.max_pressure_target = number("max_pressure_target", max_pressure_target)
+    accuracy.contact_area_target = number("contact_area_target", contact_area_target)
+    ledger = Outputs((0, 0))
+
+    def find(address: Any) -> int:
+        return int(library.contact_normal_solve_to_accuracy(
+            ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), address, ctypes.byref(ledger.report)
+        ))
+
     try:
-        status = library.contact_normal_solve_to_accuracy(
-            ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle),
-            ctypes.byref(ledger.report),
-        )
-        message = last_error() if status else ""
-        watched.finish()
+        status, message = watched.call(partial(handle.set_up, find), keep=(surface, scene))
         if surface:
             surface.finish()
-        check(status)
-        outputs = Outputs((accuracy.my, accuracy.mx), None, None, struct, False)
+        check(status, message)
+        outputs = Outputs((accuracy.my, accuracy.mx))
         outputs.rows = ledger.rows
         if handle:
-            check(library.contact_normal_solver_fields(handle, ctypes.byref(outputs.fields)))
+            check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))
     finally:
-        library.contact_normal_solver_free(handle)
-    result = AccurateResult(status, message, outputs, ledger.report, scene)
-    result.dx, result.dy, result.seconds = accuracy.dx, accuracy.dy, accuracy.seconds
-    result.reached = accuracy.reached if accuracy.reached >= 0 else None
+        handle.close()
+    result = AccurateResult(status, message, outputs, ledger.report, scene, units)
+    result.take(accuracy, middle)
     return result
 
 

@@ -3,28 +3,35 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import re
-import weakref
 from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_int32, c_void_p
+from ctypes import c_int32
+from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, doubles, integer, options
+from ._arguments import Both, SolveOptions, distances, integer, options, shaped
+from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
+from ._calls import called, is_short, parts
 from ._constants import OK
-from ._library import check, last_error, library
-from ._result import Outputs, Result
+from ._handle import Handle
+from ._library import check, library
+from ._outputs import Outputs
+from ._result import Result
 from ._scene import Scene, influence as influence_of
-from ._solve import run
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
+
+_Problem = tuple[Scene, Outputs]
 
 
 class Solver:
@@ -38,7 +45,7 @@ class Solver:
         Elements in y and x.
     dx, dy : float
         Element sizes.
-    shear_modulus, poisson_ratio, influence, layer, period, patches, row_tables, coating, **given
+    shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
 
     Examples
@@ -60,40 +67,44 @@ class Solver:
         dx: float,
         dy: float,
         *,
-        shear_modulus: Both,
-        poisson_ratio: Both,
+        shear_modulus: Both | None = None,
+        poisson_ratio: Both | None = None,
+        young_modulus: Both | None = None,
+        e_star: float | None = None,
         influence: Any = None,
         layer: npt.ArrayLike | None = None,
         period: str | None = None,
         patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         row_tables: Any = None,
         coating: Any = None,
+        units: tuple[str, str] | None = None,
         **given: Unpack[SolveOptions],
     ) -> None:
         self._shape = integer("my", my), integer("mx", mx)
         self._size = dx, dy
-        self._bodies = shear_modulus, poisson_ratio
+        self._bodies = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
+        self._units = checked(units)
         self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
-        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, *self._bodies,
-                      {"influence": influence, "row_tables": row_tables, **self._effects})
-        struct, handle = options(given), c_void_p()
-        check(library.contact_normal_solver_new(ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(handle)))
-        self._address: int | None = handle.value
-        self._free = weakref.finalize(self, library.contact_normal_solver_free, handle)
+        scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
+                      effects={"influence": influence, "row_tables": row_tables, **self._effects})
+        struct, self._handle = options(given), Handle()
+        create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
+        check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))
 
-    @property
-    def _handle(self) -> c_void_p:
-        if self._address is None:
-            raise ValueError("this solver is closed")
-        return c_void_p(self._address)
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError("a Solver can be neither pickled nor copied: it is a handle of this process; set up another one")
 
-    def _scene(self, h: Any, approach: float | None, force: float | None, pressure_limit: Any,
-               friction: Any) -> Scene:
+    def __repr__(self) -> str:
+        my, mx = self._shape
+        return f"<Solver: {mx} x {my} elements{', closed' if self._handle.is_closed else ''}>"
+
+    def _scene(self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any) -> Scene:
         effects = {"pressure_limit": pressure_limit, "friction": friction, **self._effects}
-        return Scene(doubles("h", h, self._shape), *self._size, approach, force, *self._bodies, effects)
+        dx, dy = self._size
+        return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
 
     def solve(
         self,
@@ -101,6 +112,7 @@ class Solver:
         *,
         approach: float | None = None,
         force: float | None = None,
+        mean_pressure: float | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
         pressure: npt.ArrayLike | None = None,
@@ -114,26 +126,22 @@ class Solver:
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
-        approach, force, pressure_limit, friction, pressure, contact, progress, **given
+        approach, force, mean_pressure, pressure_limit, friction, pressure, contact, progress, **given
             As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
         -------
         Result
         """
-        handle = self._handle
-        scene = self._scene(h, approach, force, pressure_limit, friction)
+        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction)
         struct = options({**self._given, **given})
-        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None)
-        watched = Watched(progress, struct, scene.h.size)
-
-        def call(fields: Any, report: Any) -> int:
-            status = library.contact_normal_solver_solve(
-                handle, ctypes.byref(scene.struct), ctypes.byref(struct), fields, report
-            )
-            return int(status)
-
-        return run(call, scene, outputs, watched)
+        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
+        watched = Watched(progress, struct, scene)
+        status, message = watched.call(
+            library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
+            ctypes.byref(outputs.report), handle=self._handle, keep=(scene, outputs),
+        )
+        return Result(check(status, message), message, outputs, outputs.report, scene, self._units)
 
     def solve_batch(
         self,
@@ -141,6 +149,7 @@ class Solver:
         *,
         approach: npt.ArrayLike | None = None,
         force: npt.ArrayLike | None = None,
+        mean_pressure: npt.ArrayLike | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
         pressure: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
@@ -153,7 +162,7 @@ class Solver:
         ----------
         h : sequence of array_like, (count, my, mx)
             Undeformed distances.
-        approach, force : float or array_like, (count,)
+        approach, force, mean_pressure : float or array_like, (count,)
             One of them: one value for all problems, or one for each.
         pressure_limit : float or array_like, (my, mx), optional
             For all problems.
@@ -175,30 +184,34 @@ class Solver:
         ContactNormalError
             If the call itself is refused.
         """
-        handle, count, struct = self._handle, len(h), options({**self._given, **given})
-        loads = [None if values is None else np.broadcast_to(np.asarray(values), (count,)) for values in (approach, force)]
-        scenes, outputs = [], []
-        for i in range(count):
-            one_approach, one_force = (None if values is None else float(values[i]) for values in loads)
-            scenes.append(self._scene(h[i], one_approach, one_force, pressure_limit, friction))
+        count, struct = len(h), options({**self._given, **given})
+        for name, values in (("pressure", pressure), ("contact", contact)):
+            if values is not None and len(values) != count:
+                raise ValueError(f"{name} has {len(values)} parts; it must have {count}: one for each problem")
+        problems = []
+        for i, loads in enumerate(loads_of_each(count, approach, force, mean_pressure)):
+            scene = self._scene(h[i], loads, pressure_limit, friction)
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            outputs.append(Outputs(self._shape, guess, area, struct, friction is not None))
-        reports = (Report * count)(*(each.report for each in outputs))
+            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene)))
+        threads = self._given.get("threads", 1) or os.cpu_count() or 1
+        return [found for part in parts(count, threads) for found in self._solved(problems[part], struct)]
+
+    def _solved(self, problems: list[_Problem], struct: Any) -> list[Result]:
+        """The results of some problems of a batch."""
+        count = len(problems)
+        scenes = (SceneStruct * count)(*(scene.struct for scene, _ in problems))
+        fields = (Fields * count)(*(outputs.fields for _, outputs in problems))
+        reports = (Report * count)(*(outputs.report for _, outputs in problems))
         untouched = -(2**31)
         statuses = (c_int32 * count)(*[untouched] * count)
-        status = library.contact_normal_solver_solve_batch(
-            handle,
-            count,
-            (SceneStruct * count)(*(scene.struct for scene in scenes)),
-            ctypes.byref(struct),
-            (Fields * count)(*(each.fields for each in outputs)),
-            reports,
-            statuses,
+        status, message = called(
+            library.contact_normal_solver_solve_batch, count, scenes, ctypes.byref(struct), fields, reports, statuses,
+            handle=self._handle, keep=problems,
         )
         if untouched in statuses:
-            check(status)
-        messages = _messages(statuses, last_error() if status else "")
-        return [Result(statuses[i], messages[i], outputs[i], reports[i], scenes[i]) for i in range(count)]
+            check(status, message)
+        messages = _messages(statuses, message)
+        return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
     def set_influence(self, influence: Any) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.
@@ -208,13 +221,12 @@ class Solver:
         influence : array_like, (2 cy, 2 cx), or (array_like, scale)
             As for `solve`.
         """
-        effect, _table = influence_of(influence)
-        check(library.contact_normal_solver_set_influence(self._handle, ctypes.byref(effect)))
+        effect, table = influence_of(influence)
+        check(*called(library.contact_normal_solver_set_influence, ctypes.byref(effect), handle=self._handle, keep=table))
 
     def close(self) -> None:
-        """Frees the handle; a second call does nothing."""
-        self._address = None
-        self._free()
+        """Frees the handle, at once or when the call that uses it returns; a second call does nothing."""
+        self._handle.close()
 
     def __enter__(self) -> Solver:
         return self

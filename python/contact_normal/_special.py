@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from . import _structs
-from ._arguments import Both, integer, pair, pointer
+from ._arguments import Both, integer, number, pointer, real, two
+from ._bodies import bodies, load
+from ._calls import called
 from ._library import check, library
-from ._scene import load
+from ._scene import coating_of
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from ._arguments import Doubles
 
 
@@ -33,8 +37,10 @@ def hertz(
     *,
     approach: float | None = None,
     force: float | None = None,
-    shear_modulus: Both,
-    poisson_ratio: Both,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    e_star: float | None = None,
 ) -> HertzSolution:
     """The exact solution for h = curvature_x x^2 + curvature_y y^2.
 
@@ -44,8 +50,8 @@ def hertz(
         1/length, positive. A ball of radius R on a plane has 1/(2 R).
     approach, force : float
         Exactly one of them.
-    shear_modulus, poisson_ratio : float or pair of floats
-        Of both bodies, or of each.
+    shear_modulus, poisson_ratio, young_modulus, e_star
+        As for `solve`.
 
     Returns
     -------
@@ -58,13 +64,14 @@ def hertz(
     True
     """
     which, amount = load(approach, force)
+    constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
     solution = _structs.HertzSolution()
     check(
         library.contact_normal_hertz(
-            curvature_x,
-            curvature_y,
-            pair("shear_modulus", shear_modulus),
-            pair("poisson_ratio", poisson_ratio),
+            number("curvature_x", curvature_x),
+            number("curvature_y", curvature_y),
+            constants.shear_modulus,
+            constants.poisson_ratio,
             which,
             amount,
             ctypes.byref(solution),
@@ -74,7 +81,15 @@ def hertz(
 
 
 def influence_half_space(
-    cx: int, cy: int, dx: float, dy: float, *, shear_modulus: Both, poisson_ratio: Both
+    cx: int,
+    cy: int,
+    dx: float,
+    dy: float,
+    *,
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    e_star: float | None = None,
 ) -> Doubles:
     """The influence coefficients of the half-space, as a table that `influence` takes.
 
@@ -84,8 +99,8 @@ def influence_half_space(
         The table covers the offsets -cx..cx-1 by -cy..cy-1.
     dx, dy : float
         Element sizes.
-    shear_modulus, poisson_ratio : float or pair of floats
-        Of both bodies, or of each.
+    shear_modulus, poisson_ratio, young_modulus, e_star
+        As for `solve`.
 
     Returns
     -------
@@ -101,6 +116,46 @@ def influence_half_space(
     cx, cy = integer("cx", cx), integer("cy", cy)
     # Sizes that are no sizes are left to the library, whose message says so.
     table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
-    bodies = pair("shear_modulus", shear_modulus), pair("poisson_ratio", poisson_ratio)
-    check(library.contact_normal_influence_half_space(cx, cy, dx, dy, *bodies, pointer(table)))
+    constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)[:2]
+    size = number("dx", dx), number("dy", dy)
+    check(*called(library.contact_normal_influence_half_space, cx, cy, *size, *constants, pointer(table), keep=table))
     return table
+
+
+def coating_compliance(
+    thickness: float, shear_modulus: float, poisson_ratio: float, wave_number: npt.ArrayLike, *, below: tuple[float, float]
+) -> Doubles:
+    """What a coated body gives way to a pressure wave: the amplitude of the displacement over that of the pressure.
+
+    To compare a coating with a formula of one's own: (1 - nu)/(G k) for a body of one material.
+
+    Parameters
+    ----------
+    thickness, shear_modulus, poisson_ratio : float
+        Of the coating, as in the effect `coating` of `solve`.
+    wave_number : array_like
+        2 pi over the wave's length, > 0.
+    below : (shear_modulus, poisson_ratio)
+        Of the body below.
+
+    Returns
+    -------
+    ndarray
+        A length per pressure, of the shape of `wave_number`.
+
+    Examples
+    --------
+    A wave much shorter than the coating is thick feels nothing else, a much longer one only the body below:
+
+    >>> import contact_normal
+    >>> short, long = contact_normal.coating_compliance(1.0, 4.0, 0.3, [1e3, 1e-4], below=(1.0, 0.3)) * [1e3, 1e-4]
+    >>> float(round(short, 4)), float(round(long, 3))
+    (0.175, 0.7)
+    """
+    coating = coating_of((thickness, shear_modulus, poisson_ratio))
+    body, numbers = two("below", below), real("wave_number", wave_number)
+    found, one = np.zeros(numbers.shape), ctypes.c_double()
+    for place, wave in np.ndenumerate(numbers):
+        check(library.contact_normal_coating_compliance(ctypes.byref(coating), *body, float(wave), ctypes.byref(one)))
+        found[place] = one.value
+    return found

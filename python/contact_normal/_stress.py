@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import ctypes
+import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import doubles, integer, options, pointer
-from ._library import check, initialised, library
-from ._structs import StressMaximum
+from ._units import Units, checked
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from ._arguments import Doubles
     from ._scene import Scene
 
-COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
+COMPONENTS = (*TENSOR, "von_mises", "maximum_shear")
 
 
 class SubsurfaceStress:
@@ -28,9 +27,11 @@ class SubsurfaceStress:
     ----------
     depths : ndarray, (n,)
         The depths, into the body.
-    xx, yy, zz, xy, xz, yz : ndarray, (n, my, mx)
-        The components.
-    von_mises, maximum_shear : ndarray, (n, my, mx)
+    x, y : ndarray, (mx,) and (my,)
+        Centres of the elements, from the middle of the grid.
+    xx, yy, zz, xy, xz, yz : ndarray, (n, my, mx), or None
+        The components; None: not asked for.
+    von_mises, maximum_shear : ndarray, (n, my, mx), or None
         The von Mises stress, and the largest shear stress.
     principal : ndarray, (3, n, my, mx) or None
         The principal stresses, the largest first; None unless asked for.
@@ -41,19 +42,61 @@ class SubsurfaceStress:
         of the grid.
     dx, dy : float
         Element sizes.
+    units : (str, str) or None
+        Names of the units of lengths and forces, which pictures and files then have. May be set.
     """
 
-    def __init__(self, depths: Doubles, stress: Doubles, scene: Scene) -> None:
+    def __init__(self, depths: Doubles, scene: Scene, components: Iterable[str], principal: bool) -> None:
         self.depths = depths
-        self.xx, self.yy, self.zz, self.xy, self.xz, self.yz = stress
-        self.von_mises: Doubles = np.zeros(stress.shape[1:])
-        self.maximum_shear: Doubles = np.zeros(stress.shape[1:])
-        self.principal: Doubles | None = None
-        self.directions: Doubles | None = None
+        shape = (depths.size, *scene.shape)
+        fields: list[Doubles | None] = [np.zeros(shape) if name in components else None for name in COMPONENTS]
+        self.xx, self.yy, self.zz, self.xy, self.xz, self.yz, self.von_mises, self.maximum_shear = fields
+        self.principal: Doubles | None = np.zeros((3, *shape)) if principal else None
+        self.directions: Doubles | None = np.zeros((3, *shape, 3)) if principal else None
         self.largest_von_mises: dict[str, float] = {}
         self.largest_shear: dict[str, float] = {}
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
+        my, mx = scene.shape
+        self.x: Doubles = (np.arange(mx) + 0.5 - 0.5 * mx) * self.dx
+        self.y: Doubles = (np.arange(my) + 0.5 - 0.5 * my) * self.dy
+        self._units: Units = None
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
+        return self._units
+
+    @units.setter
+    def units(self, units: Any) -> None:
+        self._units = checked(units)
+
+    def place(self, middle: tuple[float, float], units: Units) -> None:
+        """Moves the middle of the grid there."""
+        self.x, self.y, self._units = self.x + middle[0], self.y + middle[1], units
+        for largest in (self.largest_von_mises, self.largest_shear):
+            if largest:
+                largest["x"] += middle[0]
+                largest["y"] += middle[1]
+
+    def __repr__(self) -> str:
+        my, mx = len(self.y), len(self.x)
+        told = [f"{name} {found['value']:.5g} at ({found['x']:.4g}, {found['y']:.4g}, {found['z']:.4g})"
+                for name, found in (("von_mises", self.largest_von_mises), ("maximum_shear", self.largest_shear)) if found]
+        return f"<SubsurfaceStress: {mx} x {my} elements, {len(self.depths)} depths; largest {', '.join(told) or 'values not asked for'}>"
+
+    def to_xarray(self) -> Any:
+        """All that was asked for as an `xarray.Dataset` with coordinates, names and, if `units` are told, units. Needs xarray."""
+        from ._datasets import of_stress
+
+        return of_stress(self)
+
+    def to_netcdf(self, path: str | os.PathLike[str]) -> None:
+        """Writes the dataset of `to_xarray` as a file, whole or not at all. Needs xarray and netCDF4."""
+        from ._netcdf import write, xarray
+
+        xarray()
+        write(path, self.to_xarray())
 
     def plot_section(self, x: float | None = None, y: float | None = None, of: str = "von_mises", axes: Axes | None = None) -> Axes:
         """Draws a stress in a plane across the body, with a cross at the largest.
@@ -61,7 +104,7 @@ class SubsurfaceStress:
         Parameters
         ----------
         x, y : float, optional
-            The plane, from the middle of the grid: exactly one of them. Neither: y = 0.
+            The plane: one of them. Neither: the y of the middle of the grid.
         of : str
             "von_mises", "maximum_shear", or a component: "zz".
         axes : matplotlib.axes.Axes, optional
@@ -76,13 +119,13 @@ class SubsurfaceStress:
 
         return plot_section(self, x, y, of, axes)
 
-    def plot_depth(self, x: float = 0.0, y: float = 0.0, axes: Axes | None = None) -> Axes:
+    def plot_depth(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
         """Draws stresses over the depth, below one element.
 
         Parameters
         ----------
-        x, y : float
-            The place, from the middle of the grid.
+        x, y : float, optional
+            The place, by default the middle of the grid.
         axes : matplotlib.axes.Axes, optional
             Where to draw; by default the axes of a new figure.
 
@@ -94,43 +137,3 @@ class SubsurfaceStress:
         from ._plot import plot_depth
 
         return plot_depth(self, x, y, axes)
-
-
-def subsurface(
-    scene: Scene,
-    pressure: Doubles,
-    depths: npt.ArrayLike,
-    traction: tuple[npt.ArrayLike, npt.ArrayLike] | None,
-    body: int,
-    principal: bool,
-    threads: int,
-) -> SubsurfaceStress:
-    """See `Result.subsurface`."""
-    levels = doubles("depths", np.atleast_1d(depths), dimensions="n")
-    shape = (levels.size, *scene.shape)
-    outputs = initialised("stress_outputs")
-    stress = np.zeros((6, *shape))
-    found = SubsurfaceStress(levels, stress, scene)
-    for c in range(6):
-        outputs.stress[c] = pointer(stress[c])
-    outputs.von_mises, outputs.maximum_shear = pointer(found.von_mises), pointer(found.maximum_shear)
-    if principal:
-        found.principal, found.directions = np.zeros((3, *shape)), np.zeros((3, *shape, 3))
-        for k in range(3):
-            outputs.principal[k], outputs.directions[k] = pointer(found.principal[k]), pointer(found.directions[k])
-    largest = [StressMaximum(), StressMaximum()]
-    outputs.largest_von_mises, outputs.largest_shear = map(ctypes.pointer, largest)
-    tractions = [None, None] if traction is None else [doubles(f"traction[{k}]", traction[k], scene.shape) for k in range(2)]
-    given = [None if array is None else pointer(array) for array in (pressure, *tractions)]
-    struct = options({"threads": threads})
-    status = library.contact_normal_subsurface_stress(
-        ctypes.byref(scene.struct), integer("body", body), *given, pointer(levels), levels.size, ctypes.byref(struct),
-        ctypes.byref(outputs),
-    )
-    check(status)
-    my, mx = scene.shape
-    middle = {"x": 0.5 * mx * found.dx, "y": 0.5 * my * found.dy}
-    for at, name in zip(largest, ("largest_von_mises", "largest_shear")):
-        values: dict[str, Any] = {key: getattr(at, key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
-        setattr(found, name, {key: value - middle.get(key, 0.0) for key, value in values.items()})
-    return found

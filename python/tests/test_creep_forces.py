@@ -1,10 +1,16 @@
 """Tables of creep forces: entries, errors, symmetries, interpolation, surfaces, processes."""
 
+import concurrent.futures
+import io
+import multiprocessing
 import unittest
+from contextlib import redirect_stderr
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
+from contact_normal import _creep_force_plane, _creep_force_table
 from contact_normal._creep_force_plane import halved
 
 XI, ETA, PHI = [0.0, 0.1, 0.3, 0.8], [-0.15, 0.0, 0.15], [0.0, 0.5]
@@ -54,6 +60,77 @@ class Entries(unittest.TestCase):
         self.assertLess((off / coarse.error).max(), 1.0)
         # And it is no bound of anything.
         self.assertLess(np.median(coarse.error), 4.0 * np.median(off))
+
+
+class Work(unittest.TestCase):
+    AXES = {"xi": [0.0, 0.3], "eta": [0.0], "phi": [0.0, 0.5], "axis_ratio": [0.5, 1.0], "elements": 9}
+
+    def test_what_the_coarse_grid_says_is_told(self):
+        solved = _creep_force_plane.friction_batch
+
+        def unsolved_on(elements, status):
+            def batch(*given, pressure, **named):
+                found = solved(*given, pressure=pressure, **named)
+                if len(pressure) == elements:
+                    found.status[1] = status
+                return found
+
+            return batch
+
+        for elements in (9, 5):
+            for status in (cn.ITERATION_LIMIT, cn.STAGNATED):
+                with mock.patch.object(_creep_force_plane, "friction_batch", unsolved_on(elements, status)):
+                    table = cn.creep_force_table(**self.AXES)
+                # The second entry of each plane.
+                np.testing.assert_array_equal(table.status[..., 0, 1], status)
+                np.testing.assert_array_equal(table.status[..., 0, 0], cn.OK)
+        # That of the fine grid comes first.
+        both = lambda *given, **named: mark(solved(*given, **named))  # noqa: E731
+
+        def mark(found):
+            found.status[:] = cn.STAGNATED if found.products.size and len(marked) % 2 else cn.ITERATION_LIMIT
+            marked.append(found)
+            return found
+
+        marked = []
+        with mock.patch.object(_creep_force_plane, "friction_batch", both):
+            np.testing.assert_array_equal(cn.creep_force_table(**self.AXES).status, cn.ITERATION_LIMIT)
+
+    def test_a_bar_of_what_was_done_before_is_full(self):
+        plan = _creep_force_table._plan(surface=None, poisson_ratio=0.28, tolerance=1e-4, **self.AXES)
+        done = {index: _creep_force_plane.plane(plan, index) for index in range(plan.planes)}
+        with redirect_stderr(io.StringIO()) as err, mock.patch.dict("sys.modules", {"tqdm": None}):
+            self.assertEqual(_creep_force_table._planes(plan, mock.Mock(done=lambda: done), 1, None, True), done)
+        self.assertIn("[" + 30 * "#" + "]", err.getvalue())
+
+    def test_processes_end_with_the_table(self):
+        alone = cn.creep_force_table(**self.AXES)
+        parallel = cn.creep_force_table(workers=2, **self.AXES)
+        np.testing.assert_array_equal(alone.force_x, parallel.force_x)
+        self.assertEqual(multiprocessing.active_children(), [])
+        for bad, words in (({"poisson_ratio": 0.7}, "poisson_ratio"), ({"progress": self.fail_at_once}, "enough")):
+            with self.assertRaisesRegex((cn.ContactNormalError, RuntimeError), words):
+                cn.creep_force_table(workers=2, **{**self.AXES, **bad})
+            self.assertEqual(multiprocessing.active_children(), [])
+
+    @staticmethod
+    def fail_at_once(done, entries):
+        raise RuntimeError("enough")
+
+    def test_a_clusters_executor_is_left_and_not_waited_for(self):
+        class Executor(concurrent.futures.ThreadPoolExecutor):
+            ended = ()
+
+            def shutdown(self, *given, **named):
+                self.ended = (*self.ended, (given, named))
+                super().shutdown(*given, **named)
+
+        executor = Executor(1)
+        client = mock.Mock()
+        client.get_executor.return_value = executor
+        table = cn.creep_force_table(client=client, **self.AXES)
+        np.testing.assert_array_equal(table.force_x, cn.creep_force_table(**self.AXES).force_x)
+        self.assertEqual(executor.ended, (((), {"wait": False}),))
 
 
 class Interpolation(unittest.TestCase):

@@ -9,4 +9,5 @@ mod installed_package;
 mod papers;
 mod python;
 mod python_layout;
+mod python_versions;
 mod support;

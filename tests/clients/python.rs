@@ -32,9 +32,13 @@ fn python() -> PathBuf {
     );
 }
 
-/// A Python that runs in `folder` and finds the module and the library there.
+/// A Python with numpy and matplotlib that runs in `folder` and finds the module and the library there.
 pub fn python_in(folder: &Path) -> Command {
-    let mut command = Command::new(python());
+    in_folder(Command::new(python()), folder)
+}
+
+/// A Python that runs in `folder` and finds the module and the library there.
+pub fn in_folder(mut command: Command, folder: &Path) -> Command {
     command
         .current_dir(folder)
         .env("CONTACT_NORMAL_LIBRARY", folder.join("libcontact_normal.so"))

@@ -1,0 +1,84 @@
+"""The elastic constants of both bodies, by whichever of them the caller knows, and the load."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ._arguments import number, pair, real
+from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
+
+
+class Bodies(NamedTuple):
+    """The elastic constants as the C ABI takes them.
+
+    Attributes
+    ----------
+    shear_modulus, poisson_ratio : array of two doubles
+        Of each body.
+    poisson_is_known : bool
+        Whether somebody said the Poisson ratios: friction, coatings and stresses need them, pressures only E*.
+    """
+
+    shear_modulus: Any
+    poisson_ratio: Any
+    poisson_is_known: bool = True
+
+    def needs_poisson(self, what: str) -> None:
+        """Refuses bodies that are known by E* alone."""
+        if not self.poisson_is_known:
+            raise TypeError(f"poisson_ratio is needed with e_star: {what} depends on it")
+
+
+def bodies(shear_modulus: Any, poisson_ratio: Any, young_modulus: Any, e_star: Any) -> Bodies:
+    """Bodies of exactly one kind of modulus."""
+    if (shear_modulus is not None) + (young_modulus is not None) + (e_star is not None) != 1:
+        raise TypeError("give one of shear_modulus, young_modulus and e_star")
+    if e_star is None and poisson_ratio is None:
+        raise TypeError("give poisson_ratio")
+    nu = pair("poisson_ratio", 0.0 if poisson_ratio is None else poisson_ratio)
+    if shear_modulus is not None:
+        return Bodies(pair("shear_modulus", shear_modulus), nu)
+    if young_modulus is not None:
+        young = pair("young_modulus", young_modulus)
+        _refuse_unless_positive("young_modulus", young)
+        # nu = -1 is refused by the library.
+        return Bodies(pair("shear_modulus", tuple(0.5 * e / (1.0 + n) if n != -1.0 else e for e, n in zip(young, nu))), nu)
+    star = number("e_star", e_star)
+    _refuse_unless_positive("e_star", [star])
+    # Each body gives way by half of it: (1 - nu)/(2 G) = 1/(2 E*). nu = 1 is refused by the library.
+    return Bodies(pair("shear_modulus", tuple(star * (1.0 - n) if n != 1.0 else star for n in nu)), nu, poisson_ratio is not None)
+
+
+def _refuse_unless_positive(name: str, values: Any) -> None:
+    for value in values:
+        if not value > 0.0:
+            raise ValueError(f"{name} is {value}; it must be positive")
+
+
+def load(approach: Any, force: Any, mean_pressure: Any = None, area: float = 0.0) -> tuple[int, float]:
+    """Which load is prescribed, and its amount: a mean pressure is a force over the area of the grid."""
+    if (approach is not None) + (force is not None) + (mean_pressure is not None) != 1:
+        raise TypeError("give either approach or force, or mean_pressure, and only one of them")
+    if approach is not None:
+        return PRESCRIBED_APPROACH, number("approach", approach)
+    if force is not None:
+        return PRESCRIBED_FORCE, number("force", force)
+    return PRESCRIBED_FORCE, number("mean_pressure", mean_pressure) * area
+
+
+def loads_of_each(count: int, approach: Any, force: Any, mean_pressure: Any) -> list[dict[str, Any]]:
+    """The loads of a batch: one value for all problems, or one for each."""
+
+    def of_each(name: str, values: Any) -> list[Any]:
+        if values is None:
+            return [None] * count
+        array = real(name, values)
+        if array.shape not in ((), (count,)):
+            raise ValueError(f"{name} has shape {array.shape}; it must be one value, or {count}: one for each problem")
+        return [float(value) for value in np.broadcast_to(array, (count,))]
+
+    names = ("approach", "force", "mean_pressure")
+    columns = (of_each(name, values) for name, values in zip(names, (approach, force, mean_pressure)))
+    return [dict(zip(names, loads)) for loads in zip(*columns)]

@@ -1,0 +1,280 @@
+"""Calls of the library that a signal ends: another thread makes them, while the one that was asked waits and makes their callbacks.
+
+Python runs the handlers of signals, and so raises KeyboardInterrupt, on its main thread and only between two instructions of its own: a call
+of the library would hold them up until it returns, and what they raise within a callback of ctypes is lost. So the main thread calls
+through a worker. Other threads get no signals: they call the library themselves.
+"""
+
+from __future__ import annotations
+
+import atexit
+import math
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from ._library import last_error
+
+if TYPE_CHECKING:
+    from ._handle import Handle
+
+T = TypeVar("T")
+
+# A call that was given up is waited for as long as this: most end with their next cycle, within that time.
+_PATIENCE = 0.1
+# Signals are heard once in so many seconds at least.
+_LISTEN = 0.05
+# Seconds that one part of many pieces of work takes.
+_PART = 0.2
+# Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
+# A worker costs some 50 us a solve, with its callbacks; the usual solve of so many elements takes 200.
+_SHORT = 1_050_000
+
+
+class Call(Generic[T]):
+    """One call of the library by a worker.
+
+    Attributes
+    ----------
+    given_up : bool
+        Whether nobody waits for its result: its callbacks end it.
+    """
+
+    def __init__(self, work: Callable[[], T]) -> None:
+        self.given_up = False
+        self._work: Callable[[], T] | None = work
+        self._found: list[T] = []
+        self._error: BaseException | None = None
+        self._question: Callable[[], Any] | None = None
+        self._answer: Any = None
+        self._raised: Exception | None = None
+        self._is_over = False
+        self._news, self._answered, self._ended = (threading.Lock() for _ in range(3))
+        for lock in (self._news, self._answered, self._ended):
+            lock.acquire()
+
+    def make(self) -> None:
+        """On the worker: calls the library."""
+        try:
+            assert self._work is not None
+            self._found.append(self._work())
+        except BaseException as error:  # it is raised where the result is waited for
+            self._error = error
+        # What it kept alive: a solver that was closed meanwhile is freed here.
+        self._work = None
+
+    def end(self) -> None:
+        """On the worker: the result is there."""
+        self._is_over = True
+        _given_up.discard(self)
+        self._ended.release()
+        self._tell()
+
+    def _tell(self) -> None:
+        if self._news.locked():
+            self._news.release()
+
+    def ask(self, question: Callable[[], Any]) -> Any:
+        """On the worker: what `question()` returns on the thread that waits."""
+        self._question = question
+        self._tell()
+        self._answered.acquire()
+        if self.given_up:
+            raise RuntimeError("nobody waits for this call")
+        answer, raised = self._answer, self._raised
+        self._answer = self._raised = None
+        if raised is not None:
+            raise raised
+        return answer
+
+    def result(self, worker: _Worker) -> T:
+        """On the thread that waits: answers what is asked until the worker has the result. What else ends the wait gives the call up."""
+        try:
+            worker.give(self)
+            while True:
+                # A signal that the system gives to another thread does not wake this one.
+                while not self._news.acquire(timeout=_LISTEN):
+                    pass
+                question, self._question = self._question, None
+                if question is None:
+                    break
+                try:
+                    self._answer = question()
+                except Exception as error:
+                    self._raised = error
+                self._answered.release()
+        except BaseException:
+            self._give_up()
+            raise
+        failure, self._error = self._error, None
+        if failure is not None:
+            raise failure
+        return self._found.pop()
+
+    def _give_up(self) -> None:
+        self.given_up = True
+        _given_up.add(self)
+        if self._answered.locked():
+            self._answered.release()
+        self.wait(_PATIENCE)
+
+    def wait(self, seconds: float = math.inf) -> None:
+        """Waits until the worker has done with it, or so many seconds."""
+        end = time.monotonic() + seconds
+        while not self._is_over and time.monotonic() < end:
+            self._ended.acquire(timeout=0.02)
+        if self._is_over:
+            _given_up.discard(self)
+
+
+class _Worker(threading.Thread):
+    """A thread that makes one call after another. It ends when it is given None."""
+
+    def __init__(self) -> None:
+        super().__init__(name="contact-normal", daemon=True)
+        self._given, self._ready = threading.Lock(), threading.Lock()
+        self._given.acquire()
+        self._ready.acquire()
+        self._call: Call[Any] | None = None
+        self.start()
+        self._ready.acquire()
+
+    def give(self, call: Call[Any] | None) -> None:
+        """What it shall do next."""
+        self._call = call
+        self._given.release()
+
+    def run(self) -> None:
+        """Makes calls."""
+        # It joins the others itself: a signal may interrupt the thread that made it.
+        _idle.append(self)
+        self._ready.release()
+        while True:
+            self._given.acquire()
+            call, self._call = self._call, None
+            if call is None:
+                return
+            _here.call = call
+            call.make()
+            _here.call = None
+            _idle.append(self)
+            call.end()
+            del call
+
+
+def _resting() -> _Worker | None:
+    """A worker that has nothing to do."""
+    try:
+        return _idle.pop()
+    except IndexError:
+        return None
+
+
+_idle: list[_Worker] = []
+_given_up: set[Call[Any]] = set()
+_here = threading.local()
+
+
+def here() -> Call[Any] | None:
+    """The call that this thread makes as a worker."""
+    call: Call[Any] | None = getattr(_here, "call", None)
+    return call
+
+
+def asked(question: Callable[[], T]) -> T:
+    """What `question()` returns on the thread that waits for this call."""
+    call = here()
+    return question() if call is None else call.ask(question)
+
+
+def given_up() -> bool:
+    """Whether nobody waits for the call that this thread makes."""
+    call = here()
+    return call is not None and call.given_up
+
+
+def on_main_thread() -> bool:
+    """Whether this is the thread that gets signals."""
+    return threading.get_ident() == threading.main_thread().ident
+
+
+def is_short(elements: int, cycles: int) -> bool:
+    """Whether a solve ends so soon that no signal has to end it."""
+    return 0 <= cycles * elements <= _SHORT
+
+
+def made(work: Callable[[], T], short: bool = False) -> T:
+    """What `work()` returns, which calls the library. A signal ends it on the main thread, unless it is short."""
+    if short or not on_main_thread():
+        return work()
+    try:
+        while (worker := _resting()) is None:
+            _Worker()
+    except RuntimeError:  # no thread is to be had: the interpreter ends, or the system has no more
+        return work()
+    return Call(work).result(worker)
+
+
+def called(
+    function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False
+) -> tuple[int, str]:
+    """The status of a function of the library, and its message, which belongs to the thread that calls.
+
+    With a handle, its address is the first argument. `keep` lives at least until the function returns.
+    """
+    if handle is not None:
+        handle.wait()
+    return made(partial(_told, function, arguments, handle, keep), short)
+
+
+_NO_HANDLE = nullcontext(())
+
+
+def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, _keep: Any) -> tuple[int, str]:
+    with _NO_HANDLE if handle is None else handle as first:
+        status = int(function(*first, *arguments))
+        return status, last_error() if status else ""
+
+
+def parts(count: int, first: int) -> Iterator[slice]:
+    """So many pieces of work in parts between which a signal is heard: each takes some tenths of a second, by the time of the one before.
+
+    There is one part at least, which may be empty.
+    """
+    begin, size = 0, first
+    while True:
+        began = time.perf_counter()
+        yield slice(begin, min(begin + size, count))
+        begin += size
+        if begin >= count:
+            return
+        seconds = time.perf_counter() - began
+        size = max(first, min(4 * size, int(size * _PART / max(seconds, 1e-6))))
+
+
+def _end_workers() -> None:
+    """Before a fork: workers that have nothing to do end, for a process with threads is not to be forked."""
+    while (worker := _resting()) is not None:
+        worker.give(None)
+        worker.join()
+
+
+def _forget_workers() -> None:
+    """In a forked process: it has none of the threads, and the one that forked makes no call there."""
+    _here.call = None
+    for call in list(_given_up):
+        call.end()
+
+
+def _wait_for_given_up() -> None:
+    """At the end of the process: what still calls the library must not do so when the interpreter is gone."""
+    for call in list(_given_up):
+        call.wait()
+
+
+atexit.register(_wait_for_given_up)
+os.register_at_fork(before=_end_workers, after_in_child=_forget_workers)

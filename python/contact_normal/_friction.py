@@ -1,0 +1,84 @@
+"""The effect of friction as the struct of the C ABI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._arguments import both, doubles, flag, integer, number, pointer, two
+from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE, value_of
+from ._library import initialised
+
+_NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
+_PAIRS = ("creepage", "spin_centre")
+_FLAGS = ("continues", "sensitivities")
+_FIELDS = ("previous_traction", "rigid_slip")
+_KNOWN = ("coefficient", "motion", "force", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
+_IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
+
+
+def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
+    """A `contact_normal_friction`, the arrays that it points to, and what the caller should know of it."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"friction is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
+    unknown = [str(name) for name in value if name not in _KNOWN]
+    if unknown:
+        raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
+    given = {name: one for name, one in value.items() if one is not None}
+    effect = initialised("friction")
+    kept: list[Any] = _coefficient(effect, given.get("coefficient", 0.0), shape)
+    motion = given.get("motion", MOTION_SHIFT)
+    effect.motion = value_of("motion", motion) if isinstance(motion, str) else integer("friction['motion']", motion)
+    for name in _FLAGS:
+        setattr(effect, name, flag(f"friction['{name}']", given.get(name, False)))
+    for name in _PAIRS:
+        if name in given:
+            getattr(effect, name)[:] = two(f"friction['{name}']", given[name])
+    for name in _NUMBERS:
+        if name in given:
+            setattr(effect, name, number(f"friction['{name}']", given[name]))
+    for k, force in enumerate(both("friction['force']", given.get("force", (None, None)), "a pair, None where the creepage is given")):
+        if force is not None:
+            effect.prescribed[k], effect.force[k] = PRESCRIBED_TANGENTIAL_FORCE, number(f"friction['force'][{k}]", force)
+    for name in _FIELDS:
+        for k, field in enumerate(both(f"friction['{name}']", given[name]) if name in given else ()):
+            kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
+            getattr(effect, name)[k] = pointer(kept[-1])
+    kept += _influence(effect, given)
+    is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
+    return effect, kept, _IS_LENGTH if is_length else ""
+
+
+def _coefficient(effect: Any, coefficient: Any, shape: tuple[int, int]) -> list[Any]:
+    if np.ndim(coefficient) == 0:
+        effect.coefficient = number("friction['coefficient']", coefficient)
+        return []
+    coefficients = doubles("friction['coefficient']", coefficient, shape)
+    effect.coefficients = pointer(coefficients)
+    return [coefficients]
+
+
+def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
+    """Own coefficients."""
+    if "influence" not in given:
+        if "influence_cross" in given:
+            raise ValueError("friction['influence_cross'] is given without friction['influence']")
+        return []
+    tables = given["influence"]
+    if len(tables) not in (3, 4):
+        raise ValueError(f"friction['influence'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    kept = [doubles(f"friction['influence'][{k}]", tables[k], dimensions="(2 cy, 2 cx)") for k in range(3)]
+    shape = kept[0].shape
+    if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
+        raise ValueError(f"friction['influence'] has shapes {[table.shape for table in kept]}; all must be (2 cy, 2 cx)")
+    effect.influence_cy, effect.influence_cx = shape[0] // 2, shape[1] // 2
+    for k, table in enumerate(kept):
+        effect.influence[k] = pointer(table)
+    if len(tables) == 4:
+        effect.influence_scale = number("friction['influence'][3], the scale,", tables[3])
+    for k, table in enumerate(both("friction['influence_cross']", given["influence_cross"]) if "influence_cross" in given else ()):
+        kept.append(doubles(f"friction['influence_cross'][{k}]", table, shape))
+        effect.influence_cross[k] = pointer(kept[-1])
+    return kept

@@ -1,0 +1,40 @@
+"""What was known on each grid of a solve, and what it had cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Ledger(list[dict[str, float]]):
+    """What was known on each grid and what it had cost: one dict per grid, coarsest first.
+
+    `estimated` is what "error_force" speaks of: "force", or "approach" where the force is prescribed.
+
+    The keys are the members of `contact_normal_ledger_row`: "mx", "my", "cycles", "seconds", "work_units", "residual", "approach",
+    "force", "max_pressure", "contact_area", "error_force", ... Estimated errors are absolute; a negative one is not known.
+    """
+
+    def __init__(self, rows: Iterable[dict[str, float]] = (), estimated: str = "force") -> None:
+        super().__init__(rows)
+        self.estimated = estimated
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the estimated error of every grid over the seconds it took.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save: `axes.figure.savefig("ledger.png")`.
+        """
+        from ._plot import plot_ledger
+
+        return plot_ledger(self, self.estimated, axes)

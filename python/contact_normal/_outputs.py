@@ -1,0 +1,73 @@
+"""The arrays and structs that a solve writes."""
+
+from __future__ import annotations
+
+from ctypes import c_int32
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import doubles, integers, pointer
+from ._constants import ACTIVE_SET_FIXED, INITIAL_GUESS_GIVEN, INITIAL_GUESS_NONE
+from ._library import initialised
+from ._structs import LedgerRow
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ._arguments import Doubles
+    from ._scene import Scene
+
+LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
+_ROWS = LedgerRow * LEDGER_ROOM
+
+
+class Outputs:
+    """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess.
+
+    Those of friction only where there is friction: to clear and write them takes some .25 ms of 10 on 256 x 256 elements.
+    """
+
+    traction: Doubles | None = None
+    slip: Doubles | None = None
+    adhesion: npt.NDArray[np.int32] | None = None
+
+    def __init__(
+        self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
+        scene: Scene | None = None,
+    ) -> None:
+        self._shape = shape
+        self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
+        self.contact = np.zeros(shape, dtype=np.int32)
+        self.fields, self.report = initialised("fields"), initialised("report")
+        self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(pointer, self.doubles)
+        self.fields.contact = pointer(self.contact, c_int32)
+        if has_friction:
+            self._hold_friction()
+        self.rows = _ROWS()
+        self.report.ledger, self.report.ledger_capacity = self.rows, LEDGER_ROOM
+        if pressure is not None or contact is not None:
+            self._start(pressure, contact, options, scene)
+
+    def _start(self, pressure: Any, contact: Any, options: Any, scene: Scene | None) -> None:
+        """Takes an initial guess: the pressures, or the contact area, or both; or the contact area that is fixed."""
+        if contact is not None:
+            self.contact[:] = integers("contact", contact, self._shape)
+        if pressure is not None:
+            self.doubles[0][:] = doubles("pressure", pressure, self._shape)
+            if contact is None:
+                self.contact[:] = self.doubles[0] > 0
+        elif options.active_set == ACTIVE_SET_FIXED:
+            return
+        elif scene is not None:
+            self.doubles[0][:] = scene.pressures_of(self.contact)
+        if options.initial_guess == INITIAL_GUESS_NONE:
+            options.initial_guess = INITIAL_GUESS_GIVEN
+
+    def _hold_friction(self) -> None:
+        """Arrays of what friction finds."""
+        self.traction, self.slip = np.zeros((2, *self._shape)), np.zeros((2, *self._shape))
+        self.adhesion = np.zeros(self._shape, dtype=np.int32)
+        for k in range(2):
+            self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
+        self.fields.adhesion = pointer(self.adhesion, c_int32)

@@ -1,0 +1,41 @@
+"""What searches over grids are given: a surface that has a value on each of them, and limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._arguments import both, integer, number, two
+from ._callbacks import Surface
+from ._library import initialised
+from ._scene import Scene
+
+
+def on_any_grid(
+    h: Any, dx: Any, dy: Any, shape: Any, corner: Any, **loaded: Any
+) -> tuple[Scene, Surface | None, tuple[float, float]]:
+    """The scene on the first grid by its loads and elastic constants, the callback of a callable surface, and the middle of its rectangle."""
+    if not callable(h):
+        for name, value in (("shape", shape), ("corner", corner)):
+            if value is not None:
+                raise TypeError(f"{name} is for a surface that is a callable")
+        return Scene(h, dx, dy, effects={}, **loaded), None, (0.0, 0.0)
+    if shape is None:
+        raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
+    my, mx = (integer("shape", m) for m in both("shape", shape))
+    half = 0.5 * mx * number("dx", dx), 0.5 * my * number("dy", dy)
+    x, y = (-half[0], -half[1]) if corner is None else two("corner", corner)
+    # The distances of this grid are not read.
+    scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects={}, **loaded)
+    return scene, Surface(h, (x, y)), (0.0, 0.0) if corner is None else (x + half[0], y + half[1])
+
+
+def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface | None) -> Any:
+    """A `contact_normal_accuracy` with its limits and the surface."""
+    accuracy = initialised("accuracy")
+    accuracy.max_seconds = number("max_seconds", max_seconds)
+    accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
+    if surface:
+        accuracy.surface = surface.callback
+    return accuracy

@@ -1,0 +1,261 @@
+"""What solves of normal and of tangential problems have found, alike."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._library import library
+from ._structs import Report, names
+from ._units import Units, checked, with_unit
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from ._arguments import Doubles
+    from ._outputs import Outputs
+    from ._scene import Scene
+    from ._stress import SubsurfaceStress
+
+_REPORTED = [name for name in names(Report) if name not in ("struct_size", "ledger", "ledger_capacity")]
+
+
+def reported(report: Any) -> dict[str, Any]:
+    """The numbers of a report, tuples of those of its arrays."""
+    values = {name: getattr(report, name) for name in _REPORTED}
+    return {name: value if isinstance(value, (int, float)) else tuple(value) for name, value in values.items()}
+
+
+class Solved:
+    """What a solve found, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
+
+    def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
+        self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
+        self.pressure = outputs.doubles[0]
+        self._contact, self._report, self._scene = outputs.contact, report, scene
+        self._traction, self._slip, self._adhesion = outputs.traction, outputs.slip, outputs.adhesion
+        self.dx: float = scene.struct.dx
+        self.dy: float = scene.struct.dy
+        self._centre = 0.0, 0.0
+        self._units = checked(units)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Pickled and copied as plain numbers: structs of the library hold addresses.
+        return {name: value for name, value in {**self.__dict__, "report": self.report}.items() if name != "_report"}
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
+        return self._units
+
+    @units.setter
+    def units(self, units: Any) -> None:
+        self._units = checked(units)
+
+    # What follows is made when it is first asked for: small problems take no longer than that would.
+    @cached_property
+    def contact(self) -> npt.NDArray[np.bool_]:
+        """The contact area, with the elements at the pressure limit."""
+        of_any_kind: npt.NDArray[np.bool_] = self._contact != 0
+        return of_any_kind
+
+    @cached_property
+    def traction(self) -> Doubles:
+        """q on body 1, in x and y; zeros without friction."""
+        return self._traction if self._traction is not None else np.zeros((2, *self.pressure.shape))
+
+    @cached_property
+    def slip(self) -> Doubles:
+        """The slip of body 1 over body 2 in the step, in x and y; zeros without friction."""
+        return self._slip if self._slip is not None else np.zeros((2, *self.pressure.shape))
+
+    @cached_property
+    def adhesion(self) -> npt.NDArray[np.int32]:
+        """0 exterior, 1 stick, 2 slip; zeros without friction."""
+        return self._adhesion if self._adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+
+    @cached_property
+    def report(self) -> dict[str, Any]:
+        """The numbers of `contact_normal_report`."""
+        return reported(self._report)
+
+    @property
+    def x(self) -> Doubles:
+        """x of the centres of the elements, (mx,): from the middle of the grid."""
+        return _centres(self.pressure.shape[1], self.dx, self._centre[0])
+
+    @property
+    def y(self) -> Doubles:
+        """y of the centres of the elements, (my,): from the middle of the grid."""
+        return _centres(self.pressure.shape[0], self.dy, self._centre[1])
+
+    @property
+    def force(self) -> float:
+        """Normal force: the sum of p dx dy."""
+        return float(self.report["force"])
+
+    @property
+    def mean_pressure(self) -> float:
+        """The normal force over the area of the grid."""
+        return self.force / (self.pressure.size * self.dx * self.dy) if self.pressure.size else 0.0
+
+    @property
+    def max_pressure(self) -> float:
+        """The largest pressure."""
+        return float(self.report["max_pressure"])
+
+    @property
+    def contact_area(self) -> float:
+        """The area of the elements in contact."""
+        return float(self.report["contact_count"]) * self.dx * self.dy
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether the scene has friction."""
+        return self._traction is not None
+
+    @property
+    def tangential_force(self) -> tuple[float, float]:
+        """The tangential force on body 1, in x and y; zeros without friction."""
+        x, y = self.report["tangential_force"]
+        return x, y
+
+    def _numbers(self) -> list[str]:
+        """What `repr` says."""
+        my, mx = self.pressure.shape
+        share = self.contact_area / (my * mx * self.dx * self.dy) if self.pressure.size else 0.0
+        told = [
+            with_unit(f"force {self.force:.6g}", "force", self.units),
+            with_unit(f"max_pressure {self.max_pressure:.5g}", "pressure", self.units),
+            with_unit(f"contact_area {self.contact_area:.5g}", "area", self.units) + f" ({100.0 * share:.3g} % of the grid)",
+        ]
+        if self.has_friction:
+            x, y = self.tangential_force
+            told.append(with_unit(f"tangential_force ({x:.5g}, {y:.5g})", "force", self.units))
+        return told
+
+    def __repr__(self) -> str:
+        my, mx = self.pressure.shape
+        status = library.contact_normal_status_text(self.status).decode()
+        told = "" if self.status < 0 else ", " + ", ".join(self._numbers())
+        message = f"; {self.message}" if self.message else ""
+        return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{message}>"
+
+    def plot_traction(self, axes: Axes | None = None) -> Axes:
+        """Draws the tractions as arrows over the stick and slip areas, seen from above.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot import plot_traction
+
+        return plot_traction(self, axes)
+
+    def _tractions_on(self, body: int, traction: Any) -> Any:
+        """Those that are given, or those of friction as they act on this body; None where there are none."""
+        if traction is None and self.has_friction and self.traction.any():
+            sign = 1.0 if body == 1 else -1.0
+            return sign * self.traction[0], sign * self.traction[1]
+        return traction
+
+    def subsurface(
+        self,
+        depths: npt.ArrayLike,
+        *,
+        traction: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        body: int = 1,
+        components: Iterable[str] | None = None,
+        principal: bool = False,
+        threads: int = 1,
+    ) -> SubsurfaceStress:
+        """The stresses below the surface of one body, from these pressures.
+
+        Parameters
+        ----------
+        depths : array_like, (n,)
+            Depths into the body, in any order.
+        traction : (array_like (my, mx), array_like (my, mx)), optional
+            Tractions that act on this body, in x and in y; by default those that `friction` found, if any.
+        body : {1, 2}
+            Which one: its Poisson ratio matters.
+        components : sequence of str, optional
+            Which of "xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear" are wanted; by default all. Others are None.
+        principal : bool
+            Whether principal stresses and their directions are wanted, too.
+        threads : int
+            0: all cores.
+
+        Returns
+        -------
+        SubsurfaceStress
+
+        Examples
+        --------
+        >>> import numpy as np, contact_normal
+        >>> x = (np.arange(64) - 31.5) * 0.05
+        >>> h = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * 50.0)
+        >>> result = contact_normal.solve(h, 0.05, 0.05, force=1000.0, shear_modulus=82000.0, poisson_ratio=0.3)
+        >>> stress = result.subsurface(np.linspace(0.0, 2.0, 41))
+        >>> round(stress.largest_shear["value"] / result.max_pressure, 2)
+        0.31
+        """
+        from ._subsurface import subsurface
+
+        found = subsurface(self._scene, self.pressure, depths, self._tractions_on(body, traction), body, components, principal, threads)
+        found.place(self._centre, self.units)
+        return found
+
+    def stress_at_points(
+        self,
+        points: npt.ArrayLike,
+        *,
+        traction: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        body: int = 1,
+        threads: int = 1,
+    ) -> Doubles:
+        """The stresses at single points of one body, from these pressures.
+
+        Parameters
+        ----------
+        points : array_like, (n, 3)
+            x and y, from where those of the result are counted, and the depth. At depth 0 no point may be on the edge of an element.
+        traction, body, threads
+            As for `subsurface`.
+
+        Returns
+        -------
+        ndarray, (n, 6)
+            xx, yy, zz, xy, xz, yz of each point, positive in tension.
+        """
+        from ._subsurface import at_points
+
+        return at_points(self._scene, self.pressure, points, self._tractions_on(body, traction), body, threads, self._centre)
+
+    def to_xarray(self) -> Any:
+        """All fields as an `xarray.Dataset` with coordinates, names and, if `units` are told, units. Needs xarray."""
+        from ._datasets import of_result
+
+        return of_result(self)
+
+    def to_netcdf(self, path: str | os.PathLike[str]) -> None:
+        """Writes the dataset of `to_xarray` as a file, whole or not at all. Needs xarray and netCDF4."""
+        from ._netcdf import write, xarray
+
+        xarray()
+        write(path, self.to_xarray())
+
+
+def _centres(m: int, d: float, middle: float) -> Doubles:
+    return np.asarray((np.arange(m) + 0.5 - 0.5 * m) * d + middle, dtype=np.float64)

@@ -1,0 +1,106 @@
+"""The tangential problem of pressures that are known."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arguments import Both, SolveOptions, doubles, options, pointer
+from ._callbacks import Progress, Watched
+from ._library import check, library
+from ._outputs import Outputs
+from ._result import TangentialResult
+from ._scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from typing_extensions import Unpack
+
+    from ._arguments import Doubles
+
+
+def with_pressures(
+    h: Any, pressure: Any, dx: Any, dy: Any, loads: Mapping[str, Any], **given: Any
+) -> tuple[Scene, Doubles | None]:
+    """The scene of a surface, or of pressures that are given: then neither the surface nor the load matters."""
+    if pressure is None:
+        if h is None:
+            raise TypeError("give either h or pressure")
+        return Scene(h, dx, dy, **loads, **given), None
+    pressures = doubles("pressure", pressure)
+    if all(load is None for load in loads.values()):
+        loads = {"approach": 0.0, "force": None}
+    scene = Scene(np.zeros(pressures.shape) if h is None else h, dx, dy, **loads, **given)
+    return scene, doubles("pressure", pressures, scene.shape)
+
+
+def solve_tangential(
+    pressure: npt.ArrayLike,
+    dx: float,
+    dy: float,
+    *,
+    friction: Mapping[str, Any],
+    shear_modulus: Both | None = None,
+    poisson_ratio: Both | None = None,
+    young_modulus: Both | None = None,
+    influence: Any = None,
+    layer: npt.ArrayLike | None = None,
+    period: str | None = None,
+    units: tuple[str, str] | None = None,
+    progress: Callable[[Progress], Any] | bool | None = None,
+    **given: Unpack[SolveOptions],
+) -> TangentialResult:
+    """Solves the tangential problem of pressures of one's own: tractions, slip, and which elements stick.
+
+    Tractions do not change the pressures: of unlike bodies this is one turn of two. Many motions or forces of the same pressures are solved
+    by `friction_batch`.
+
+    Parameters
+    ----------
+    pressure : array_like, (my, mx)
+        Those that are not positive count as no contact.
+    dx, dy : float
+        Element sizes.
+    friction : mapping
+        As for `solve`.
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, period, units, progress, **given
+        As for `solve`. With `influence` the friction needs coefficients of its own, too.
+
+    Returns
+    -------
+    TangentialResult
+
+    Raises
+    ------
+    ContactNormalError
+        If the library refuses the scene or an option.
+
+    Examples
+    --------
+    Half of what friction can carry, by a uniform pressure:
+
+    >>> import numpy as np, contact_normal
+    >>> pressure = np.pad(np.full((8, 8), 100.0), 2)
+    >>> found = contact_normal.solve_tangential(pressure, 0.1, 0.1, friction={"coefficient": 0.3, "force": (9.6, 0.0)},
+    ...                                         shear_modulus=82000.0, poisson_ratio=0.28)
+    >>> round(found.tangential_force[0], 4), bool((found.adhesion == 1).any() and (found.adhesion == 2).any())
+    (9.6, True)
+    """
+    effects = {"influence": influence, "layer": layer, "period": period, "friction": friction}
+    scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
+                                      young_modulus=young_modulus, effects=effects)
+    assert pressures is not None
+    struct, outputs = options(given), Outputs(scene.shape, has_friction=True)
+    outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
+    outputs.contact[:] = outputs.doubles[0] > 0.0
+    # What is known is not written.
+    outputs.fields.pressure = outputs.fields.deformed_distance = outputs.fields.displacement = outputs.fields.contact = None
+    watched = Watched(progress, struct, scene)
+    status, message = watched.call(
+        library.contact_normal_solve_tangential, ctypes.byref(scene.struct), pointer(pressures), ctypes.byref(struct),
+        ctypes.byref(outputs.fields), ctypes.byref(outputs.report), keep=(scene, pressures, outputs),
+    )
+    return TangentialResult(check(status, message), message, outputs, outputs.report, scene, units)

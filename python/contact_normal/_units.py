@@ -1,0 +1,45 @@
+"""The units of lengths and forces that a caller names, and those of all else that follow from them."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ._arguments import both
+
+# Names of lengths and of forces.
+Units = Optional[tuple[str, str]]
+
+# Powers of length and of force.
+_POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0), "moment": (1, 1)}
+_PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa"}
+
+
+def checked(units: Any) -> Units:
+    """Two names, or None."""
+    if units is None:
+        return None
+    length, force = both("units", units, 'a pair as ("mm", "N")')
+    for name in (length, force):
+        if not isinstance(name, str) or not name:
+            raise TypeError(f'units are {units!r}; they must be a pair as ("mm", "N")')
+    return length, force
+
+
+def unit(kind: str, units: Units) -> str:
+    """That of a "length", "force", "pressure", "area" or "moment"; "" where none are known."""
+    if units is None:
+        return ""
+    if kind == "pressure" and units in _PRESSURES:
+        return _PRESSURES[units]
+    length, force = _POWERS[kind]
+    return " ".join(name + (str(power) if power != 1 else "") for name, power in ((units[1], force), (units[0], length)) if power)
+
+
+def with_unit(value: str, kind: str, units: Units) -> str:
+    """A number with its unit."""
+    return f"{value} {unit(kind, units)}" if units else value
+
+
+def label(name: str, kind: str, units: Units) -> str:
+    """What stands at an axis."""
+    return f"{name} [{unit(kind, units)}]" if units else name

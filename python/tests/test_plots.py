@@ -1,0 +1,150 @@
+"""Pictures show things where they are, the right way up, with the units that were told."""
+
+import unittest
+
+import matplotlib
+import numpy as np
+
+import contact_normal as cn
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
+MY, MX, D = 30, 40, 0.1
+X, Y = ((np.arange(m) - 0.5 * (m - 1)) * D for m in (MX, MY))
+# At the upper right, in quadrants that no mirror keeps.
+CENTRE = (1.0, 0.5)
+H = 0.01 * ((X[None, :] - CENTRE[0]) ** 2 + 4.0 * (Y[:, None] - CENTRE[1]) ** 2)
+
+
+def colour_at(axes, x, y):
+    """The colour that is drawn at a place of the axes."""
+    axes.figure.canvas.draw()
+    pixels = np.asarray(axes.figure.canvas.buffer_rgba())[..., :3].astype(int)
+    column, row = axes.transData.transform((x, y))
+    # Rows of pixels are counted from above.
+    return pixels[pixels.shape[0] - 1 - int(row), int(column)]
+
+
+def brightness(axes, x, y):
+    return colour_at(axes, x, y).sum()
+
+
+class Plots(unittest.TestCase):
+    def setUp(self):
+        friction = {"coefficient": 0.3, "force": (60.0, None)}
+        self.found = cn.solve(H, D, D, force=900.0, friction=friction, units=("mm", "N"), **STEEL)
+        iy, ix = np.unravel_index(self.found.pressure.argmax(), H.shape)
+        self.assertLess(max(abs(X[ix] - CENTRE[0]), abs(Y[iy] - CENTRE[1])), D)
+        self.mirrored = [(-CENTRE[0], CENTRE[1]), (CENTRE[0], -CENTRE[1]), (-CENTRE[0], -CENTRE[1])]
+        # An ellipse: its long axis lies along x.
+        self.out_along_y = (CENTRE[0], CENTRE[1] + 0.45 * np.ptp(np.nonzero(self.found.contact)[1]) * D)
+
+    def tearDown(self):
+        pyplot.close("all")
+
+    def assert_outline(self, axes, contact):
+        """The border is that of the contact area: segments, by their middles."""
+        drawn = {tuple(np.round(segment.mean(axis=0) / D, 2)) for lines in axes.collections if hasattr(lines, "get_segments")
+                 for segment in lines.get_segments()}
+        border = set()
+        for iy, ix in zip(*np.nonzero(contact)):
+            for ny, nx in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+                inside = 0 <= iy + ny < MY and 0 <= ix + nx < MX and contact[iy + ny, ix + nx]
+                if not inside:
+                    border.add(tuple(np.round((X[ix] / D + 0.5 * nx, Y[iy] / D + 0.5 * ny), 2)))
+        self.assertLessEqual(border, drawn)
+        return drawn - border
+
+    def test_pressures(self):
+        axes = self.found.plot()
+        background = colour_at(axes, *self.mirrored[0])
+        self.assertGreater(abs(colour_at(axes, *CENTRE) - background).sum(), 100)
+        for place in (*self.mirrored, self.out_along_y):
+            np.testing.assert_array_equal(colour_at(axes, *place), background, err_msg=str(place))
+        self.assertEqual(self.assert_outline(axes, self.found.contact), set())
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel(), axes.figure.axes[1].get_ylabel()), ("x [mm]", "y [mm]", "pressure [MPa]"))
+        self.assertRegex(axes.get_title(), r"^force 900 N, approach 0\.\d+ mm, 40 × 30 elements$")
+        self.found.units = None
+        plain = self.found.plot()
+        self.assertEqual((plain.get_xlabel(), plain.get_ylabel(), plain.figure.axes[1].get_ylabel()), ("x", "y", "pressure"))
+
+    def test_tractions(self):
+        axes = self.found.plot_traction()
+        for place in self.mirrored:
+            np.testing.assert_allclose(colour_at(axes, *place), [240] * 3, atol=1)
+        arrows = axes.collections[0]
+        for (x, y), qx, qy in zip(arrows.get_offsets(), arrows.U, arrows.V):
+            iy, ix = int(round((y - Y[0]) / D)), int(round((x - X[0]) / D))
+            self.assertEqual((qx, qy), tuple(self.found.traction[:, iy, ix]))
+        self.assertGreater(len(arrows.U), 20)
+        self.assert_outline(axes, self.found.contact)
+        self.assert_outline(axes, self.found.adhesion == 1)
+        blue, orange = (np.array(colour) * 255 for colour in ((0.78, 0.87, 0.96), (0.99, 0.85, 0.74)))
+        shown = axes.images[0].get_array()
+        for side, colour in ((1, blue), (2, orange)):
+            np.testing.assert_allclose(shown[self.found.adhesion == side] * 255, np.broadcast_to(colour, ((self.found.adhesion == side).sum(), 3)))
+        self.assertEqual(axes.images[0].origin, "lower")
+        self.assertEqual(axes.get_xlabel(), "x [mm]")
+        self.assertRegex(axes.get_title(), r"force \(60, .*\) N;")
+
+    def test_sections(self):
+        stress = self.found.subsurface([1.5, 0.0, 0.4, 0.2, 0.8])
+        for given, across in (({"y": CENTRE[1]}, CENTRE[0]), ({"x": CENTRE[0]}, CENTRE[1])):
+            axes = stress.plot_section(of="von_mises", **given)
+            # The body is below its surface, and the largest stress near the surface.
+            below, above = axes.transData.transform((across, 1.4))[1], axes.transData.transform((across, 0.0))[1]
+            self.assertLess(below, above)
+            self.assertGreater(brightness(axes, across, 0.3), brightness(axes, across, 1.4) + 100)
+            self.assertGreater(brightness(axes, across, 0.3), brightness(axes, -across, 0.3) + 100)
+            name = "x" if "y" in given else "y"
+            self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), (f"{name} [mm]", "depth z [mm]"))
+            self.assertEqual(axes.figure.axes[1].get_ylabel(), "von Mises [MPa]")
+        axes = stress.plot_depth(*CENTRE)
+        self.assertGreater(*axes.get_ylim())
+        lines = {line.get_label(): line for line in axes.get_lines()}
+        depths = np.argsort(stress.depths)
+        iy, ix = np.argmin(abs(Y - CENTRE[1])), np.argmin(abs(X - CENTRE[0]))
+        np.testing.assert_array_equal(lines["von Mises"].get_ydata(), stress.depths[depths])
+        self.assertTrue(any(np.array_equal(lines["von Mises"].get_xdata(), stress.von_mises[depths, y, x])
+                            for y in (iy - 1, iy, iy + 1) for x in (ix - 1, ix, ix + 1)))
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("stress [MPa]", "depth z [mm]"))
+        some = self.found.subsurface([0.0, 0.2], components=["zz"])
+        self.assertEqual(len(some.plot_depth().get_lines()), 2)
+        with self.assertRaisesRegex(ValueError, "von_mises is not there to be drawn"):
+            some.plot_section()
+        with self.assertRaisesRegex(ValueError, "units is not there to be drawn"):
+            some.plot_section(of="units")
+
+    def test_a_grid_that_lies_elsewhere(self):
+        found = cn.solve_to_accuracy(lambda x, y: 0.1 * ((x - 11.0) ** 2 + (y - 21.0) ** 2), 0.2, 0.2, shape=(16, 16), corner=(10.0, 20.0),
+                                     force=100.0, target=0.1, **STEEL)
+        axes = found.plot()
+        self.assertEqual(tuple(np.round(axes.images[0].get_extent(), 9)), (10.0, 13.2, 20.0, 23.2))
+        self.assertGreater(abs(colour_at(axes, 11.0, 21.0) - colour_at(axes, 12.5, 22.5)).sum(), 100)
+        stress = found.subsurface([0.0, 0.3, 1.0])
+        axes = stress.plot_section(y=21.0)
+        self.assertGreater(brightness(axes, 11.0, 0.3), brightness(axes, 13.0, 0.3) + 100)
+        self.assertEqual(len(stress.plot_depth().get_lines()), 6)
+
+    def test_units(self):
+        for units, pressure in ((("m", "N"), "Pa"), (("mm", "N"), "MPa"), (("in", "lbf"), "lbf in-2"), (["um", "mN"], "mN um-2")):
+            self.found.units = units
+            self.assertEqual(self.found.plot().figure.axes[1].get_ylabel(), f"pressure [{pressure}]")
+        for bad, words in (("mm", "units is 'mm'"), (("mm",), "units has 1 parts"), (("mm", 3), "units are"), (("mm", ""), "units are")):
+            with self.assertRaisesRegex((TypeError, ValueError), words):
+                self.found.units = bad
+            with self.assertRaisesRegex((TypeError, ValueError), words):
+                cn.solve(H, D, D, force=1.0, units=bad, **STEEL)
+            with self.assertRaisesRegex((TypeError, ValueError), words):
+                cn.Solver(MY, MX, D, D, units=bad, **STEEL)
+        with cn.Solver(MY, MX, D, D, units=("m", "N"), **STEEL) as solver:
+            self.assertEqual(solver.solve(H, force=1.0).units, ("m", "N"))
+            self.assertEqual(solver.solve_batch([H], force=1.0)[0].units, ("m", "N"))
+        accurate = cn.to_accuracy(H, D, D, force=100.0, target=0.1, units=("mm", "N"), **STEEL)
+        self.assertEqual((accurate.units, accurate.subsurface([0.1]).units), (("mm", "N"), ("mm", "N")))
+
+
+if __name__ == "__main__":
+    unittest.main()
