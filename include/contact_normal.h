@@ -79,7 +79,82 @@
 /*
  Version of the ABI: grows with every release that adds to it.
  */
-#define CONTACT_NORMAL_ABI_VERSION 1
+#define CONTACT_NORMAL_ABI_VERSION 2
+
+/*
+ `kind`: `contact_normal_scene`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_SCENE 1
+
+/*
+ `kind`: `contact_normal_options`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_OPTIONS 2
+
+/*
+ `kind`: `contact_normal_fields`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_FIELDS 3
+
+/*
+ `kind`: `contact_normal_report`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_REPORT 4
+
+/*
+ `kind`: `contact_normal_accuracy`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_ACCURACY 5
+
+/*
+ `kind`: `contact_normal_influence`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_INFLUENCE 6
+
+/*
+ `kind`: `contact_normal_row_tables`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_ROW_TABLES 7
+
+/*
+ `kind`: `contact_normal_layer`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_LAYER 8
+
+/*
+ `kind`: `contact_normal_pressure_limit`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PRESSURE_LIMIT 9
+
+/*
+ `kind`: `contact_normal_period`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PERIOD 10
+
+/*
+ `kind`: `contact_normal_patches`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PATCHES 11
+
+/*
+ `kind`: `contact_normal_coating`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_COATING 12
+
+/*
+ `kind`: `contact_normal_friction`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FRICTION 13
+
+/*
+ `kind`: `contact_normal_friction_results`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FRICTION_RESULTS 14
+
+/*
+ `kind`: `contact_normal_stress_outputs`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_STRESS_OUTPUTS 15
 
 /*
  `load`: the approach of the bodies is given.
@@ -335,6 +410,28 @@ typedef struct contact_normal_solver contact_normal_solver;
 typedef int32_t contact_normal_status;
 
 /*
+ Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+ */
+typedef struct contact_normal_coating {
+  /*
+   Set by `contact_normal_coating_init`.
+   */
+  int64_t struct_size;
+  /*
+   Its thickness, a length >= 0; default 0: no coating.
+   */
+  double thickness;
+  /*
+   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+   */
+  double shear_modulus;
+  /*
+   Its nu, in (-1, 0.5]; default 0.
+   */
+  double poisson_ratio;
+} contact_normal_coating;
+
+/*
  Effect: the caller's own influence coefficients instead of the half-space. Nothing is assumed of them but that a pressure
  displaces its own element inwards: they need be neither symmetric nor positive.
  */
@@ -475,28 +572,6 @@ typedef struct contact_normal_row_tables {
    */
   double scale;
 } contact_normal_row_tables;
-
-/*
- Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
- */
-typedef struct contact_normal_coating {
-  /*
-   Set by `contact_normal_coating_init`.
-   */
-  int64_t struct_size;
-  /*
-   Its thickness, a length >= 0; default 0: no coating.
-   */
-  double thickness;
-  /*
-   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
-   */
-  double shear_modulus;
-  /*
-   Its nu, in (-1, 0.5]; default 0.
-   */
-  double poisson_ratio;
-} contact_normal_coating;
 
 /*
  Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
@@ -1461,24 +1536,14 @@ const char *contact_normal_version(void);
 int32_t contact_normal_abi_version(void);
 
 /*
- Fills a scene with nothing: sizes, elastic constants and the undeformed distance have to be set. Since 0.1.
+ Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
+ and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
+ size of their own struct. No more than `size` bytes are written, and what this library does not know of them is 0. `to` NULL is ignored.
+ Since 0.2.
  */
-void contact_normal_scene_init(struct contact_normal_scene *scene);
-
-/*
- Fills an influence table with nothing, and a scale of 1. Since 0.1.
- */
-void contact_normal_influence_init(struct contact_normal_influence *influence);
-
-/*
- Fills row tables with nothing, and a scale of 1. Since 0.1.
- */
-void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
-
-/*
- Fills a coating with no thickness. Since 0.2.
- */
-void contact_normal_coating_init(struct contact_normal_coating *coating);
+void contact_normal_init(int32_t kind,
+                         void *to,
+                         int64_t size);
 
 /*
  What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
@@ -1490,46 +1555,6 @@ contact_normal_status contact_normal_coating_compliance(const struct contact_nor
                                                         double poisson_ratio,
                                                         double wave_number,
                                                         double *compliance);
-
-/*
- Fills patches with none. Since 0.1.
- */
-void contact_normal_patches_init(struct contact_normal_patches *patches);
-
-/*
- Fills a period with none. Since 0.1.
- */
-void contact_normal_period_init(struct contact_normal_period *period);
-
-/*
- Fills a layer with a compliance of 0. Since 0.1.
- */
-void contact_normal_layer_init(struct contact_normal_layer *layer);
-
-/*
- Fills a pressure limit with +infinity. Since 0.1.
- */
-void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
-
-/*
- Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
- */
-void contact_normal_friction_init(struct contact_normal_friction *friction);
-
-/*
- Fills options with the defaults. Since 0.1.
- */
-void contact_normal_options_init(struct contact_normal_options *options);
-
-/*
- Fills fields with NULL: nothing is wanted. Since 0.1.
- */
-void contact_normal_fields_init(struct contact_normal_fields *fields);
-
-/*
- Fills a report with nothing, without a ledger. Since 0.1.
- */
-void contact_normal_report_init(struct contact_normal_report *report);
 
 /*
  Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
@@ -1598,11 +1623,6 @@ contact_normal_status contact_normal_solve_tangential(const struct contact_norma
                                                       struct contact_normal_report *report);
 
 /*
- Fills results with NULL: nothing is wanted. Since 0.2.
- */
-void contact_normal_friction_results_init(struct contact_normal_friction_results *results);
-
-/*
  Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
  (the creepage or, where `scene->friction->prescribed` says so, the force) and the spin; those of `scene->friction` itself are not
  used. `pressure` `[my][mx]`: as for `contact_normal_solve_tangential`; NULL: the normal problem of the scene is solved first, once. Of
@@ -1652,11 +1672,6 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
                                                         struct contact_normal_fields *fields,
                                                         struct contact_normal_report *reports,
                                                         contact_normal_status *statuses);
-
-/*
- Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
- */
-void contact_normal_accuracy_init(struct contact_normal_accuracy *accuracy);
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
@@ -1717,11 +1732,6 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           double *coefficients);
 
 /*
- Fills outputs with NULL: nothing is wanted. Since 0.2.
- */
-void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *outputs);
-
-/*
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
@@ -1767,5 +1777,125 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+/*
+ Fills a contact_normal_scene with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_scene_init(contact_normal_scene *scene)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_SCENE, scene, (int64_t)sizeof(contact_normal_scene));
+}
+
+/*
+ Fills a contact_normal_options with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_options_init(contact_normal_options *options)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_OPTIONS, options, (int64_t)sizeof(contact_normal_options));
+}
+
+/*
+ Fills a contact_normal_fields with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_fields_init(contact_normal_fields *fields)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FIELDS, fields, (int64_t)sizeof(contact_normal_fields));
+}
+
+/*
+ Fills a contact_normal_report with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_report_init(contact_normal_report *report)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_REPORT, report, (int64_t)sizeof(contact_normal_report));
+}
+
+/*
+ Fills a contact_normal_accuracy with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_accuracy_init(contact_normal_accuracy *accuracy)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ACCURACY, accuracy, (int64_t)sizeof(contact_normal_accuracy));
+}
+
+/*
+ Fills a contact_normal_influence with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_influence_init(contact_normal_influence *influence)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_INFLUENCE, influence, (int64_t)sizeof(contact_normal_influence));
+}
+
+/*
+ Fills a contact_normal_row_tables with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_row_tables_init(contact_normal_row_tables *row_tables)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ROW_TABLES, row_tables, (int64_t)sizeof(contact_normal_row_tables));
+}
+
+/*
+ Fills a contact_normal_layer with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_layer_init(contact_normal_layer *layer)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_LAYER, layer, (int64_t)sizeof(contact_normal_layer));
+}
+
+/*
+ Fills a contact_normal_pressure_limit with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_pressure_limit_init(contact_normal_pressure_limit *pressure_limit)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PRESSURE_LIMIT, pressure_limit, (int64_t)sizeof(contact_normal_pressure_limit));
+}
+
+/*
+ Fills a contact_normal_period with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_period_init(contact_normal_period *period)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PERIOD, period, (int64_t)sizeof(contact_normal_period));
+}
+
+/*
+ Fills a contact_normal_patches with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_patches_init(contact_normal_patches *patches)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PATCHES, patches, (int64_t)sizeof(contact_normal_patches));
+}
+
+/*
+ Fills a contact_normal_coating with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_coating_init(contact_normal_coating *coating)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_COATING, coating, (int64_t)sizeof(contact_normal_coating));
+}
+
+/*
+ Fills a contact_normal_friction with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_friction_init(contact_normal_friction *friction)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FRICTION, friction, (int64_t)sizeof(contact_normal_friction));
+}
+
+/*
+ Fills a contact_normal_friction_results with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_friction_results_init(contact_normal_friction_results *friction_results)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FRICTION_RESULTS, friction_results, (int64_t)sizeof(contact_normal_friction_results));
+}
+
+/*
+ Fills a contact_normal_stress_outputs with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_stress_outputs_init(contact_normal_stress_outputs *stress_outputs)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_STRESS_OUTPUTS, stress_outputs, (int64_t)sizeof(contact_normal_stress_outputs));
+}
 
 #endif  /* CONTACT_NORMAL_H */

@@ -1,7 +1,19 @@
-"""The structs and callbacks of include/contact_normal.h for ctypes, member by member."""
+"""The structs and callbacks of include/contact_normal.h for ctypes. Made from that; do not edit."""
 
 import ctypes
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
+
+
+class Coating(ctypes.Structure):
+    """contact_normal_coating."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("thickness", c_double),
+        ("shear_modulus", c_double),
+        ("poisson_ratio", c_double),
+    ]
+
 
 class Influence(ctypes.Structure):
     """contact_normal_influence."""
@@ -18,19 +30,31 @@ class Influence(ctypes.Structure):
 class Layer(ctypes.Structure):
     """contact_normal_layer."""
 
-    _fields_ = [("struct_size", c_int64), ("compliance", c_double), ("compliances", POINTER(c_double))]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("compliance", c_double),
+        ("compliances", POINTER(c_double)),
+    ]
 
 
 class PressureLimit(ctypes.Structure):
     """contact_normal_pressure_limit."""
 
-    _fields_ = [("struct_size", c_int64), ("limit", c_double), ("limits", POINTER(c_double))]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("limit", c_double),
+        ("limits", POINTER(c_double)),
+    ]
 
 
 class Period(ctypes.Structure):
     """contact_normal_period."""
 
-    _fields_ = [("struct_size", c_int64), ("x", c_int32), ("y", c_int32)]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("x", c_int32),
+        ("y", c_int32),
+    ]
 
 
 class Patches(ctypes.Structure):
@@ -54,17 +78,6 @@ class RowTables(ctypes.Structure):
         ("rows", c_int32),
         ("coefficients", POINTER(c_double)),
         ("scale", c_double),
-    ]
-
-
-class Coating(ctypes.Structure):
-    """contact_normal_coating."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("thickness", c_double),
-        ("shear_modulus", c_double),
-        ("poisson_ratio", c_double),
     ]
 
 
@@ -141,7 +154,6 @@ class Progress(ctypes.Structure):
 
 
 ProgressCallback = CFUNCTYPE(c_int32, POINTER(Progress), c_void_p)
-LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
 
 
 class Options(ctypes.Structure):
@@ -308,7 +320,7 @@ class Accuracy(ctypes.Structure):
 
 
 class Price(ctypes.Structure):
-    """contact_normal_price: what one accuracy costs, predicted."""
+    """contact_normal_price."""
 
     _fields_ = [
         ("target", c_double),
@@ -327,7 +339,7 @@ class Price(ctypes.Structure):
 
 
 class HertzSolution(ctypes.Structure):
-    """contact_normal_hertz_solution: the exact solution."""
+    """contact_normal_hertz_solution."""
 
     _fields_ = [
         ("semi_axis_x", c_double),
@@ -340,7 +352,7 @@ class HertzSolution(ctypes.Structure):
 
 
 class StressMaximum(ctypes.Structure):
-    """contact_normal_stress_maximum: the largest value of a field of stresses, and where it is."""
+    """contact_normal_stress_maximum."""
 
     _fields_ = [
         ("value", c_double),
@@ -369,26 +381,29 @@ class StressOutputs(ctypes.Structure):
     ]
 
 
+LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
+
+
 def names(kind: type[ctypes.Structure]) -> list[str]:
     """The members of a struct."""
     return [field[0] for field in kind._fields_]
 
 
-# The structs that begin with their size, by the name of their _init.
-SIZED: dict[str, type[ctypes.Structure]] = {
-    "scene": Scene,
-    "influence": Influence,
-    "layer": Layer,
-    "pressure_limit": PressureLimit,
-    "period": Period,
-    "patches": Patches,
-    "row_tables": RowTables,
-    "coating": Coating,
-    "friction": Friction,
-    "options": Options,
-    "fields": Fields,
-    "report": Report,
-    "friction_results": FrictionResults,
-    "accuracy": Accuracy,
-    "stress_outputs": StressOutputs,
+# The structs that have an _init, and the kind of each.
+KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
+    "scene": (1, Scene),
+    "options": (2, Options),
+    "fields": (3, Fields),
+    "report": (4, Report),
+    "accuracy": (5, Accuracy),
+    "influence": (6, Influence),
+    "row_tables": (7, RowTables),
+    "layer": (8, Layer),
+    "pressure_limit": (9, PressureLimit),
+    "period": (10, Period),
+    "patches": (11, Patches),
+    "coating": (12, Coating),
+    "friction": (13, Friction),
+    "friction_results": (14, FrictionResults),
+    "stress_outputs": (15, StressOutputs),
 }

@@ -3,7 +3,7 @@
 use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::influence::table_size;
 use super::status::Refusal;
-use super::structs::{self, versioned};
+use super::structs::versioned;
 use crate::friction::{EXTERIOR, SLIP, STICK};
 use crate::grid::Grid;
 use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
@@ -98,14 +98,7 @@ pub struct contact_normal_friction {
     pub influence_cross: [*const f64; 2],
 }
 
-versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
-
-/// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_friction_init(friction: *mut contact_normal_friction) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(friction) }
-}
+versioned! { contact_normal_friction, contact_normal_friction_init, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.

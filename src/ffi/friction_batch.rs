@@ -50,14 +50,7 @@ pub struct contact_normal_friction_results {
     pub adhesion: *mut i32,
 }
 
-versioned! { contact_normal_friction_results, 104 }
-
-/// Fills results with NULL: nothing is wanted. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_friction_results_init(results: *mut contact_normal_friction_results) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(results) }
-}
+versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
 
 /// Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
 /// (the creepage or, where `scene->friction->prescribed` says so, the force) and the spin; those of `scene->friction` itself are not

@@ -105,20 +105,13 @@ pub struct contact_normal_options {
 }
 
 versioned! {
-    contact_normal_options, 96,
+    contact_normal_options, contact_normal_options_init, 96,
     pre_sweeps: Options::default().cycle.pre_sweeps as i32,
     post_sweeps: Options::default().cycle.post_sweeps as i32,
     coarsest: Options::default().cycle.coarsest as i32,
     tolerance: Options::default().tolerance,
     max_cycles: Options::default().max_cycles as i32,
     threads: Options::default().threads as i32,
-}
-
-/// Fills options with the defaults. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_normal_options) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(options) }
 }
 
 /// Options, and as the caller gave them: with the callback and its user pointer.

@@ -1,6 +1,6 @@
 //! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
 
-use super::structs::{self, versioned, Versioned};
+use super::structs::{versioned, Versioned};
 use crate::solver::{LedgerRow, Limit, Progress, Report};
 
 /// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
@@ -26,7 +26,7 @@ pub struct contact_normal_fields {
     pub adhesion: *mut i32,
 }
 
-versioned! { contact_normal_fields, 40 }
+versioned! { contact_normal_fields, contact_normal_fields_init, 40 }
 
 /// `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
 pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
@@ -217,7 +217,7 @@ pub struct contact_normal_report {
 }
 
 versioned! {
-    contact_normal_report, 264,
+    contact_normal_report, contact_normal_report_init, 264,
     error_force: -1.0, error_max_pressure: -1.0, error_contact_area: -1.0, error_pressure: -1.0,
     corrected_area: -1.0, error_corrected_area: -1.0,
     halved_seconds: -1.0, halved_error_force: -1.0,
@@ -285,16 +285,3 @@ impl From<&Progress> for contact_normal_progress {
     }
 }
 
-/// Fills fields with NULL: nothing is wanted. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_fields_init(fields: *mut contact_normal_fields) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(fields) }
-}
-
-/// Fills a report with nothing, without a ledger. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_report_init(report: *mut contact_normal_report) {
-    // SAFETY: as above.
-    unsafe { structs::init(report) }
-}

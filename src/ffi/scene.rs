@@ -65,14 +65,7 @@ pub struct contact_normal_scene {
     pub friction: *const contact_normal_friction,
 }
 
-versioned! { contact_normal_scene, 144 }
-
-/// Fills a scene with nothing: sizes, elastic constants and the undeformed distance have to be set. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_scene_init(scene: *mut contact_normal_scene) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(scene) }
-}
+versioned! { contact_normal_scene, contact_normal_scene_init, 144 }
 
 /// The load that the constants and values of the boundary mean.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {

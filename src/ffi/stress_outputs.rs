@@ -2,7 +2,7 @@
 
 use super::arguments::Regions;
 use super::status::Refusal;
-use super::structs::{self, versioned};
+use super::structs::versioned;
 use crate::grid::Grid;
 use crate::stress::{Depth, Maximum, Wanted};
 
@@ -50,14 +50,7 @@ pub struct contact_normal_stress_outputs {
     pub largest_shear: *mut contact_normal_stress_maximum,
 }
 
-versioned! { contact_normal_stress_outputs, 136 }
-
-/// Fills outputs with NULL: nothing is wanted. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contact_normal_stress_outputs) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(outputs) }
-}
+versioned! { contact_normal_stress_outputs, contact_normal_stress_outputs_init, 136 }
 
 impl contact_normal_stress_maximum {
     pub(super) fn new(found: &Maximum, z: f64, grid: &Grid) -> contact_normal_stress_maximum {
