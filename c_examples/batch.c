@@ -52,6 +52,7 @@ int main(int argc, char **argv)
         printf("%14s %14s %14s %22s\n", "approach [mm]", "force [N]", "exact [N]", "max pressure [N/mm2]");
         for (i = COUNT / 5 - 1; ok && i < COUNT; i += COUNT / 5) {
             contact_normal_hertz_solution exact;
+            contact_normal_hertz_solution_init(&exact);
             ok = statuses[i] == CONTACT_NORMAL_OK
                  && solved(contact_normal_hertz(curvature_x, curvature_y, scenes[i].shear_modulus, scenes[i].poisson_ratio,
                                                 scenes[i].load, scenes[i].approach, &exact),

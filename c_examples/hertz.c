@@ -60,6 +60,7 @@ int main(int argc, char **argv)
     fields.pressure = p;
     fields.contact = contact;
     contact_normal_report_init(&report);
+    contact_normal_hertz_solution_init(&exact);
 
     ok = solved(contact_normal_solve(&scene, &options, &fields, &report), "contact_normal_solve")
          && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,

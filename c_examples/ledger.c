@@ -48,9 +48,11 @@ int main(int argc, char **argv)
     fields.pressure = p;
     fields.contact = contact;
     contact_normal_report_init(&report);
+    contact_normal_ledger_row_init(ledger); /* the first row says how large one is */
     report.ledger = ledger;
     report.ledger_capacity = sizeof ledger / sizeof *ledger;
 
+    contact_normal_hertz_solution_init(&exact);
     ok = solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")
          && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
                                         scene.approach, &exact),

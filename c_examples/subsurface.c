@@ -29,6 +29,7 @@ int main(void)
     for (i = 0; i < DEPTHS; i++) depths[i] = 0.02 * i;
     outputs.stress[2] = zz; /* what is not asked for is not computed */
     outputs.maximum_shear = shear;
+    contact_normal_stress_maximum_init(&largest);
     outputs.largest_shear = &largest;
     if (!solved(contact_normal_subsurface_stress(&scene, 1, p, NULL, NULL, depths, DEPTHS, NULL, &outputs), "subsurface_stress")) {
         return EXIT_FAILURE;

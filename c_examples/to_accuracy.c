@@ -65,8 +65,10 @@ int main(int argc, char **argv)
     accuracy.max_elements = 1024 * 1024;
     accuracy.surface = surface;
     contact_normal_report_init(&report);
+    contact_normal_ledger_row_init(rows); /* the first row says how large one is */
     report.ledger = rows;
     report.ledger_capacity = 16;
+    contact_normal_hertz_solution_init(&exact);
     if (!solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
                                      scene.force, &exact),
                 "contact_normal_hertz")

@@ -38,6 +38,7 @@ program hertz
   call contact_normal_set_fields(fields, pressure=pressure, contact=contact)
   call contact_normal_report_init(report)
   call check(contact_normal_solve(scene, options, fields, report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 

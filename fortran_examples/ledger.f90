@@ -35,6 +35,7 @@ program ledger_example
   call contact_normal_report_init(report)
   call contact_normal_set_ledger(report, ledger)
   call check(contact_normal_solve(scene, fields=fields, report=report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 

@@ -62,6 +62,7 @@ program to_accuracy
   call contact_normal_report_init(report)
   call contact_normal_set_ledger(report, rows)
   call check(contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 

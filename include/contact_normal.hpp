@@ -360,6 +360,7 @@ contact_normal_status run(std::size_t size, result &found, options how, const co
     found.adhesion.resize(size);
     fields.adhesion = found.adhesion.data();
     contact_normal_report_init(&found.report);
+    contact_normal_ledger_row_init(found.ledger.data());
     found.report.ledger = found.ledger.data(), found.report.ledger_capacity = ledger_room;
     found.status = call(&how, &fields, &found.report);
     found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
@@ -492,7 +493,9 @@ struct loads {
 struct stresses {
     std::array<std::vector<double>, 6> components; // xx, yy, zz, xy, xz, yz
     std::vector<double> von_mises, maximum_shear;
-    contact_normal_stress_maximum largest_von_mises{}, largest_shear{};
+    contact_normal_stress_maximum largest_von_mises, largest_shear;
+
+    stresses() { contact_normal_stress_maximum_init(&largest_von_mises), contact_normal_stress_maximum_init(&largest_shear); }
 };
 
 namespace detail {
@@ -557,6 +560,7 @@ inline contact_normal_hertz_solution hertz(double curvature_x, double curvature_
     const double shear_modulus[2] = {one.shear_modulus, other.shear_modulus};
     const double poisson_ratio[2] = {one.poisson_ratio, other.poisson_ratio};
     contact_normal_hertz_solution exact;
+    contact_normal_hertz_solution_init(&exact);
     check(contact_normal_hertz(curvature_x, curvature_y, shear_modulus, poisson_ratio, load, amount, &exact));
     return exact;
 }

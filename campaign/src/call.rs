@@ -146,7 +146,7 @@ pub struct Handle(*mut contact_normal_solver);
 impl Drop for Handle {
     fn drop(&mut self) {
         // SAFETY: made by `contact_normal_solver_new`, or NULL.
-        unsafe { contact_normal_solver_free(self.0) }
+        unsafe { contact_normal_solver_free(self.0) };
     }
 }
 

@@ -159,7 +159,7 @@ pub struct Handle(*mut contact_normal_solver);
 impl Drop for Handle {
     fn drop(&mut self) {
         // SAFETY: made by `contact_normal_solver_new`.
-        unsafe { contact_normal_solver_free(self.0) }
+        unsafe { contact_normal_solver_free(self.0) };
     }
 }
 

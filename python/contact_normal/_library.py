@@ -52,7 +52,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     ),
     "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
-    "solver_free": (None, [c_void_p]),
+    "solver_free": (c_int32, [c_void_p]),
     "solve_to_accuracy": (
         c_int32,
         [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],

@@ -126,7 +126,7 @@ def cost_of_accuracy(
     if surface:
         accuracy.surface = surface.callback
     n = len(targets)
-    wanted, rows = (ctypes.c_double * n)(*targets), (PriceStruct * n)()
+    wanted, rows = (ctypes.c_double * n)(*targets), (PriceStruct * n)(*[initialised("price")][:n])
     status = library.contact_normal_cost_of_accuracy(
         ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), QUANTITIES[quantity], n, wanted, rows
     )

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ._stress import SubsurfaceStress
 
 _REPORTED = [name for name in names(Report) if name not in ("struct_size", "ledger", "ledger_capacity")]
-_ROW = [name for name in names(LedgerRow) if name != "reserved"]
+_ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 _LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
 
 
@@ -261,7 +261,7 @@ class Outputs:
         self.fields.contact = pointer(self.contact, c_int32)
         if has_friction:
             self._hold_friction(shape)
-        self.rows = _ROWS()
+        self.rows = _ROWS(initialised("ledger_row"))
         self.report.ledger, self.report.ledger_capacity = self.rows, _LEDGER_ROOM
 
     def _hold_friction(self, shape: tuple[int, int]) -> None:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from . import _structs
 from ._arguments import Both, integer, pair, pointer
-from ._library import check, library
+from ._library import check, initialised, library
 from ._scene import load
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def hertz(
     True
     """
     which, amount = load(approach, force)
-    solution = _structs.HertzSolution()
+    solution = initialised("hertz_solution")
     check(
         library.contact_normal_hertz(
             curvature_x,

@@ -9,7 +9,6 @@ import numpy as np
 
 from ._arguments import doubles, integer, options, pointer
 from ._library import check, initialised, library
-from ._structs import StressMaximum
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -118,7 +117,7 @@ def subsurface(
         found.principal, found.directions = np.zeros((3, *shape)), np.zeros((3, *shape, 3))
         for k in range(3):
             outputs.principal[k], outputs.directions[k] = pointer(found.principal[k]), pointer(found.directions[k])
-    largest = [StressMaximum(), StressMaximum()]
+    largest = [initialised("stress_maximum") for _ in range(2)]
     outputs.largest_von_mises, outputs.largest_shear = map(ctypes.pointer, largest)
     tractions = [None, None] if traction is None else [doubles(f"traction[{k}]", traction[k], scene.shape) for k in range(2)]
     given = [None if array is None else pointer(array) for array in (pressure, *tractions)]

@@ -200,6 +200,7 @@ class LedgerRow(ctypes.Structure):
     """contact_normal_ledger_row."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("mx", c_int32),
         ("my", c_int32),
         ("cycles", c_int64),
@@ -323,6 +324,7 @@ class Price(ctypes.Structure):
     """contact_normal_price."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("target", c_double),
         ("error", c_double),
         ("tolerance", c_double),
@@ -342,6 +344,7 @@ class HertzSolution(ctypes.Structure):
     """contact_normal_hertz_solution."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("semi_axis_x", c_double),
         ("semi_axis_y", c_double),
         ("max_pressure", c_double),
@@ -355,6 +358,7 @@ class StressMaximum(ctypes.Structure):
     """contact_normal_stress_maximum."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("value", c_double),
         ("x", c_double),
         ("y", c_double),
@@ -406,4 +410,8 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "friction": (13, Friction),
     "friction_results": (14, FrictionResults),
     "stress_outputs": (15, StressOutputs),
+    "stress_maximum": (16, StressMaximum),
+    "ledger_row": (17, LedgerRow),
+    "price": (18, Price),
+    "hertz_solution": (19, HertzSolution),
 }

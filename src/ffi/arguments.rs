@@ -1,7 +1,7 @@
 //! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
 
 use super::status::Refusal;
-use super::structs::{size_of_callers, Versioned};
+use super::structs::{size_of_callers, Rows, Versioned};
 use crate::grid::Grid;
 use crate::memory::reserve;
 
@@ -93,6 +93,17 @@ impl Regions {
     /// `count` values that are written.
     pub fn output<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
+    }
+
+    /// `count` structs that are written.
+    pub fn output_rows<T: Versioned>(
+        &mut self,
+        name: &'static str,
+        start: *const T,
+        rows: &Rows<T>,
+        count: usize,
+    ) -> Result<(), Refusal> {
+        self.add(name, start as usize, rows.bytes(count), true)
     }
 
     fn add(&mut self, name: &'static str, start: usize, bytes: usize, is_output: bool) -> Result<(), Refusal> {

@@ -98,7 +98,7 @@ pub struct contact_normal_friction {
     pub influence_cross: [*const f64; 2],
 }
 
-versioned! { contact_normal_friction, contact_normal_friction_init, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
+versioned! { contact_normal_friction, contact_normal_friction_init, 216, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.

@@ -12,10 +12,12 @@ use super::friction_batch::contact_normal_friction_results;
 use super::guard::guard;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::options::contact_normal_options;
-use super::report::{contact_normal_fields, contact_normal_report};
+use super::price_list::contact_normal_price;
+use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
 use super::scene::contact_normal_scene;
+use super::special::contact_normal_hertz_solution;
 use super::status::CONTACT_NORMAL_OK;
-use super::stress_outputs::contact_normal_stress_outputs;
+use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
 
 /// `kind`: `contact_normal_scene`. Since 0.1.
@@ -48,6 +50,14 @@ pub const CONTACT_NORMAL_KIND_FRICTION: i32 = 13;
 pub const CONTACT_NORMAL_KIND_FRICTION_RESULTS: i32 = 14;
 /// `kind`: `contact_normal_stress_outputs`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_STRESS_OUTPUTS: i32 = 15;
+/// `kind`: `contact_normal_stress_maximum`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_STRESS_MAXIMUM: i32 = 16;
+/// `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+pub const CONTACT_NORMAL_KIND_LEDGER_ROW: i32 = 17;
+/// `kind`: `contact_normal_price`, of the first row of an array. Since 0.2.
+pub const CONTACT_NORMAL_KIND_PRICE: i32 = 18;
+/// `kind`: `contact_normal_hertz_solution`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -76,10 +86,51 @@ pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i
                     structs::init::<contact_normal_friction_results>(to.cast(), size)
                 }
                 CONTACT_NORMAL_KIND_STRESS_OUTPUTS => structs::init::<contact_normal_stress_outputs>(to.cast(), size),
+                CONTACT_NORMAL_KIND_STRESS_MAXIMUM => structs::init::<contact_normal_stress_maximum>(to.cast(), size),
+                CONTACT_NORMAL_KIND_LEDGER_ROW => structs::init::<contact_normal_ledger_row>(to.cast(), size),
+                CONTACT_NORMAL_KIND_PRICE => structs::init::<contact_normal_price>(to.cast(), size),
+                CONTACT_NORMAL_KIND_HERTZ_SOLUTION => structs::init::<contact_normal_hertz_solution>(to.cast(), size),
                 // Of a newer header: its struct asks for nothing until a member is set, and then the scene refuses it.
                 _ => structs::init_unknown(to.cast(), size),
             }
         }
         Ok(CONTACT_NORMAL_OK)
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ffi::structs::Versioned;
+
+    /// A newer program that leaves a member alone does not ask an older library for anything.
+    fn has_grown_by_zeros<T: Versioned>() {
+        let defaults = T::defaults();
+        // SAFETY: a Versioned is bytes.
+        let bytes = unsafe { std::slice::from_raw_parts((&raw const defaults).cast::<u8>(), size_of::<T>()) };
+        assert!(bytes[T::FIRST_SIZE..].iter().all(|byte| *byte == 0), "{}: a default that is not 0", T::NAME);
+    }
+
+    #[test]
+    fn members_that_came_after_the_first_version_have_the_default_0() {
+        has_grown_by_zeros::<contact_normal_scene>();
+        has_grown_by_zeros::<contact_normal_options>();
+        has_grown_by_zeros::<contact_normal_fields>();
+        has_grown_by_zeros::<contact_normal_report>();
+        has_grown_by_zeros::<contact_normal_accuracy>();
+        has_grown_by_zeros::<contact_normal_influence>();
+        has_grown_by_zeros::<contact_normal_row_tables>();
+        has_grown_by_zeros::<contact_normal_layer>();
+        has_grown_by_zeros::<contact_normal_pressure_limit>();
+        has_grown_by_zeros::<contact_normal_period>();
+        has_grown_by_zeros::<contact_normal_patches>();
+        has_grown_by_zeros::<contact_normal_coating>();
+        has_grown_by_zeros::<contact_normal_friction>();
+        has_grown_by_zeros::<contact_normal_friction_results>();
+        has_grown_by_zeros::<contact_normal_stress_outputs>();
+        has_grown_by_zeros::<contact_normal_stress_maximum>();
+        has_grown_by_zeros::<contact_normal_ledger_row>();
+        has_grown_by_zeros::<contact_normal_price>();
+        has_grown_by_zeros::<contact_normal_hertz_solution>();
+    }
 }

@@ -26,7 +26,7 @@ pub struct contact_normal_fields {
     pub adhesion: *mut i32,
 }
 
-versioned! { contact_normal_fields, contact_normal_fields_init, 40 }
+versioned! { contact_normal_fields, contact_normal_fields_init, 80 }
 
 /// `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
 pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
@@ -45,8 +45,10 @@ pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
 /// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
 /// known, and if the bit is set in `untrusted`, not to be known from these grids.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct contact_normal_ledger_row {
+    /// Set by `contact_normal_ledger_row_init`, which the first row of an array needs, and by the solve.
+    pub struct_size: i64,
     /// Elements in x of the grid.
     pub mx: i32,
     /// Elements in y.
@@ -87,6 +89,8 @@ pub struct contact_normal_ledger_row {
     pub reserved: i32,
 }
 
+versioned! { contact_normal_ledger_row, contact_normal_ledger_row_init, 144 }
+
 /// Copies members of the same name, converted as C has them.
 macro_rules! copy {
     ($from:expr => $to:ident: $($member:ident),+) => { $($to.$member = $from.$member as _;)+ };
@@ -106,7 +110,7 @@ macro_rules! set_result {
 
 impl From<&LedgerRow> for contact_normal_ledger_row {
     fn from(row: &LedgerRow) -> Self {
-        let mut to = Self::default();
+        let mut to = Self::defaults();
         copy!(row => to: mx, my, cycles, seconds, work_units);
         set_result!(to, row.measures, row.error);
         to
@@ -166,7 +170,7 @@ pub struct contact_normal_report {
     pub ledger_rows: i64,
     /// In: room in `ledger`; default 0.
     pub ledger_capacity: i64,
-    /// In: the caller's array, or NULL (default).
+    /// In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
     pub ledger: *mut contact_normal_ledger_row,
     /// Contact area, corrected for the elements along its outline; < 0: not known.
     pub corrected_area: f64,
@@ -217,7 +221,7 @@ pub struct contact_normal_report {
 }
 
 versioned! {
-    contact_normal_report, contact_normal_report_init, 264,
+    contact_normal_report, contact_normal_report_init, 440,
     error_force: -1.0, error_max_pressure: -1.0, error_contact_area: -1.0, error_pressure: -1.0,
     corrected_area: -1.0, error_corrected_area: -1.0,
     halved_seconds: -1.0, halved_error_force: -1.0,

@@ -65,7 +65,7 @@ pub struct contact_normal_scene {
     pub friction: *const contact_normal_friction,
 }
 
-versioned! { contact_normal_scene, contact_normal_scene_init, 144 }
+versioned! { contact_normal_scene, contact_normal_scene_init, 168 }
 
 /// The load that the constants and values of the boundary mean.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {

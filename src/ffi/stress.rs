@@ -181,8 +181,9 @@ fn run(
     })?;
     for (found, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
         if let (Some(found), false) = (found, to.is_null()) {
-            // SAFETY: not null: room for one, by the conventions of the ABI.
-            unsafe { to.write(contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid)) };
+            let largest = contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid);
+            // SAFETY: not null: a struct that declares its size, which was checked.
+            unsafe { structs::write(to, &largest)? };
         }
     }
     if !all {

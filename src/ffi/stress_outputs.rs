@@ -2,14 +2,16 @@
 
 use super::arguments::Regions;
 use super::status::Refusal;
-use super::structs::versioned;
+use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::stress::{Depth, Maximum, Wanted};
 
 /// The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct contact_normal_stress_maximum {
+    /// Set by `contact_normal_stress_maximum_init`.
+    pub struct_size: i64,
     /// The value.
     pub value: f64,
     /// Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
@@ -27,6 +29,8 @@ pub struct contact_normal_stress_maximum {
     /// Always 0.
     pub reserved: i32,
 }
+
+versioned! { contact_normal_stress_maximum, contact_normal_stress_maximum_init, 56 }
 
 /// Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
 #[repr(C)]
@@ -57,6 +61,7 @@ impl contact_normal_stress_maximum {
         let Maximum { value, depth, ix, iy } = *found;
         let place = |k: usize, d: f64| (k as f64 + 0.5) * d;
         contact_normal_stress_maximum {
+            struct_size: size_of::<contact_normal_stress_maximum>() as i64,
             value,
             x: place(ix, grid.dx),
             y: place(iy, grid.dy),
@@ -98,8 +103,14 @@ impl contact_normal_stress_outputs {
             regions.output("principal", stress, count)?;
             regions.output("directions", direction, count.saturating_mul(3))?;
         }
-        regions.output("largest_von_mises", self.largest_von_mises, 1)?;
-        regions.output("largest_shear", self.largest_shear, 1)
+        let largest = [("largest_von_mises", self.largest_von_mises), ("largest_shear", self.largest_shear)];
+        for (name, at) in largest {
+            // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+            if let Some(given) = unsafe { structs::read_optional(at.cast_const(), name)? } {
+                regions.output_struct(at, &given)?;
+            }
+        }
+        Ok(())
     }
 
     /// Writes what is wanted of depth k.

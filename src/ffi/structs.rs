@@ -42,6 +42,12 @@ macro_rules! versioned {
             }
         }
 
+        impl Default for $name {
+            fn default() -> Self {
+                $crate::ffi::structs::Versioned::defaults()
+            }
+        }
+
         #[doc = concat!("Fills a `", stringify!($name), "` with the defaults: the function of this name in the header, for Rust.")]
         pub unsafe extern "C" fn $init(to: *mut $name) {
             // SAFETY: NULL or a whole struct, by the conventions of the ABI.
@@ -124,6 +130,38 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
+/// An array of structs of the caller's, which are written: it is as far from one to the next as the first one says. The others need no
+/// `_init`.
+pub struct Rows<T> {
+    first: *mut T,
+    stride: usize,
+}
+
+impl<T: Versioned> Rows<T> {
+    /// `first`: NULL, which is refused, or a struct that declares its size.
+    pub unsafe fn of(first: *mut T, name: &str) -> Result<Rows<T>, Refusal> {
+        // SAFETY: by the caller.
+        Ok(Rows { first, stride: unsafe { declared_size(first.cast_const(), name)? } })
+    }
+
+    /// Bytes of so many.
+    pub fn bytes(&self, count: usize) -> usize {
+        self.stride.saturating_mul(count)
+    }
+
+    /// Writes all of row `i`, with 0 into what we do not know of it.
+    pub unsafe fn write(&self, i: usize, value: &T) {
+        let (stride, known) = (self.stride, self.stride.min(size_of::<T>()));
+        // SAFETY (all): the caller's array has more than `i` rows of `stride` bytes, and a Versioned is bytes.
+        unsafe {
+            let to = self.first.cast::<u8>().add(i * stride);
+            to.write_bytes(0, stride);
+            to.copy_from_nonoverlapping((&raw const *value).cast::<u8>(), known);
+            to.cast::<i64>().write_unaligned(stride as i64);
+        }
+    }
+}
+
 /// Writes the defaults into a struct that has `size` bytes in the caller's header: no more than these, and 0 into what we do not know.
 /// NULL is ignored.
 pub unsafe fn init<T: Versioned>(to: *mut T, size: i64) {
@@ -160,24 +198,25 @@ unsafe fn init_bytes(to: *mut u8, defaults: &[u8], size: i64) {
 }
 
 #[cfg(test)]
+#[allow(dead_code)] // what the macro makes beside
 mod tests {
     use super::*;
 
     /// A struct in the first version that had it, and in a later one.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, PartialEq)]
-    struct contact_normal_first {
-        struct_size: i64,
-        tolerance: f64,
+    pub struct contact_normal_first {
+        pub struct_size: i64,
+        pub tolerance: f64,
     }
 
     #[repr(C)]
     #[derive(Clone, Copy, Debug, PartialEq)]
-    struct contact_normal_later {
-        struct_size: i64,
-        tolerance: f64,
-        limit: f64,
-        count: i64,
+    pub struct contact_normal_later {
+        pub struct_size: i64,
+        pub tolerance: f64,
+        pub limit: f64,
+        pub count: i64,
     }
 
     versioned! { contact_normal_first, first_init, 16, tolerance: 1e-6 }
@@ -239,6 +278,28 @@ mod tests {
         assert_eq!(caller.0[..8], 24i64.to_ne_bytes());
         assert_eq!(caller.0[8..24], [0; 16]);
         assert_eq!(caller.0[24..], [0xAB; 40]);
+    }
+
+    #[test]
+    fn rows_are_as_far_apart_as_the_first_says() {
+        let value = contact_normal_later { struct_size: 32, tolerance: 0.5, limit: 1.0, count: 2 };
+        // Older rows of 16 bytes, and rows of a newer header of 24.
+        for size in [16usize, 24] {
+            let mut caller = room();
+            // SAFETY (all): room for two rows of that size.
+            unsafe {
+                let first = caller.at::<contact_normal_first>();
+                init(first, size as i64);
+                let older = Rows::of(first, "rows").expect("a size");
+                older.write(1, &contact_normal_first { struct_size: 16, tolerance: 0.5 });
+                assert_eq!(older.bytes(2), 2 * size);
+                assert_eq!(first.byte_add(size).read(), contact_normal_first { struct_size: size as i64, tolerance: 0.5 });
+                let newer = Rows::of(caller.at::<contact_normal_later>(), "rows").expect("a size");
+                newer.write(0, &value);
+                assert_eq!(first.read(), contact_normal_first { struct_size: size as i64, tolerance: 0.5 });
+            }
+            assert_eq!(caller.0[2 * size..], room().0[2 * size..], "{size}");
+        }
     }
 
     #[test]

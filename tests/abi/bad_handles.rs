@@ -33,8 +33,8 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
     }
     // SAFETY: made above; NULL is ignored.
     unsafe {
-        contact_normal_solver_free(handle);
-        contact_normal_solver_free(null_mut());
+        assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
+        assert_eq!(contact_normal_solver_free(null_mut()), CONTACT_NORMAL_OK);
         let call = Call::new();
         let status = contact_normal_solver_new(&call.scene.known, null(), null_mut());
         assert_eq!((status, last_error().contains("solver")), (NULL, true));

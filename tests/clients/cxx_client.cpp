@@ -102,6 +102,7 @@ static void the_ledger_has_a_row_per_grid() {
     Problem problem(64);
     problem.options.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID;
     std::vector<contact_normal_ledger_row> rows(16);
+    contact_normal_ledger_row_init(rows.data());
     problem.report.ledger = rows.data();
     problem.report.ledger_capacity = 16;
     expect(problem.solve() == CONTACT_NORMAL_OK, "the status is OK");
@@ -118,6 +119,7 @@ static void the_ledger_has_a_row_per_grid() {
     // Too little room: the rows of the finest grids, and the number there would have been.
     std::vector<contact_normal_ledger_row> few(3);
     few[2].mx = -1;
+    contact_normal_ledger_row_init(few.data());
     problem.report.ledger = few.data();
     problem.report.ledger_capacity = 2;
     expect(problem.solve() == CONTACT_NORMAL_OK, "the status is OK with little room");
@@ -130,7 +132,7 @@ static void a_handle_has_an_owner() {
     Problem problem(32);
     contact_normal_solver *made = nullptr;
     expect(contact_normal_solver_new(&problem.scene, nullptr, &made) == CONTACT_NORMAL_OK, "solver_new is OK");
-    std::unique_ptr<contact_normal_solver, void (*)(contact_normal_solver *)> solver(made, contact_normal_solver_free);
+    std::unique_ptr<contact_normal_solver, contact_normal_status (*)(contact_normal_solver *)> solver(made, contact_normal_solver_free);
     expect(contact_normal_solver_solve(solver.get(), &problem.scene, nullptr, &problem.fields, &problem.report)
                == CONTACT_NORMAL_OK,
            "solver_solve is OK");

@@ -16,6 +16,7 @@ int main(void)
 {
     const double shear_modulus[2] = {82000.0, 82000.0}, poisson_ratio[2] = {0.28, 0.28};
     contact_normal_hertz_solution exact;
+    contact_normal_hertz_solution_init(&exact);
     contact_normal_status status = contact_normal_hertz(0.0016681, 0.0030671, shear_modulus, poisson_ratio,
                                                         CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.1091, &exact);
     if (status != CONTACT_NORMAL_OK) {

@@ -68,6 +68,8 @@ int main(void)
     GUARDED(friction, friction);
     GUARDED(friction_results, results);
     GUARDED(stress_outputs, stresses);
+    GUARDED(stress_maximum, largest);
+    GUARDED(hertz_solution, hertz);
 
     flat(M, M, 0.5, 0.5, h, NULL);
     scene.it.mx = scene.it.my = M;
@@ -84,6 +86,18 @@ int main(void)
 
     check(contact_normal_solve(&scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solve");
     check(p[N / 2 + M / 2] > 0.0 && contact[0] == 0, "its result");
+
+    /* Rows of the ledger are as far apart as the first one says. */
+    contact_normal_ledger_row ledger[3];
+    memset(ledger, 0xAB, sizeof ledger);
+    contact_normal_ledger_row_init(ledger);
+    report.it.ledger = ledger, report.it.ledger_capacity = 2;
+    options.it.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID;
+    check(contact_normal_solve(&scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solve with a ledger");
+    check(ledger[0].mx == M / 2 && ledger[1].mx == M && ledger[1].struct_size == (int64_t)sizeof *ledger, "its rows");
+    check(((unsigned char *)&ledger[2])[0] == 0xAB, "no row more");
+    options.it.method = CONTACT_NORMAL_METHOD_AUTO;
+    report.it.ledger = NULL, report.it.ledger_capacity = 0;
 
     /* Every effect that goes with the others. */
     for (int i = 0; i < N; i++) each[i] = 1e-7, patch[i] = i % M >= M / 2;
@@ -129,6 +143,20 @@ int main(void)
     check(contact_normal_solve_to_accuracy(&scene.it, &options.it, &accuracy.it, NULL, &report.it) == CONTACT_NORMAL_OK, "solve_to_accuracy");
     check(accuracy.it.mx >= M && accuracy.it.reached <= 0.1, "its grid");
 
+    contact_normal_price prices[3];
+    memset(prices, 0xAB, sizeof prices);
+    contact_normal_price_init(prices);
+    const double targets[2] = {0.1, 0.05};
+    check(contact_normal_cost_of_accuracy(&scene.it, &options.it, &accuracy.it, CONTACT_NORMAL_QUANTITY_FORCE, 2, targets, prices) ==
+              CONTACT_NORMAL_OK,
+          "cost_of_accuracy");
+    check(prices[0].target == 0.1 && prices[1].target == 0.05 && prices[1].struct_size == (int64_t)sizeof *prices, "its rows");
+    check(((unsigned char *)&prices[2])[0] == 0xAB, "no row more");
+    check(contact_normal_hertz(0.02, 0.02, scene.it.shear_modulus, scene.it.poisson_ratio, CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.05, &hertz.it) ==
+              CONTACT_NORMAL_OK,
+          "hertz");
+    check(hertz.it.force > 0.0, "its force");
+
     /* Friction. */
     friction.it.coefficient = 0.3, friction.it.creepage[0] = -1e-4;
     scene.it.friction = &friction.it;
@@ -145,8 +173,10 @@ int main(void)
     /* Stresses. */
     const double depths[1] = {0.5};
     stresses.it.von_mises = u;
+    stresses.it.largest_von_mises = &largest.it;
     check(contact_normal_subsurface_stress(&scene.it, 1, p, NULL, NULL, depths, 1, &options.it, &stresses.it) == CONTACT_NORMAL_OK,
           "subsurface_stress");
+    check(largest.it.value > 0.0 && largest.it.z == 0.5, "the largest");
 
 #ifdef LATER
     struct {
@@ -174,7 +204,8 @@ int main(void)
     check(is_untouched(scene.guard) && is_untouched(options.guard) && is_untouched(fields.guard) && is_untouched(report.guard) &&
               is_untouched(accuracy.guard) && is_untouched(influence.guard) && is_untouched(rows.guard) && is_untouched(layer.guard) &&
               is_untouched(limit.guard) && is_untouched(period.guard) && is_untouched(patches.guard) && is_untouched(coating.guard) &&
-              is_untouched(friction.guard) && is_untouched(results.guard) && is_untouched(stresses.guard),
+              is_untouched(friction.guard) && is_untouched(results.guard) && is_untouched(stresses.guard) && is_untouched(largest.guard) &&
+              is_untouched(hertz.guard),
           "what lies beyond the structs");
     (void)stick_slip;
     if (failures == 0) puts("all as expected");

@@ -182,8 +182,7 @@ unsafe extern "C" fn misuse(_: *const contact_normal_progress, user: *mut c_void
         }
         outcomes.push((contact_normal_solver_fields(*handle, &mut call.fields.known), last_error()));
         outcomes.push((contact_normal_solver_set_influence(*handle, &call.influence.known), last_error()));
-        contact_normal_solver_free(*handle);
-        outcomes.push((CONTACT_NORMAL_INVALID_ARGUMENT, last_error()));
+        outcomes.push((contact_normal_solver_free(*handle), last_error()));
         // A handle of its own it may use.
         let own = Handle::of(call);
         assert_eq!(call.run(Through::SolverSolve, own.0).0, CONTACT_NORMAL_OK);

@@ -1,23 +1,23 @@
-//! The sizes that programs of version 0.1 pass.
+//! The sizes that programs of version 0.2 pass.
 
 use std::ptr::null_mut;
 
 use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
-/// Each struct of 0.1 has this size, for ever.
+/// Each struct of 0.2 has this size, for ever.
 const SIZES: [(&str, i64); 12] = [
-    ("scene", 144),
+    ("scene", 168),
     ("influence", 32),
     ("layer", 24),
     ("pressure_limit", 24),
     ("period", 16),
     ("patches", 32),
     ("row_tables", 32),
-    ("friction", 152),
+    ("friction", 216),
     ("options", 96),
-    ("fields", 40),
-    ("report", 264),
+    ("fields", 80),
+    ("report", 440),
     ("accuracy", 112),
 ];
 
@@ -43,7 +43,7 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
 }
 
 #[test]
-fn a_struct_of_version_0_1_is_accepted_and_a_shorter_one_is_not() {
+fn a_struct_of_version_0_2_is_accepted_and_a_shorter_one_is_not() {
     for (name, size) in SIZES {
         let through = if name == "accuracy" { Through::ToAccuracy } else { Through::Solve };
         for (size, status) in

@@ -157,6 +157,26 @@
 #define CONTACT_NORMAL_KIND_STRESS_OUTPUTS 15
 
 /*
+ `kind`: `contact_normal_stress_maximum`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_STRESS_MAXIMUM 16
+
+/*
+ `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_LEDGER_ROW 17
+
+/*
+ `kind`: `contact_normal_price`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_PRICE 18
+
+/*
+ `kind`: `contact_normal_hertz_solution`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_HERTZ_SOLUTION 19
+
+/*
  `load`: the approach of the bodies is given.
  */
 #define CONTACT_NORMAL_PRESCRIBED_APPROACH 0
@@ -937,6 +957,10 @@ typedef struct contact_normal_fields {
  */
 typedef struct contact_normal_ledger_row {
   /*
+   Set by `contact_normal_ledger_row_init`, which the first row of an array needs, and by the solve.
+   */
+  int64_t struct_size;
+  /*
    Elements in x of the grid.
    */
   int32_t mx;
@@ -1116,7 +1140,7 @@ typedef struct contact_normal_report {
    */
   int64_t ledger_capacity;
   /*
-   In: the caller's array, or NULL (default).
+   In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
    */
   struct contact_normal_ledger_row *ledger;
   /*
@@ -1349,6 +1373,10 @@ typedef struct contact_normal_accuracy {
  */
 typedef struct contact_normal_price {
   /*
+   Set by `contact_normal_price_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
    The relative error that is wanted, between 0 and 1.
    */
   double target;
@@ -1403,6 +1431,10 @@ typedef struct contact_normal_price {
  */
 typedef struct contact_normal_hertz_solution {
   /*
+   Set by `contact_normal_hertz_solution_init`.
+   */
+  int64_t struct_size;
+  /*
    Semi-axis of the contact ellipse in x.
    */
   double semi_axis_x;
@@ -1432,6 +1464,10 @@ typedef struct contact_normal_hertz_solution {
  The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
  */
 typedef struct contact_normal_stress_maximum {
+  /*
+   Set by `contact_normal_stress_maximum_init`.
+   */
+  int64_t struct_size;
   /*
    The value.
    */
@@ -1605,10 +1641,10 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
                                                    struct contact_normal_fields *fields);
 
 /*
- Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 512 MiB of what
+ Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. The library keeps up to 512 MiB of what
  solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
  */
-void contact_normal_solver_free(struct contact_normal_solver *solver);
+contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
 
 /*
  Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
@@ -1692,7 +1728,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_report *report);
 
 /*
- Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`. The scene is solved on small
+ Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
+ `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
  grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
@@ -1896,6 +1933,38 @@ static inline void contact_normal_friction_results_init(contact_normal_friction_
 static inline void contact_normal_stress_outputs_init(contact_normal_stress_outputs *stress_outputs)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_STRESS_OUTPUTS, stress_outputs, (int64_t)sizeof(contact_normal_stress_outputs));
+}
+
+/*
+ Fills a contact_normal_stress_maximum with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_stress_maximum_init(contact_normal_stress_maximum *stress_maximum)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_STRESS_MAXIMUM, stress_maximum, (int64_t)sizeof(contact_normal_stress_maximum));
+}
+
+/*
+ Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_ledger_row_init(contact_normal_ledger_row *ledger_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_LEDGER_ROW, ledger_row, (int64_t)sizeof(contact_normal_ledger_row));
+}
+
+/*
+ Fills a contact_normal_price with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_price_init(contact_normal_price *price)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PRICE, price, (int64_t)sizeof(contact_normal_price));
+}
+
+/*
+ Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solution *hertz_solution)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_HERTZ_SOLUTION, hertz_solution, (int64_t)sizeof(contact_normal_hertz_solution));
 }
 
 #endif  /* CONTACT_NORMAL_H */
