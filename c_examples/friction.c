@@ -8,7 +8,7 @@ int main(void)
 {
     static const double parts[] = {0.1, 0.5, 0.875, 0.99};
     static double h[M * M], traction[2][M * M], slip[2][M * M];
-    static int32_t adhesion[M * M];
+    static int32_t stick_slip[M * M];
     contact_normal_scene scene;
     contact_normal_friction friction;
     contact_normal_fields fields;
@@ -37,7 +37,7 @@ int main(void)
         fields.traction[k] = traction[k];
         fields.slip[k] = slip[k];
     }
-    fields.adhesion = adhesion;
+    fields.stick_slip = stick_slip;
     printf("force/(mu N)  shift in um  stick  slip  traction, slip at the rim\n");
     for (i = 0; i < 4; i++) {
         const int rim = M / 2 * M + 9;

@@ -306,7 +306,7 @@ struct result {
     std::vector<double> pressure, deformed_distance, displacement;
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
     std::array<std::vector<double>, 2> traction, slip; // in x and y; zeros without friction
-    std::vector<std::int32_t> adhesion;                // 0: exterior, 1: stick, 2: slip
+    std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip
     contact_normal_report report;
     std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
 
@@ -357,8 +357,8 @@ contact_normal_status run(std::size_t size, result &found, options how, const co
         found.traction[k].resize(size), found.slip[k].resize(size);
         fields.traction[k] = found.traction[k].data(), fields.slip[k] = found.slip[k].data();
     }
-    found.adhesion.resize(size);
-    fields.adhesion = found.adhesion.data();
+    found.stick_slip.resize(size);
+    fields.stick_slip = found.stick_slip.data();
     contact_normal_report_init(&found.report);
     contact_normal_ledger_row_init(found.ledger.data());
     found.report.ledger = found.ledger.data(), found.report.ledger_capacity = ledger_room;

@@ -90,7 +90,7 @@ impl Arrays {
         let at: Vec<*mut f64> = self.numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
         (fields.pressure, fields.displacement, fields.deformed_distance) = (at[0], at[1], at[2]);
         (fields.traction, fields.slip) = ([at[3], at[4]], [at[5], at[6]]);
-        [fields.contact, fields.adhesion] = self.integers.each_mut().map(|integers| integers.as_mut_ptr());
+        [fields.contact, fields.stick_slip] = self.integers.each_mut().map(|integers| integers.as_mut_ptr());
         fields
     }
 
@@ -105,9 +105,9 @@ impl Arrays {
         let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
         let [p, u, e, qx, qy, sx, sy]: [Vec<f64>; 7] = self.numbers.try_into().expect("seven arrays");
         let pairs = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-        let [contact, adhesion] = self.integers;
+        let [contact, stick_slip] = self.integers;
         let (q, slip, report) = (pairs(qx, qy), pairs(sx, sy), self.report);
-        Found { status, message, p, e, contact, u, q, slip, adhesion, report, overrun, written }
+        Found { status, message, p, e, contact, u, q, slip, stick_slip, report, overrun, written }
     }
 }
 

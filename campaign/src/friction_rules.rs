@@ -92,16 +92,18 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
         broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
             format!("element {i}: {q:?}, bound {bound:e}, status {status}")
         });
-        let adhesion = found.adhesion[i];
+        let stick_slip = found.stick_slip[i];
         let expected = match found.p[i] > 0.0 {
-            false => CONTACT_NORMAL_ADHESION_EXTERIOR,
-            true if length(q) >= bound * ON_THE_CIRCLE => CONTACT_NORMAL_ADHESION_SLIP,
-            true => CONTACT_NORMAL_ADHESION_STICK,
+            false => CONTACT_NORMAL_STICK_SLIP_EXTERIOR,
+            true if length(q) >= bound * ON_THE_CIRCLE => CONTACT_NORMAL_STICK_SLIP_SLIP,
+            true => CONTACT_NORMAL_STICK_SLIP_STICK,
         };
         let at_edge = (length(q) - bound * ON_THE_CIRCLE).abs() <= 4.0 * f64::EPSILON * bound;
-        broken.unless(adhesion == expected || at_edge && adhesion > 0, "adhesion is that of the tractions", || {
-            format!("element {i}: {adhesion} for {expected}, {q:?}, bound {bound:e}, status {status}")
-        });
+        broken.unless(
+            stick_slip == expected || at_edge && stick_slip > 0,
+            "stick_slip is that of the tractions",
+            || format!("element {i}: {stick_slip} for {expected}, {q:?}, bound {bound:e}, status {status}"),
+        );
         carried += bound * area;
         sum = [0, 1].map(|k: usize| sum[k] + q[k] * area);
     }

@@ -79,9 +79,9 @@ const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
         let (greatest, u) = (greatest(&found.p), found.u.iter().copied().fold(0.0, f64::max));
         found.slip[greatest][1] += 1e-3 * u;
     }),
-    ("adhesion", |found, _| {
+    ("stick_slip", |found, _| {
         let greatest = greatest(&found.p);
-        found.adhesion[greatest] = 0;
+        found.stick_slip[greatest] = 0;
     }),
     ("the reported force", |found, _| found.report.tangential_force[0] += 0.1 * found.report.force),
     ("a distance beside the contact", |found, _| {

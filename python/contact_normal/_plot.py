@@ -25,7 +25,7 @@ class Solved(Protocol):
     def traction(self) -> Doubles: ...
 
     @property
-    def adhesion(self) -> npt.NDArray[np.int32]: ...
+    def stick_slip(self) -> npt.NDArray[np.int32]: ...
 
     @property
     def contact(self) -> npt.NDArray[np.bool_]: ...
@@ -77,23 +77,23 @@ def plot_pressure(result: Solved, axes: Axes | None) -> Axes:
 def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
     axes = axes or _new_axes((8.0, 6.0))
-    my, mx = result.adhesion.shape
+    my, mx = result.stick_slip.shape
     x_edges, y_edges = ((np.arange(m + 1) - 0.5 * m) * d for m, d in ((mx, result.dx), (my, result.dy)))
     colours = {1: (0.78, 0.87, 0.96), 2: (0.99, 0.85, 0.74)}
     shown = np.ones((my, mx, 3)) * 0.94
     for side, colour in colours.items():
-        shown[result.adhesion == side] = colour
+        shown[result.stick_slip == side] = colour
     extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
     axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest")
     # Some 30 arrows across.
     step = max(1, max(mx, my) // 30)
     chosen = np.zeros((my, mx), dtype=bool)
     chosen[step // 2 :: step, step // 2 :: step] = True
-    iy, ix = np.nonzero(chosen & (result.adhesion > 0))
+    iy, ix = np.nonzero(chosen & (result.stick_slip > 0))
     x, y = x_edges[ix] + 0.5 * result.dx, y_edges[iy] + 0.5 * result.dy
     axes.quiver(x, y, result.traction[0, iy, ix], result.traction[1, iy, ix], angles="xy", pivot="mid", width=0.003)
-    _outline(axes, result.adhesion > 0, x_edges, y_edges)
-    _outline(axes, result.adhesion == 1, x_edges, y_edges)
+    _outline(axes, result.stick_slip > 0, x_edges, y_edges)
+    _outline(axes, result.stick_slip == 1, x_edges, y_edges)
     fx, fy = result.report["tangential_force"]
     axes.set(xlabel="x", ylabel="y", aspect="equal")
     axes.set_title(f"tractions: force ({fx:.4g}, {fy:.4g}); stick blue, slip orange", fontsize=10)

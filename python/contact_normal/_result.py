@@ -76,7 +76,7 @@ class Result:
         The elements at the pressure limit.
     traction, slip : ndarray of float, (2, my, mx)
         With friction: q on body 1 and the slip of body 1 over body 2 in the step, in x and y; else zeros.
-    adhesion : ndarray of int, (my, mx)
+    stick_slip : ndarray of int, (my, mx)
         With friction: 0 exterior, 1 stick, 2 slip.
     dx, dy : float
         Element sizes.
@@ -117,10 +117,10 @@ class Result:
         return self._outputs.slip if self._outputs.slip is not None else np.zeros((2, *self.pressure.shape))
 
     @cached_property
-    def adhesion(self) -> npt.NDArray[np.int32]:
+    def stick_slip(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip; zeros without friction."""
-        adhesion = self._outputs.adhesion
-        return adhesion if adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+        stick_slip = self._outputs.stick_slip
+        return stick_slip if stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -243,7 +243,7 @@ class Outputs:
 
     traction: Doubles | None = None
     slip: Doubles | None = None
-    adhesion: npt.NDArray[np.int32] | None = None
+    stick_slip: npt.NDArray[np.int32] | None = None
 
     def __init__(self, shape: tuple[int, int], pressure: Any, contact: Any, options: Any, has_friction: bool) -> None:
         self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
@@ -267,7 +267,7 @@ class Outputs:
     def _hold_friction(self, shape: tuple[int, int]) -> None:
         """Arrays of what friction finds."""
         self.traction, self.slip = np.zeros((2, *shape)), np.zeros((2, *shape))
-        self.adhesion = np.zeros(shape, dtype=np.int32)
+        self.stick_slip = np.zeros(shape, dtype=np.int32)
         for k in range(2):
             self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
-        self.fields.adhesion = pointer(self.adhesion, c_int32)
+        self.fields.stick_slip = pointer(self.stick_slip, c_int32)

@@ -190,10 +190,12 @@ def _friction(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
             kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
             getattr(effect, name)[k] = pointer(kept[-1])
     if value.get("influence") is not None:
-        kept.extend(_tangential_influence(effect, value["influence"]))
+        kept = [*_tangential_influence(effect, value["influence"]), *kept]
         for k, table in enumerate(value["influence_cross"] if value.get("influence_cross") is not None else ()):
-            kept.append(doubles(f"friction['influence_cross'][{k}]", table, kept[-1].shape))
-            effect.influence_cross[k] = pointer(kept[-1])
+            kept.append(doubles(f"friction['influence_cross'][{k}]", table, kept[0].shape))
+            cross = _table(kept[-1], effect.influence[0].contents.scale)
+            effect.influence_cross[k] = ctypes.pointer(cross)
+            kept.append(cross)
     elif value.get("influence_cross") is not None:
         raise ValueError("friction['influence_cross'] is given without friction['influence']")
     return effect, kept
@@ -206,12 +208,17 @@ def _tangential_influence(effect: Any, tables: Any) -> list[Any]:
     shape = kept[0].shape
     if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
         raise ValueError(f"friction['influence'] has shapes {[table.shape for table in kept]}; all must be (2 cy, 2 cx)")
-    effect.influence_cy, effect.influence_cx = shape[0] // 2, shape[1] // 2
-    for k, table in enumerate(kept):
-        effect.influence[k] = pointer(table)
-    if len(tables) == 4:
-        effect.influence_scale = tables[3]
-    return kept
+    named = [_table(table, tables[3] if len(tables) == 4 else 1.0) for table in kept]
+    for k, table in enumerate(named):
+        effect.influence[k] = ctypes.pointer(table)
+    return [*kept, *named]
+
+
+def _table(coefficients: Doubles, scale: float) -> Any:
+    effect = initialised("influence")
+    effect.cy, effect.cx = coefficients.shape[0] // 2, coefficients.shape[1] // 2
+    effect.coefficients, effect.scale = pointer(coefficients), scale
+    return effect
 
 
 def _row_tables(value: Any) -> tuple[Any, Doubles]:

@@ -100,13 +100,10 @@ class Friction(ctypes.Structure):
         ("spin_offset", c_double),
         ("previous_traction", POINTER(c_double) * 2),
         ("rigid_slip", POINTER(c_double) * 2),
-        ("influence", POINTER(c_double) * 3),
-        ("influence_cx", c_int32),
-        ("influence_cy", c_int32),
-        ("influence_scale", c_double),
+        ("influence", POINTER(Influence) * 3),
+        ("influence_cross", POINTER(Influence) * 2),
         ("sensitivities", c_int32),
         ("reserved", c_int32),
-        ("influence_cross", POINTER(c_double) * 2),
     ]
 
 
@@ -192,7 +189,7 @@ class Fields(ctypes.Structure):
         ("contact", POINTER(c_int32)),
         ("traction", POINTER(c_double) * 2),
         ("slip", POINTER(c_double) * 2),
-        ("adhesion", POINTER(c_int32)),
+        ("stick_slip", POINTER(c_int32)),
     ]
 
 
@@ -291,7 +288,7 @@ class FrictionResults(ctypes.Structure):
         ("status", POINTER(c_int32)),
         ("traction", POINTER(c_double)),
         ("slip", POINTER(c_double)),
-        ("adhesion", POINTER(c_int32)),
+        ("stick_slip", POINTER(c_int32)),
     ]
 
 

@@ -58,22 +58,22 @@ pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
 impl contact_normal_influence {
     /// Copies what the grid needs of the caller's table.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<Table, Refusal> {
-        let (cx, cy, size) = self.size()?;
+        let (cx, cy, size) = self.size("influence")?;
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
         let values = unsafe { required("influence->coefficients", self.coefficients, size)? };
         Ok(Table::scaled(cx, cy, values, self.scale, grid)?)
     }
 
-    /// cx, cy, and the number of values.
-    fn size(&self) -> Result<(usize, usize, usize), Refusal> {
-        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
+    /// cx, cy, and the number of values; `name` is what messages call the table.
+    pub(super) fn size(&self, name: &str) -> Result<(usize, usize, usize), Refusal> {
+        let (cx, cy) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->cy"), self.cy)?);
         Ok((cx, cy, table_size(cx, cy)?))
     }
 }
 
 impl GivenEffect for contact_normal_influence {
     fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
-        regions.input("influence->coefficients", self.coefficients, self.size()?.2)
+        regions.input("influence->coefficients", self.coefficients, self.size("influence")?.2)
     }
 }
 

@@ -120,7 +120,7 @@ impl Outputs {
             regions.output("traction", fields.traction[k], n)?;
             regions.output("slip", fields.slip[k], n)?;
         }
-        regions.output("adhesion", fields.adhesion, n)?;
+        regions.output("stick_slip", fields.stick_slip, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
             if let Some(rows) = &self.ledger {
@@ -160,7 +160,7 @@ impl Outputs {
         let fields = &self.fields;
         let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
         let none = Solution::default();
-        let Solution { traction, slip, adhesion } = found.unwrap_or(&none);
+        let Solution { traction, slip, stick_slip } = found.unwrap_or(&none);
         for (k, (q, s)) in fields.traction.iter().zip(fields.slip).enumerate() {
             // SAFETY (both): not null: room for n values, as above.
             unsafe {
@@ -172,10 +172,10 @@ impl Outputs {
                 }
             }
         }
-        if !fields.adhesion.is_null() {
-            let adhesion = |i: usize| if found.is_some() { adhesion[i] } else { EXTERIOR };
+        if !fields.stick_slip.is_null() {
+            let stick_slip = |i: usize| if found.is_some() { stick_slip[i] } else { EXTERIOR };
             // SAFETY: likewise.
-            unsafe { (0..n).for_each(|i| fields.adhesion.add(i).write(adhesion(i))) };
+            unsafe { (0..n).for_each(|i| fields.stick_slip.add(i).write(stick_slip(i))) };
         }
     }
 

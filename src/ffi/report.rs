@@ -22,8 +22,8 @@ pub struct contact_normal_fields {
     pub traction: [*mut f64; 2],
     /// With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
     pub slip: [*mut f64; 2],
-    /// With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
-    pub adhesion: *mut i32,
+    /// With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
+    pub stick_slip: *mut i32,
 }
 
 versioned! { contact_normal_fields, contact_normal_fields_init, 80 }
@@ -288,4 +288,3 @@ impl From<&Progress> for contact_normal_progress {
         to
     }
 }
-

@@ -243,13 +243,19 @@ mod tests {
         unsafe {
             init(caller.at::<contact_normal_later>(), 16);
             assert_eq!(caller.0[16..], [0xAB; 48], "nothing is written beyond the caller's struct");
-            assert_eq!(caller.at::<contact_normal_first>().read(), contact_normal_first { struct_size: 16, tolerance: 1e-6 });
+            assert_eq!(
+                caller.at::<contact_normal_first>().read(),
+                contact_normal_first { struct_size: 16, tolerance: 1e-6 }
+            );
             let read = read(caller.at::<contact_normal_later>(), "options").expect("an older struct");
             assert_eq!(read, contact_normal_later { struct_size: 16, tolerance: 1e-6, limit: 0.0, count: 0 });
             let found = contact_normal_later { struct_size: 32, tolerance: 0.5, limit: 1.0, count: 2 };
             write(caller.at::<contact_normal_later>(), &found).expect("an older struct");
             assert_eq!(caller.0[16..], [0xAB; 48], "nothing is written beyond the caller's struct");
-            assert_eq!(caller.at::<contact_normal_first>().read(), contact_normal_first { struct_size: 16, tolerance: 0.5 });
+            assert_eq!(
+                caller.at::<contact_normal_first>().read(),
+                contact_normal_first { struct_size: 16, tolerance: 0.5 }
+            );
         }
     }
 
@@ -293,7 +299,10 @@ mod tests {
                 let older = Rows::of(first, "rows").expect("a size");
                 older.write(1, &contact_normal_first { struct_size: 16, tolerance: 0.5 });
                 assert_eq!(older.bytes(2), 2 * size);
-                assert_eq!(first.byte_add(size).read(), contact_normal_first { struct_size: size as i64, tolerance: 0.5 });
+                assert_eq!(
+                    first.byte_add(size).read(),
+                    contact_normal_first { struct_size: size as i64, tolerance: 0.5 }
+                );
                 let newer = Rows::of(caller.at::<contact_normal_later>(), "rows").expect("a size");
                 newer.write(0, &value);
                 assert_eq!(first.read(), contact_normal_first { struct_size: size as i64, tolerance: 0.5 });

@@ -56,6 +56,8 @@ pub struct Call {
     pub patches: Box<Grown<contact_normal_patches>>,
     pub row_tables: Box<Grown<contact_normal_row_tables>>,
     pub friction: Box<Grown<contact_normal_friction>>,
+    /// Tables of friction.
+    pub tangential: Box<[contact_normal_influence; 3]>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
@@ -102,6 +104,7 @@ impl Call {
             patches: Grown::new(initialised(contact_normal_patches_init)),
             row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
             friction: Grown::new(initialised(contact_normal_friction_init)),
+            tangential: Box::new([contact_normal_influence::default(); 3]),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -173,9 +176,12 @@ impl Call {
         self.tables.clear();
         self.tables.resize(4 * CX * CY, 0.0);
         let (table, zeros) = (self.table.as_ptr(), self.tables.as_ptr());
+        for (own, coefficients) in self.tangential.iter_mut().zip([table, table, zeros]) {
+            (own.cx, own.cy, own.coefficients) = (CX as i32, CY as i32, coefficients);
+        }
+        let influence = [0, 1, 2].map(|k: usize| &raw const self.tangential[k]);
         let friction = self.use_friction();
-        friction.influence = [table, table, zeros];
-        (friction.influence_cx, friction.influence_cy) = (CX as i32, CY as i32);
+        friction.influence = influence;
         friction
     }
 

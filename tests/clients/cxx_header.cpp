@@ -158,7 +158,7 @@ static void frictions()
     const std::vector<double> h = ball(0.01);
     cn::scene scene(GRID, STEEL);
     scene.undeformed_distance(h).force(500.0);
-    expect(cn::solve(scene).adhesion == std::vector<std::int32_t>(h.size(), 0), "no friction: nothing adheres");
+    expect(cn::solve(scene).stick_slip == std::vector<std::int32_t>(h.size(), 0), "no friction: nothing adheres");
 
     const double creepage[2] = {-1e-3, 2e-4}, spin = 1e-4;
     const cn::friction moved = cn::friction(0.3).motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).creepage(0, creepage[0]).creepage(1, creepage[1]).spin(spin);
@@ -168,7 +168,7 @@ static void frictions()
     std::int64_t slips = 0;
     bool bounded = true;
     for (std::size_t i = 0; i < h.size(); i++) {
-        sum += rolled.traction[0][i] * GRID.dx * GRID.dy, slips += rolled.adhesion[i] == CONTACT_NORMAL_ADHESION_SLIP;
+        sum += rolled.traction[0][i] * GRID.dx * GRID.dy, slips += rolled.stick_slip[i] == CONTACT_NORMAL_STICK_SLIP_SLIP;
         // The lengths are rounded here, not there.
         bounded = bounded && std::hypot(rolled.traction[0][i], rolled.traction[1][i]) <= 0.3 * rolled.pressure[i] * (1 + 1e-15);
     }

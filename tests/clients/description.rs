@@ -78,7 +78,10 @@ impl Description {
                 found.callbacks.push(callback);
             }
         }
-        assert!(found.constants.len() > 60 && found.structs.len() >= 20 && found.callbacks.len() == 3, "the header was not understood");
+        assert!(
+            found.constants.len() > 60 && found.structs.len() >= 20 && found.callbacks.len() == 3,
+            "the header was not understood"
+        );
         found
     }
 
@@ -108,7 +111,8 @@ impl Description {
     fn kind(&self, text: &str) -> Kind {
         if let Some(to) = text.strip_suffix('*') {
             let to = to.trim().trim_start_matches("const ");
-            let is_named = matches!(to, "double" | "int32_t" | "int64_t" | "contact_normal_status") || self.has_struct(to);
+            let is_named =
+                matches!(to, "double" | "int32_t" | "int64_t" | "contact_normal_status") || self.has_struct(to);
             return Kind::Pointer(is_named.then(|| Box::new(self.kind(to))));
         }
         let name = text.trim_start_matches("struct ");

@@ -108,7 +108,8 @@ fn python_kind(kind: &Kind) -> String {
 
 fn python_struct(text: &mut String, each: &Struct) {
     let name = python_name(&each.name);
-    write!(text, "\n\nclass {name}(ctypes.Structure):\n    \"\"\"{}.\"\"\"\n\n    _fields_ = [\n", each.name).expect("text");
+    write!(text, "\n\nclass {name}(ctypes.Structure):\n    \"\"\"{}.\"\"\"\n\n    _fields_ = [\n", each.name)
+        .expect("text");
     for member in &each.members {
         let count = member.count.map_or_else(String::new, |count| format!(" * {count}"));
         writeln!(text, "        (\"{}\", {}{count}),", member.name, python_kind(&member.kind)).expect("text");
@@ -150,7 +151,8 @@ from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_v
              return [field[0] for field in kind._fields_]\n";
     text += "\n\n# The structs that have an _init, and the kind of each.\nKINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {\n";
     for (kind, constant) in described.kinds() {
-        writeln!(text, "    \"{}\": ({}, {}),", kind.short_name(), constant.value, python_name(&kind.name)).expect("text");
+        writeln!(text, "    \"{}\": ({}, {}),", kind.short_name(), constant.value, python_name(&kind.name))
+            .expect("text");
     }
     text + "}\n"
 }

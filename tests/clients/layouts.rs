@@ -29,7 +29,8 @@ fn printed(mut compiler: Command, sources: &[&Path], folder: &Path) -> String {
 
 #[test]
 fn c_has_the_layout_of_rust() {
-    let mut source = String::from("#include <contact_normal.h>\n#include <stddef.h>\n#include <stdio.h>\n\nint main(void)\n{\n");
+    let mut source =
+        String::from("#include <contact_normal.h>\n#include <stddef.h>\n#include <stdio.h>\n\nint main(void)\n{\n");
     for each in &Description::of(&header()).structs {
         let name = &each.name;
         writeln!(source, "    printf(\"{name} %zu\\n\", sizeof({name}));").expect("text");
@@ -59,7 +60,8 @@ fn fortran_has_the_layout_of_rust() {
         let (name, of) = (&each.name, format!("the_{}", each.short_name()));
         writeln!(source, "  base = place(c_loc({of}))\n  print '(a, i0)', '{name} ', c_sizeof({of})").expect("text");
         for member in each.members.iter().map(|member| &member.name) {
-            writeln!(source, "  print '(a, i0)', '{name}.{member} ', place(c_loc({of}%{member})) - base").expect("text");
+            writeln!(source, "  print '(a, i0)', '{name}.{member} ', place(c_loc({of}%{member})) - base")
+                .expect("text");
         }
     }
     source += "contains\n  function place(pointer) result(address)\n    type(c_ptr), intent(in) :: pointer\n    \

@@ -42,7 +42,11 @@ fn the_header_of_this_version_is_stored() {
             std::fs::write(&path, header()).expect("a writable folder");
         }
         let is_same = std::fs::read_to_string(&path).is_ok_and(|stored| stored == header());
-        assert!(is_same, "{} is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients stored", path.display());
+        assert!(
+            is_same,
+            "{} is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients stored",
+            path.display()
+        );
     }
     assert!(path.exists(), "{} is missing", path.display());
 }
@@ -93,5 +97,7 @@ fn programs_of_abi_1_cannot_call_the_library() {
     assert!(!output.status.success());
     assert!(String::from_utf8_lossy(&output.stderr).contains("undefined reference"), "{output:?}");
     let library = folder.join("libcontact_normal.so");
-    assert!(run(Command::new("objdump").arg("-p").arg(library)).contains("SONAME               libcontact_normal.so.2\n"));
+    assert!(
+        run(Command::new("objdump").arg("-p").arg(library)).contains("SONAME               libcontact_normal.so.2\n")
+    );
 }

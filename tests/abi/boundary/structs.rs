@@ -14,7 +14,7 @@ const SIZES: [(&str, i64); 12] = [
     ("period", 16),
     ("patches", 32),
     ("row_tables", 32),
-    ("friction", 216),
+    ("friction", 200),
     ("options", 96),
     ("fields", 80),
     ("report", 440),

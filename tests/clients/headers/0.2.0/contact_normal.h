@@ -212,19 +212,19 @@
 #define CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE 1
 
 /*
- `fields->adhesion`: the element is not in contact.
+ `fields->stick_slip`: the element is not in contact.
  */
-#define CONTACT_NORMAL_ADHESION_EXTERIOR 0
+#define CONTACT_NORMAL_STICK_SLIP_EXTERIOR 0
 
 /*
- `fields->adhesion`: it sticks.
+ `fields->stick_slip`: it sticks.
  */
-#define CONTACT_NORMAL_ADHESION_STICK 1
+#define CONTACT_NORMAL_STICK_SLIP_STICK 1
 
 /*
- `fields->adhesion`: it slips.
+ `fields->stick_slip`: it slips.
  */
-#define CONTACT_NORMAL_ADHESION_SLIP 2
+#define CONTACT_NORMAL_STICK_SLIP_SLIP 2
 
 /*
  `method`: the fastest way known that is safe.
@@ -663,24 +663,17 @@ typedef struct contact_normal_friction {
   const double *rigid_slip[2];
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
-   y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
-   xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
-   tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or
-   `influence_cross` given.
+   y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
+   even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the tables must reach beyond
+   the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
-  const double *influence[3];
+  const struct contact_normal_influence *influence[3];
   /*
-   The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
+   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
+   scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
+   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
    */
-  int32_t influence_cx;
-  /*
-   And -cy..cy-1.
-   */
-  int32_t influence_cy;
-  /*
-   Every coefficient is multiplied by this, positive; default 1.
-   */
-  double influence_scale;
+  const struct contact_normal_influence *influence_cross[2];
   /*
    1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
    */
@@ -689,12 +682,6 @@ typedef struct contact_normal_friction {
    Must be 0.
    */
   int32_t reserved;
-  /*
-   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure, laid out and scaled as
-   those; both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
-   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
-   */
-  const double *influence_cross[2];
 } contact_normal_friction;
 
 /*
@@ -946,9 +933,9 @@ typedef struct contact_normal_fields {
    */
   double *slip[2];
   /*
-   With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
+   With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
    */
-  int32_t *adhesion;
+  int32_t *stick_slip;
 } contact_normal_fields;
 
 /*
@@ -1284,9 +1271,9 @@ typedef struct contact_normal_friction_results {
    */
   double *slip;
   /*
-   CONTACT_NORMAL_ADHESION_... of each element, `[n][my][mx]`.
+   CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
    */
-  int32_t *adhesion;
+  int32_t *stick_slip;
 } contact_normal_friction_results;
 
 /*
@@ -1650,7 +1637,7 @@ contact_normal_status contact_normal_solver_free(struct contact_normal_solver *s
  Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
  contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
  used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
- `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
+ `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(const struct contact_normal_scene *scene,
                                                       const double *pressure,
