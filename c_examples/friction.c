@@ -43,8 +43,8 @@ int main(void)
         const int rim = M / 2 * M + 9;
         friction.force[0] = parts[i] * 0.3 * scene.force;
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%12.3f %12.4f %6ld %5ld %9.1f %.2e\n", report.tangential_force[0] / (0.3 * report.force),
-               1000.0 * report.creepage[0], (long)report.stick_count, (long)report.slip_count, traction[0][rim], slip[0][rim]);
+        printf("%12.3f %12.4f %6ld %5ld %9.1f %.2e\n", report.tangential.force[0] / (0.3 * report.normal.force),
+               1000.0 * report.tangential.creepage[0], (long)report.tangential.stick_count, (long)report.tangential.slip_count, traction[0][rim], slip[0][rim]);
     }
     return EXIT_SUCCESS;
 }

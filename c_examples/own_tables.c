@@ -84,7 +84,7 @@ int main(void)
         fields.traction[1] = traction[own][1];
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
         printf("%s: Fx/(mu N) %.4f, %ld elements stick, %ld slip\n", own ? "own tables  " : "half-space  ",
-               report.tangential_force[0] / (0.3 * report.force), (long)report.stick_count, (long)report.slip_count);
+               report.tangential.force[0] / (0.3 * report.normal.force), (long)report.tangential.stick_count, (long)report.tangential.slip_count);
     }
     for (i = 0; i < M * M; i++) {
         const double qx = traction[0][0][i], qy = traction[0][1][i];

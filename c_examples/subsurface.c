@@ -49,6 +49,6 @@ int main(void)
         return EXIT_FAILURE;
     }
     printf("Sliding in x with friction .25:\nlargest von Mises stress %.4f p0 at x = %.2f a, z = %.2f a\n", largest.value,
-           largest.x - 0.5 * M * d, largest.z);
+           largest.x, largest.z);
     return EXIT_SUCCESS;
 }

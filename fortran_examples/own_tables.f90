@@ -62,7 +62,8 @@ program own_tables
     status = contact_normal_solve(scene, fields=fields, report=report)
     if (status /= CONTACT_NORMAL_OK) error stop "contact_normal_solve failed"
     print '(a, f7.4, a, i0, a, i0, a)', merge("own tables: Fx/(mu N)", "half-space: Fx/(mu N)", own == 1), &
-      report%tangential_force(1)/(0.3_dp*report%force), ", ", report%stick_count, " elements stick, ", report%slip_count, " slip"
+      report%tangential%force(1)/(0.3_dp*report%normal%force), ", ", &
+      report%tangential%stick_count, " elements stick, ", report%tangential%slip_count, " slip"
   end do
   deallocate (h, qx, qy, tables, scene, friction)
 

@@ -177,6 +177,11 @@
 #define CONTACT_NORMAL_KIND_HERTZ_SOLUTION 19
 
 /*
+ `kind`: `contact_normal_cycle`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_CYCLE 20
+
+/*
  `load`: the approach of the bodies is given.
  */
 #define CONTACT_NORMAL_PRESCRIBED_APPROACH 0
@@ -634,7 +639,7 @@ typedef struct contact_normal_friction {
    */
   double spin;
   /*
-   Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+   Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
    */
   double spin_centre[2];
   /*
@@ -675,7 +680,7 @@ typedef struct contact_normal_friction {
    */
   const struct contact_normal_influence *influence_cross[2];
   /*
-   1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+   1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
    */
   int32_t sensitivities;
   /*
@@ -710,7 +715,7 @@ typedef struct contact_normal_scene {
    */
   double dy;
   /*
-   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
+   h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
    */
   const double *undeformed_distance;
   /*
@@ -730,7 +735,7 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
+   Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
    */
   double approach;
   /*
@@ -762,7 +767,7 @@ typedef struct contact_normal_scene {
    */
   const struct contact_normal_row_tables *row_tables;
   /*
-   Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
+   Effect, or NULL (default): a coating on body 1 (`coating[0]`), on body 2. The elastic constants are then those of the bodies below.
    */
   const struct contact_normal_coating *coating[2];
   /*
@@ -821,17 +826,13 @@ typedef int32_t (*contact_normal_progress_callback)(const struct contact_normal_
                                                     void *user);
 
 /*
- How a scene is solved; the defaults suit everybody.
+ The cycle of the paper's methods.
  */
-typedef struct contact_normal_options {
+typedef struct contact_normal_cycle {
   /*
-   Set by `contact_normal_options_init`.
+   Set by `contact_normal_cycle_init`.
    */
   int64_t struct_size;
-  /*
-   CONTACT_NORMAL_METHOD_...; default AUTO.
-   */
-  int32_t method;
   /*
    CONTACT_NORMAL_SMOOTHER_...; default AUTO.
    */
@@ -845,13 +846,27 @@ typedef struct contact_normal_options {
    */
   int32_t post_sweeps;
   /*
-   omega, in (0, 2); default 0: what suits the smoother.
-   */
-  double relaxation;
-  /*
    The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
    */
   int32_t coarsest;
+  /*
+   omega, in (0, 2); default 0: what suits the smoother.
+   */
+  double relaxation;
+} contact_normal_cycle;
+
+/*
+ How a scene is solved; the defaults suit everybody.
+ */
+typedef struct contact_normal_options {
+  /*
+   Set by `contact_normal_options_init`.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_METHOD_...; default AUTO.
+   */
+  int32_t method;
   /*
    CONTACT_NORMAL_ACTIVE_SET_...; default FREE.
    */
@@ -870,7 +885,7 @@ typedef struct contact_normal_options {
   double tolerance;
   /*
    > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-   that `report->tolerance` says. Default 0: the tolerance above.
+   that `report->normal.tolerance` says. Default 0: the tolerance above.
    */
   double error_ratio;
   /*
@@ -897,6 +912,10 @@ typedef struct contact_normal_options {
    Passed to `progress`; default NULL.
    */
   void *user;
+  /*
+   The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
+   */
+  const struct contact_normal_cycle *cycle;
 } contact_normal_options;
 
 /*
@@ -1026,13 +1045,170 @@ typedef struct contact_normal_ledger_row {
 } contact_normal_ledger_row;
 
 /*
- What a solve found and what it cost. Written only when the status is >= 0.
+ What was found of the normal problem: a group of `contact_normal_report`.
  */
-typedef struct contact_normal_report {
+typedef struct contact_normal_report_normal {
   /*
-   Set by `contact_normal_report_init`.
+   Approach.
    */
-  int64_t struct_size;
+  double approach;
+  /*
+   Sum of p dx dy.
+   */
+  double force;
+  /*
+   Largest pressure.
+   */
+  double max_pressure;
+  /*
+   Smallest pressure.
+   */
+  double min_pressure;
+  /*
+   Contact area: that of the elements in contact.
+   */
+  double contact_area;
+  /*
+   Contact area, corrected for the elements along its outline; < 0: not known.
+   */
+  double corrected_area;
+  /*
+   Elements in contact.
+   */
+  int64_t contact_count;
+  /*
+   Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+   */
+  int64_t edge_count;
+  /*
+   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+   an accuracy asks for.
+   */
+  double tolerance;
+  /*
+   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+   */
+  double residual;
+  /*
+   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
+   */
+  double violation;
+  /*
+   `sum of p |e| / sum of p |u|`.
+   */
+  double complementarity;
+  /*
+   rms over C of the last change of p.
+   */
+  double update;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_normal;
+
+/*
+ What was found of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
+ */
+typedef struct contact_normal_report_tangential {
+  /*
+   The sum of q dx dy in x and y, on body 1.
+   */
+  double force[2];
+  /*
+   The sum of (x qy - y qx) dx dy about the centre of spin.
+   */
+  double moment;
+  /*
+   Creepages in x and y, given or found.
+   */
+  double creepage[2];
+  /*
+   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
+   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
+   round-off leaves); with a fresh product in double precision.
+   */
+  double residual;
+  /*
+   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+   */
+  double gap;
+  /*
+   Elements that stick.
+   */
+  int64_t stick_count;
+  /*
+   Elements that slip.
+   */
+  int64_t slip_count;
+  /*
+   If `friction->sensitivities` is 1, else 0: derivatives of `force` in x, in y and of `moment`, each by the creepages in x and y and by
+   the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow the tractions, but
+   those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
+   */
+  double sensitivities[9];
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_tangential;
+
+/*
+ How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
+ ledger; they are absolute, and < 0 where they are not known.
+ */
+typedef struct contact_normal_report_accuracy {
+  /*
+   Estimated error of the force (of the approach, when the force is prescribed).
+   */
+  double error_force;
+  /*
+   Of the largest pressure.
+   */
+  double error_max_pressure;
+  /*
+   Of the contact area.
+   */
+  double error_contact_area;
+  /*
+   Of the corrected area.
+   */
+  double error_corrected_area;
+  /*
+   Of the pressures: rms of the error over that of p.
+   */
+  double error_pressure;
+  /*
+   Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
+   shifts from rest, and for bodies that are alike of steady rolling from rest.
+   */
+  double error_tangential[2];
+  /*
+   CONTACT_NORMAL_UNTRUSTED_... bits.
+   */
+  int32_t untrusted;
+  /*
+   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+   */
+  int32_t limited_by;
+  /*
+   About the seconds of a solve with elements of half the size; < 0: not known.
+   */
+  double halved_seconds;
+  /*
+   And the error of the force (or the approach) that it would leave.
+   */
+  double halved_error_force;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_accuracy;
+
+/*
+ What it cost: a group of `contact_normal_report`.
+ */
+typedef struct contact_normal_report_statistics {
   /*
    Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
    */
@@ -1054,58 +1230,9 @@ typedef struct contact_normal_report {
    */
   double work_units;
   /*
-   rms over C of the last change of p.
+   With friction: products of two components on all grids, in products on the finest.
    */
-  double update;
-  /*
-   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
-   */
-  double residual;
-  /*
-   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
-   */
-  double violation;
-  /*
-   `sum of p |e| / sum of p |u|`.
-   */
-  double complementarity;
-  /*
-   Smallest pressure.
-   */
-  double min_pressure;
-  /*
-   Approach.
-   */
-  double approach;
-  /*
-   Sum of p dx dy.
-   */
-  double force;
-  /*
-   Largest pressure.
-   */
-  double max_pressure;
-  /*
-   Contact area.
-   */
-  double contact_area;
-  /*
-   Elements in contact.
-   */
-  int64_t contact_count;
-  /*
-   Estimated error of the force (of the approach, when the force is prescribed), absolute; < 0: not known. Errors are estimated
-   after a start from nothing, and after any start if there is a ledger.
-   */
-  double error_force;
-  /*
-   Of the largest pressure.
-   */
-  double error_max_pressure;
-  /*
-   Of the contact area.
-   */
-  double error_contact_area;
+  double tangential_products;
   /*
    Seconds of set-up: 0 for later solves with a handle.
    */
@@ -1115,9 +1242,28 @@ typedef struct contact_normal_report {
    */
   double solve_seconds;
   /*
+   Seconds of the tangential problem, which are part of `solve_seconds`.
+   */
+  double tangential_seconds;
+  /*
    Bytes held by operators and unknowns.
    */
   int64_t bytes;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_statistics;
+
+/*
+ What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
+ where the library does not know what a newer header has there; later groups come at the end of the report.
+ */
+typedef struct contact_normal_report {
+  /*
+   Set by `contact_normal_report_init`.
+   */
+  int64_t struct_size;
   /*
    Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
    */
@@ -1131,91 +1277,21 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_ledger_row *ledger;
   /*
-   Contact area, corrected for the elements along its outline; < 0: not known.
+   What was found of the normal problem.
    */
-  double corrected_area;
+  struct contact_normal_report_normal normal;
   /*
-   Estimated error of the corrected area.
+   What was found of the tangential problem.
    */
-  double error_corrected_area;
+  struct contact_normal_report_tangential tangential;
   /*
-   Of the pressures: rms of the error over that of p.
+   How wrong it is.
    */
-  double error_pressure;
+  struct contact_normal_report_accuracy accuracy;
   /*
-   CONTACT_NORMAL_UNTRUSTED_... bits.
+   What it cost.
    */
-  int32_t untrusted;
-  /*
-   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
-   */
-  int32_t limited_by;
-  /*
-   About the seconds of a solve with elements of half the size; < 0: not known.
-   */
-  double halved_seconds;
-  /*
-   And the error of the force (or the approach) that it would leave.
-   */
-  double halved_error_force;
-  /*
-   Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
-   */
-  int64_t edge_count;
-  /*
-   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
-   an accuracy asks for.
-   */
-  double tolerance;
-  /*
-   With friction, as are the following: the sum of q dx dy in x and y, on body 1.
-   */
-  double tangential_force[2];
-  /*
-   The sum of (x qy - y qx) dx dy about the centre of spin.
-   */
-  double tangential_moment;
-  /*
-   Creepages in x and y, given or found.
-   */
-  double creepage[2];
-  /*
-   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
-   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
-   round-off leaves); with a fresh product in double precision.
-   */
-  double tangential_residual;
-  /*
-   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
-   */
-  double tangential_gap;
-  /*
-   Elements that stick.
-   */
-  int64_t stick_count;
-  /*
-   Elements that slip.
-   */
-  int64_t slip_count;
-  /*
-   Products of two components on all grids, in products on the finest.
-   */
-  double tangential_products;
-  /*
-   Seconds of the tangential problem, which are part of `solve_seconds`.
-   */
-  double tangential_seconds;
-  /*
-   If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-   creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow
-   the tractions, but those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
-   */
-  double sensitivities[9];
-  /*
-   Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
-   They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.
-   */
-  double error_tangential[2];
+  struct contact_normal_report_statistics statistics;
 } contact_normal_report;
 
 /*
@@ -1460,7 +1536,7 @@ typedef struct contact_normal_stress_maximum {
    */
   double value;
   /*
-   Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+   Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
    */
   double x;
   /*
@@ -1588,8 +1664,8 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
- relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+ Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
+ precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
  valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
  Since 0.1.
  */
@@ -1697,7 +1773,7 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
                                                         contact_normal_status *statuses);
 
 /*
- Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
+ Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
  `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
  corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
  scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
@@ -1774,8 +1850,8 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
                                                        struct contact_normal_stress_outputs *outputs);
 
 /*
- Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so
- that element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
+ Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
+ element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
  yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
  `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
  Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
@@ -1952,6 +2028,14 @@ static inline void contact_normal_price_init(contact_normal_price *price)
 static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solution *hertz_solution)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_HERTZ_SOLUTION, hertz_solution, (int64_t)sizeof(contact_normal_hertz_solution));
+}
+
+/*
+ Fills a contact_normal_cycle with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_cycle_init(contact_normal_cycle *cycle)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_CYCLE, cycle, (int64_t)sizeof(contact_normal_cycle));
 }
 
 #endif  /* CONTACT_NORMAL_H */

@@ -6,7 +6,7 @@
 // scene.undeformed_distance(h).force(1000.0);                       // h: a std::vector<double> of my * mx, x fastest
 // cn::result found = cn::solve(scene);                              // throws cn::error if the scene is refused
 // if (!found) std::cerr << found.message;                           // stopped early: found.status > 0
-// found.pressure, found.contact, found.report.approach, found.ledger
+// found.pressure, found.contact, found.report.normal.approach, found.ledger
 //
 // A scene does not copy arrays: they must live until the solve is over. contact_normal.h says what each member and each status
 // means. `solver` is a handle for many solves on one grid; one thread at a time may use it.
@@ -209,10 +209,13 @@ public:
         layer_->compliances = per_element("layer", compliances);
         return *this;
     }
-    /// A coating on body 0 or 1 of the scene: an elastic layer of this thickness and material, bonded to the body.
+    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body.
     scene &coating(std::size_t body, double thickness, const contact_normal::body &material)
     {
-        std::optional<contact_normal_coating> &coating = coating_.at(body);
+        if (body < 1 || body > 2) {
+            throw error(CONTACT_NORMAL_INVALID_ARGUMENT, "body is " + std::to_string(body) + "; it must be 1 or 2");
+        }
+        std::optional<contact_normal_coating> &coating = coating_[body - 1];
         contact_normal_coating_init(&coating.emplace());
         coating->thickness = thickness, coating->shear_modulus = material.shear_modulus;
         coating->poisson_ratio = material.poisson_ratio;
@@ -539,7 +542,7 @@ inline stresses subsurface_stress(const scene &of, std::int32_t body, const load
     return found;
 }
 
-/// The six components at points (x, y, z), x and y from the outer corner of element (0, 0).
+/// The six components at points (x, y, z), x and y from the middle of the grid.
 inline std::vector<std::array<double, 6>> stress_at_points(const scene &of, std::int32_t body, const loads &on,
                                                            view<std::array<double, 3>> points, const options &how = {})
 {

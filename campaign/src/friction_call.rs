@@ -81,7 +81,7 @@ struct Arrays {
 impl Arrays {
     fn new(n: usize) -> Arrays {
         let mut report = initialised(contact_normal_report_init);
-        report.force = SENTINEL;
+        report.normal.force = SENTINEL;
         Arrays { numbers: vec![vec![SENTINEL; n]; 7], integers: [vec![-77; n], vec![-77; n]], report }
     }
 
@@ -97,7 +97,7 @@ impl Arrays {
     fn is_written(&self) -> bool {
         self.numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
             || self.integers.iter().flatten().any(|&integer| integer != -77)
-            || self.report.force.to_bits() != SENTINEL.to_bits()
+            || self.report.normal.force.to_bits() != SENTINEL.to_bits()
     }
 
     fn found(self, status: i32, overrun: Option<u32>) -> Found {

@@ -12,9 +12,9 @@ import numpy as np
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
 from ._library import check, initialised, last_error, library
-from ._result import _value
+from ._result import reported
 from ._scene import Scene
-from ._structs import Report, names
+from ._structs import names
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -156,6 +156,5 @@ def friction_batch(
     watched.finish()
     if not len(table) or untouched in found.status:
         check(status)
-    hidden = ("struct_size", "ledger", "ledger_capacity")
-    found.report = {name: _value(getattr(report, name)) for name in names(Report) if name not in hidden}
+    found.report = reported(report)
     return found

@@ -12,7 +12,7 @@ import numpy as np
 from ._arguments import doubles, integers, pointer
 from ._constants import INITIAL_GUESS_GIVEN, INITIAL_GUESS_NONE, PRESCRIBED_APPROACH
 from ._library import initialised, library
-from ._structs import LedgerRow, Report, names
+from ._structs import LedgerRow, names
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._stress import SubsurfaceStress
 
-_REPORTED = [name for name in names(Report) if name not in ("struct_size", "ledger", "ledger_capacity")]
+# The groups of a report.
+_GROUPS = ("normal", "tangential", "accuracy", "statistics")
+# Members of the tangential group that have the name of one of the normal problem.
+_ALSO_NORMAL = ("force", "moment", "residual", "gap")
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 _LEDGER_ROOM = 32  # one row per grid, each with half the elements in a direction: mx and my are 32-bit
 
@@ -81,7 +84,7 @@ class Result:
     dx, dy : float
         Element sizes.
     report : dict
-        The numbers of `contact_normal_report`: "cycles", "residual", "max_pressure", "contact_area", "error_force", ...
+        The numbers of `contact_normal_report`, of all its groups: "cycles", "residual", "max_pressure", "contact_area", "error_force", ...
     ledger : Ledger
         One dict per grid.
     """
@@ -125,7 +128,7 @@ class Result:
     @cached_property
     def report(self) -> dict[str, Any]:
         """The numbers of `contact_normal_report`."""
-        return {name: _value(getattr(self._report, name)) for name in _REPORTED}
+        return reported(self._report)
 
     @cached_property
     def ledger(self) -> Ledger:
@@ -235,6 +238,18 @@ _ROWS = LedgerRow * _LEDGER_ROOM
 def _value(value: Any) -> Any:
     """A number, or a tuple of those of an array."""
     return value if isinstance(value, (int, float)) else tuple(value)
+
+
+def reported(report: Any) -> dict[str, Any]:
+    """The numbers of all groups of a report: "force" is normal.force, "tangential_force" is tangential.force."""
+    found: dict[str, Any] = {"ledger_rows": report.ledger_rows}
+    for group in _GROUPS:
+        members = getattr(report, group)
+        for name in names(type(members)):
+            if name != "reserved":
+                key = f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
+                found[key] = _value(getattr(members, name))
+    return found
 
 
 class Outputs:

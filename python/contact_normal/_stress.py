@@ -127,9 +127,7 @@ def subsurface(
         ctypes.byref(outputs),
     )
     check(status)
-    my, mx = scene.shape
-    middle = {"x": 0.5 * mx * found.dx, "y": 0.5 * my * found.dy}
     for at, name in zip(largest, ("largest_von_mises", "largest_shear")):
         values: dict[str, Any] = {key: getattr(at, key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
-        setattr(found, name, {key: value - middle.get(key, 0.0) for key, value in values.items()})
+        setattr(found, name, values)
     return found

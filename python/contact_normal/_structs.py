@@ -150,6 +150,19 @@ class Progress(ctypes.Structure):
     ]
 
 
+class Cycle(ctypes.Structure):
+    """contact_normal_cycle."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("smoother", c_int32),
+        ("pre_sweeps", c_int32),
+        ("post_sweeps", c_int32),
+        ("coarsest", c_int32),
+        ("relaxation", c_double),
+    ]
+
+
 ProgressCallback = CFUNCTYPE(c_int32, POINTER(Progress), c_void_p)
 
 
@@ -159,11 +172,6 @@ class Options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_int64),
         ("method", c_int32),
-        ("smoother", c_int32),
-        ("pre_sweeps", c_int32),
-        ("post_sweeps", c_int32),
-        ("relaxation", c_double),
-        ("coarsest", c_int32),
         ("active_set", c_int32),
         ("initial_guess", c_int32),
         ("criterion", c_int32),
@@ -175,6 +183,7 @@ class Options(ctypes.Structure):
         ("reserved", c_int32),
         ("progress", ProgressCallback),
         ("user", c_void_p),
+        ("cycle", POINTER(Cycle)),
     ]
 
 
@@ -220,55 +229,91 @@ class LedgerRow(ctypes.Structure):
     ]
 
 
-class Report(ctypes.Structure):
-    """contact_normal_report."""
+class ReportNormal(ctypes.Structure):
+    """contact_normal_report_normal."""
 
     _fields_ = [
-        ("struct_size", c_int64),
+        ("approach", c_double),
+        ("force", c_double),
+        ("max_pressure", c_double),
+        ("min_pressure", c_double),
+        ("contact_area", c_double),
+        ("corrected_area", c_double),
+        ("contact_count", c_int64),
+        ("edge_count", c_int64),
+        ("tolerance", c_double),
+        ("residual", c_double),
+        ("violation", c_double),
+        ("complementarity", c_double),
+        ("update", c_double),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportTangential(ctypes.Structure):
+    """contact_normal_report_tangential."""
+
+    _fields_ = [
+        ("force", c_double * 2),
+        ("moment", c_double),
+        ("creepage", c_double * 2),
+        ("residual", c_double),
+        ("gap", c_double),
+        ("stick_count", c_int64),
+        ("slip_count", c_int64),
+        ("sensitivities", c_double * 9),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportAccuracy(ctypes.Structure):
+    """contact_normal_report_accuracy."""
+
+    _fields_ = [
+        ("error_force", c_double),
+        ("error_max_pressure", c_double),
+        ("error_contact_area", c_double),
+        ("error_corrected_area", c_double),
+        ("error_pressure", c_double),
+        ("error_tangential", c_double * 2),
+        ("untrusted", c_int32),
+        ("limited_by", c_int32),
+        ("halved_seconds", c_double),
+        ("halved_error_force", c_double),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportStatistics(ctypes.Structure):
+    """contact_normal_report_statistics."""
+
+    _fields_ = [
         ("cycles", c_int64),
         ("active_set_steps", c_int64),
         ("active_set_changes", c_int64),
         ("matrix_products", c_int64),
         ("work_units", c_double),
-        ("update", c_double),
-        ("residual", c_double),
-        ("violation", c_double),
-        ("complementarity", c_double),
-        ("min_pressure", c_double),
-        ("approach", c_double),
-        ("force", c_double),
-        ("max_pressure", c_double),
-        ("contact_area", c_double),
-        ("contact_count", c_int64),
-        ("error_force", c_double),
-        ("error_max_pressure", c_double),
-        ("error_contact_area", c_double),
+        ("tangential_products", c_double),
         ("setup_seconds", c_double),
         ("solve_seconds", c_double),
+        ("tangential_seconds", c_double),
         ("bytes", c_int64),
+        ("reserved", c_double * 8),
+    ]
+
+
+class Report(ctypes.Structure):
+    """contact_normal_report."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
         ("ledger_rows", c_int64),
         ("ledger_capacity", c_int64),
         ("ledger", POINTER(LedgerRow)),
-        ("corrected_area", c_double),
-        ("error_corrected_area", c_double),
-        ("error_pressure", c_double),
-        ("untrusted", c_int32),
-        ("limited_by", c_int32),
-        ("halved_seconds", c_double),
-        ("halved_error_force", c_double),
-        ("edge_count", c_int64),
-        ("tolerance", c_double),
-        ("tangential_force", c_double * 2),
-        ("tangential_moment", c_double),
-        ("creepage", c_double * 2),
-        ("tangential_residual", c_double),
-        ("tangential_gap", c_double),
-        ("stick_count", c_int64),
-        ("slip_count", c_int64),
-        ("tangential_products", c_double),
-        ("tangential_seconds", c_double),
-        ("sensitivities", c_double * 9),
-        ("error_tangential", c_double * 2),
+        ("normal", ReportNormal),
+        ("tangential", ReportTangential),
+        ("accuracy", ReportAccuracy),
+        ("statistics", ReportStatistics),
     ]
 
 
@@ -411,4 +456,5 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "ledger_row": (17, LedgerRow),
     "price": (18, Price),
     "hertz_solution": (19, HertzSolution),
+    "cycle": (20, Cycle),
 }

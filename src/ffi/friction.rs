@@ -67,7 +67,7 @@ pub struct contact_normal_friction {
     pub creepage: [f64; 2],
     /// About the normal; default 0.
     pub spin: f64,
-    /// Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+    /// Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
     pub spin_centre: [f64; 2],
     /// The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
     pub force: [f64; 2],
@@ -90,7 +90,7 @@ pub struct contact_normal_friction {
     /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
     /// then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
     pub influence_cross: [*const contact_normal_influence; 2],
-    /// 1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+    /// 1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
     pub sensitivities: i32,
     /// Must be 0.
     pub reserved: i32,

@@ -11,7 +11,7 @@ use super::friction::contact_normal_friction;
 use super::friction_batch::contact_normal_friction_results;
 use super::guard::guard;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
-use super::options::contact_normal_options;
+use super::options::{contact_normal_cycle, contact_normal_options};
 use super::price_list::contact_normal_price;
 use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
 use super::scene::contact_normal_scene;
@@ -58,6 +58,8 @@ pub const CONTACT_NORMAL_KIND_LEDGER_ROW: i32 = 17;
 pub const CONTACT_NORMAL_KIND_PRICE: i32 = 18;
 /// `kind`: `contact_normal_hertz_solution`. Since 0.1.
 pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
+/// `kind`: `contact_normal_cycle`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_CYCLE: i32 = 20;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -90,6 +92,7 @@ pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i
                 CONTACT_NORMAL_KIND_LEDGER_ROW => structs::init::<contact_normal_ledger_row>(to.cast(), size),
                 CONTACT_NORMAL_KIND_PRICE => structs::init::<contact_normal_price>(to.cast(), size),
                 CONTACT_NORMAL_KIND_HERTZ_SOLUTION => structs::init::<contact_normal_hertz_solution>(to.cast(), size),
+                CONTACT_NORMAL_KIND_CYCLE => structs::init::<contact_normal_cycle>(to.cast(), size),
                 // Of a newer header: its struct asks for nothing until a member is set, and then the scene refuses it.
                 _ => structs::init_unknown(to.cast(), size),
             }
@@ -132,5 +135,6 @@ mod tests {
         has_grown_by_zeros::<contact_normal_ledger_row>();
         has_grown_by_zeros::<contact_normal_price>();
         has_grown_by_zeros::<contact_normal_hertz_solution>();
+        has_grown_by_zeros::<contact_normal_cycle>();
     }
 }

@@ -70,8 +70,8 @@ impl Drop for InUse<'_> {
     }
 }
 
-/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
-/// relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
+/// precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
 /// valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
 /// Since 0.1.
 #[no_mangle]

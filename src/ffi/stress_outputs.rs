@@ -14,7 +14,7 @@ pub struct contact_normal_stress_maximum {
     pub struct_size: i64,
     /// The value.
     pub value: f64,
-    /// Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+    /// Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
     pub x: f64,
     /// The same in y.
     pub y: f64,
@@ -59,12 +59,12 @@ versioned! { contact_normal_stress_outputs, contact_normal_stress_outputs_init, 
 impl contact_normal_stress_maximum {
     pub(super) fn new(found: &Maximum, z: f64, grid: &Grid) -> contact_normal_stress_maximum {
         let Maximum { value, depth, ix, iy } = *found;
-        let place = |k: usize, d: f64| (k as f64 + 0.5) * d;
+        let place = |k: usize, m: usize, d: f64| (k as f64 + 0.5 - 0.5 * m as f64) * d;
         contact_normal_stress_maximum {
             struct_size: size_of::<contact_normal_stress_maximum>() as i64,
             value,
-            x: place(ix, grid.dx),
-            y: place(iy, grid.dy),
+            x: place(ix, grid.mx, grid.dx),
+            y: place(iy, grid.my, grid.dy),
             z,
             ix: ix as i32,
             iy: iy as i32,

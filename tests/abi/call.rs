@@ -58,6 +58,7 @@ pub struct Call {
     pub friction: Box<Grown<contact_normal_friction>>,
     /// Tables of friction.
     pub tangential: Box<[contact_normal_influence; 3]>,
+    pub cycle: Box<Grown<contact_normal_cycle>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
@@ -105,6 +106,7 @@ impl Call {
             row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
             friction: Grown::new(initialised(contact_normal_friction_init)),
             tangential: Box::new([contact_normal_influence::default(); 3]),
+            cycle: Grown::new(initialised(contact_normal_cycle_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -147,7 +149,7 @@ impl Call {
         fields.displacement = call.others[N..].as_mut_ptr();
         let report = &mut call.report.known;
         (report.ledger, report.ledger_capacity) = (call.ledger.as_mut_ptr(), call.ledger.len() as i64);
-        (report.force, report.cycles) = (SENTINEL, -77);
+        (report.normal.force, report.statistics.cycles) = (SENTINEL, -77);
         (call.accuracy.known.target, call.accuracy.known.reached) = (0.05, SENTINEL);
         call
     }
@@ -162,6 +164,12 @@ impl Call {
     pub fn use_row_tables(&mut self) -> &mut contact_normal_row_tables {
         self.scene.known.row_tables = &raw const self.row_tables.known;
         &mut self.row_tables.known
+    }
+
+    /// Names the cycle in the options, and the cycle to change.
+    pub fn use_cycle(&mut self) -> &mut contact_normal_cycle {
+        self.options.known.cycle = &raw const self.cycle.known;
+        &mut self.cycle.known
     }
 
     /// Names friction in the scene, and the friction to change: 0.3, a shift.
@@ -304,7 +312,7 @@ impl Call {
     pub fn assert_all_written(&self) {
         assert!(self.pressure.iter().chain(&self.others).all(|&value| value != SENTINEL));
         assert!(self.contact.iter().all(|&value| value == 0 || value == 1));
-        assert!(self.report.known.force != SENTINEL && self.report.known.cycles >= 0);
+        assert!(self.report.known.normal.force != SENTINEL && self.report.known.statistics.cycles >= 0);
         assert!(self.ledger[0].mx > 0);
     }
 }

@@ -131,7 +131,7 @@ fn all_results_are_written_and_agree() {
             assert!(q[e] * s[e] + q[N + e] * s[N + e] <= 0.0, "slip is opposite to traction");
         }
     }
-    assert!((call.report.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
+    assert!((call.report.normal.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
     let given = call.force.clone();
     // The same without fields, and for the pressures of the normal problem.
     call.results = contact_normal_friction_results {
@@ -142,7 +142,7 @@ fn all_results_are_written_and_agree() {
     assert_eq!(call.force, given);
     let (n, entries) = (COUNT as i32, call.entries.as_ptr().cast());
     assert_eq!(call.run_with(null(), n, entries), (CONTACT_NORMAL_OK, String::new()));
-    assert!((call.report.force - 20.0).abs() <= 1e-4 && call.force != given);
+    assert!((call.report.normal.force - 20.0).abs() <= 1e-4 && call.force != given);
     assert_eq!(call.run_with(null(), 0, null()), (CONTACT_NORMAL_OK, String::new()));
 }
 

@@ -168,7 +168,7 @@ pub const SET_UP: &[Row] = &[
     (&["approach", "0.5", "mean plane"], INFEASIBLE, |c| { c.scene.known.approach = 0.5; c.use_period(1, 1); }),
 
     (&["method", "17"], INVALID, |c| c.options.known.method = 17),
-    (&["smoother", "-1"], INVALID, |c| c.options.known.smoother = -1),
+    (&["smoother", "-1"], INVALID, |c| c.use_cycle().smoother = -1),
     (&["active_set", "2"], INVALID, |c| c.options.known.active_set = 2),
     (&["initial_guess", "3"], INVALID, |c| c.options.known.initial_guess = 3),
     (&["criterion", "2"], INVALID, |c| c.options.known.criterion = 2),
@@ -186,17 +186,18 @@ pub const SET_UP: &[Row] = &[
     (&["error_ratio", "NaN"], NOT_FINITE, |c| c.options.known.error_ratio = NAN),
     (&["max_cycles", "0"], INVALID, |c| c.options.known.max_cycles = 0),
     (&["max_cycles", "-3"], INVALID, |c| c.options.known.max_cycles = -3),
-    (&["relaxation", "-0.5"], INVALID, |c| c.options.known.relaxation = -0.5),
-    (&["relaxation", "2"], INVALID, |c| c.options.known.relaxation = 2.0),
-    (&["relaxation", "NaN"], NOT_FINITE, |c| c.options.known.relaxation = NAN),
-    (&["pre_sweeps", "-1"], INVALID, |c| c.options.known.pre_sweeps = -1),
-    (&["post_sweeps", "-2"], INVALID, |c| c.options.known.post_sweeps = -2),
-    (&["post_sweeps", "2147483647"], INVALID, |c| c.options.known.post_sweeps = i32::MAX),
+    (&["relaxation", "-0.5"], INVALID, |c| c.use_cycle().relaxation = -0.5),
+    (&["relaxation", "2"], INVALID, |c| c.use_cycle().relaxation = 2.0),
+    (&["relaxation", "NaN"], NOT_FINITE, |c| c.use_cycle().relaxation = NAN),
+    (&["pre_sweeps", "-1"], INVALID, |c| c.use_cycle().pre_sweeps = -1),
+    (&["post_sweeps", "-2"], INVALID, |c| c.use_cycle().post_sweeps = -2),
+    (&["post_sweeps", "2147483647"], INVALID, |c| c.use_cycle().post_sweeps = i32::MAX),
     (&["pre_sweeps", "post_sweeps", "0"], INVALID, |c| {
-        (c.options.known.pre_sweeps, c.options.known.post_sweeps) = (0, 0);
+        let cycle = c.use_cycle();
+        (cycle.pre_sweeps, cycle.post_sweeps) = (0, 0);
     }),
-    (&["coarsest", "0"], INVALID, |c| c.options.known.coarsest = 0),
-    (&["coarsest", "17"], INVALID, |c| c.options.known.coarsest = 17),
+    (&["coarsest", "0"], INVALID, |c| c.use_cycle().coarsest = 0),
+    (&["coarsest", "17"], INVALID, |c| c.use_cycle().coarsest = 17),
     (&["threads", "-1"], INVALID, |c| c.options.known.threads = -1),
     // Refused, not tried: a million threads would be started, or take the machine down.
     (&["threads", "1025"], INVALID, |c| c.options.known.threads = 1025),

@@ -206,7 +206,7 @@ fn the_cxx_header_keeps_its_promises() {
         let mut with_shadow = compiler("g++", standard);
         with_shadow.arg("-Wshadow");
         let program = compile(with_shadow, "tests/clients/cxx_header.cpp", &folder);
-        assert_eq!(run_under_valgrind(&program, &[], &folder), "0 of 45 checks failed\n", "{standard}");
+        assert_eq!(run_under_valgrind(&program, &[], &folder), "0 of 46 checks failed\n", "{standard}");
     }
     let program = compile(compiler("g++", "c++17"), "cxx_examples/hertz.cpp", &folder);
     let expected = std::fs::read_to_string(root().join("cxx_examples/hertz.expected")).expect("hertz.expected");

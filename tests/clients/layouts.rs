@@ -69,7 +69,8 @@ fn fortran_has_the_layout_of_rust() {
     let folder = scratch("fortran_layout");
     let file = folder.join("layout.f90");
     std::fs::write(&file, source).expect("a source");
-    let compiler = Command::new("gfortran");
+    let mut compiler = Command::new("gfortran");
+    compiler.arg("-ffree-line-length-none");
     assert_eq!(printed(compiler, &[&root().join("include/contact_normal.f90"), &file], &folder), expected());
 }
 

@@ -70,6 +70,7 @@ int main(void)
     GUARDED(stress_outputs, stresses);
     GUARDED(stress_maximum, largest);
     GUARDED(hertz_solution, hertz);
+    GUARDED(cycle, shape);
 
     flat(M, M, 0.5, 0.5, h, NULL);
     scene.it.mx = scene.it.my = M;
@@ -92,11 +93,11 @@ int main(void)
     memset(ledger, 0xAB, sizeof ledger);
     contact_normal_ledger_row_init(ledger);
     report.it.ledger = ledger, report.it.ledger_capacity = 2;
-    options.it.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID;
+    options.it.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID, options.it.cycle = &shape.it;
     check(contact_normal_solve(&scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solve with a ledger");
     check(ledger[0].mx == M / 2 && ledger[1].mx == M && ledger[1].struct_size == (int64_t)sizeof *ledger, "its rows");
     check(((unsigned char *)&ledger[2])[0] == 0xAB, "no row more");
-    options.it.method = CONTACT_NORMAL_METHOD_AUTO;
+    options.it.method = CONTACT_NORMAL_METHOD_AUTO, options.it.cycle = NULL;
     report.it.ledger = NULL, report.it.ledger_capacity = 0;
 
     /* Every effect that goes with the others. */
@@ -207,7 +208,7 @@ int main(void)
               is_untouched(accuracy.guard) && is_untouched(influence.guard) && is_untouched(rows.guard) && is_untouched(layer.guard) &&
               is_untouched(limit.guard) && is_untouched(period.guard) && is_untouched(patches.guard) && is_untouched(coating.guard) &&
               is_untouched(friction.guard) && is_untouched(results.guard) && is_untouched(stresses.guard) && is_untouched(largest.guard) &&
-              is_untouched(hertz.guard),
+              is_untouched(hertz.guard) && is_untouched(shape.guard),
           "what lies beyond the structs");
     if (failures == 0) puts("all as expected");
     return failures != 0;

@@ -6,7 +6,7 @@ use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
 /// Each struct of 0.2 has this size, for ever.
-const SIZES: [(&str, i64); 12] = [
+const SIZES: [(&str, i64); 13] = [
     ("scene", 168),
     ("influence", 32),
     ("layer", 24),
@@ -15,9 +15,10 @@ const SIZES: [(&str, i64); 12] = [
     ("patches", 32),
     ("row_tables", 32),
     ("friction", 200),
-    ("options", 96),
+    ("options", 80),
+    ("cycle", 32),
     ("fields", 80),
-    ("report", 440),
+    ("report", 696),
     ("accuracy", 112),
 ];
 
@@ -36,6 +37,7 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
         "row_tables" => &mut call.use_row_tables().struct_size,
         "friction" => &mut call.use_friction().struct_size,
         "options" => &mut call.options.known.struct_size,
+        "cycle" => &mut call.use_cycle().struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "report" => &mut call.report.known.struct_size,
         _ => &mut call.accuracy.known.struct_size,
