@@ -52,15 +52,16 @@ int main(int argc, char **argv)
         printf("%14s %14s %14s %22s\n", "approach [mm]", "force [N]", "exact [N]", "max pressure [N/mm2]");
         for (i = COUNT / 5 - 1; ok && i < COUNT; i += COUNT / 5) {
             contact_normal_hertz_solution exact;
+            contact_normal_hertz_solution_init(&exact);
             ok = statuses[i] == CONTACT_NORMAL_OK
                  && solved(contact_normal_hertz(curvature_x, curvature_y, scenes[i].shear_modulus, scenes[i].poisson_ratio,
                                                 scenes[i].load, scenes[i].approach, &exact),
                            "contact_normal_hertz");
-            printf("%14.3f %14.1f %14.1f %22.2f\n", scenes[i].approach, reports[i].force, exact.force,
-                   reports[i].max_pressure);
+            printf("%14.3f %14.1f %14.1f %22.2f\n", scenes[i].approach, reports[i].normal.force, exact.force,
+                   reports[i].normal.max_pressure);
         }
         i = COUNT - 1;
-        ok = ok && write_solution(argc > 1 ? argv[1] : NULL, &scenes[i], reports[i].approach, p + i * M * M, contact);
+        ok = ok && write_solution(argc > 1 ? argv[1] : NULL, &scenes[i], reports[i].normal.approach, p + i * M * M, contact);
     }
     contact_normal_solver_free(solver);
     free(h);

@@ -52,7 +52,7 @@ int main(void)
             !solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) {
             return EXIT_FAILURE;
         }
-        printf("%12.0f %10.6f %13.1f %13.5f %20.4e", moduli[i], report.approach, report.max_pressure, report.contact_area, compliance);
+        printf("%12.0f %10.6f %13.1f %13.5f %20.4e", moduli[i], report.normal.approach, report.normal.max_pressure, report.normal.contact_area, compliance);
         layer.compliance = first_order(moduli[i]);
         if (layer.compliance < 0) {
             printf("%26s\n", "none");
@@ -61,7 +61,7 @@ int main(void)
         scene.coating[1] = NULL;
         scene.layer = &layer;
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%26.1f\n", report.max_pressure);
+        printf("%26.1f\n", report.normal.max_pressure);
     }
     return EXIT_SUCCESS;
 }

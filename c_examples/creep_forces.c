@@ -50,9 +50,9 @@ int main(void)
     results.slip_count = slip_count;
     if (!solved(contact_normal_friction_batch(&scene, NULL, &options, N, entries[0], &results, &report), "contact_normal_friction_batch"))
         return EXIT_FAILURE;
-    printf("%ld elements in contact\ncreepage in 1e-3  spin in 1/m  Fx/(mu N)  Fy/(mu N)  Mz in Nm   slip\n", (long)report.contact_count);
+    printf("%ld elements in contact\ncreepage in 1e-3  spin in 1/m  Fx/(mu N)  Fy/(mu N)  Mz in Nm   slip\n", (long)report.normal.contact_count);
     for (i = 0; i < N; i++) {
-        const double bound = 0.3 * report.force;
+        const double bound = 0.3 * report.normal.force;
         printf("%16.1f %12.2f %10.3f %10.3f %9.2f %6ld\n", 1e3 * entries[i][0], 1e3 * entries[i][2], force[i][0] / bound,
                force[i][1] / bound, 1e-3 * moment[i], (long)slip_count[i]);
     }

@@ -8,7 +8,7 @@ int main(void)
 {
     static const double parts[] = {0.1, 0.5, 0.875, 0.99};
     static double h[M * M], traction[2][M * M], slip[2][M * M];
-    static int32_t adhesion[M * M];
+    static int32_t stick_slip[M * M];
     contact_normal_scene scene;
     contact_normal_friction friction;
     contact_normal_fields fields;
@@ -37,14 +37,14 @@ int main(void)
         fields.traction[k] = traction[k];
         fields.slip[k] = slip[k];
     }
-    fields.adhesion = adhesion;
+    fields.stick_slip = stick_slip;
     printf("force/(mu N)  shift in um  stick  slip  traction, slip at the rim\n");
     for (i = 0; i < 4; i++) {
         const int rim = M / 2 * M + 9;
         friction.force[0] = parts[i] * 0.3 * scene.force;
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%12.3f %12.4f %6ld %5ld %9.1f %.2e\n", report.tangential_force[0] / (0.3 * report.force),
-               1000.0 * report.creepage[0], (long)report.stick_count, (long)report.slip_count, traction[0][rim], slip[0][rim]);
+        printf("%12.3f %12.4f %6ld %5ld %9.1f %.2e\n", report.tangential.force[0] / (0.3 * report.normal.force),
+               1000.0 * report.tangential.creepage[0], (long)report.tangential.stick_count, (long)report.tangential.slip_count, traction[0][rim], slip[0][rim]);
     }
     return EXIT_SUCCESS;
 }

@@ -60,6 +60,7 @@ int main(int argc, char **argv)
     fields.pressure = p;
     fields.contact = contact;
     contact_normal_report_init(&report);
+    contact_normal_hertz_solution_init(&exact);
 
     ok = solved(contact_normal_solve(&scene, &options, &fields, &report), "contact_normal_solve")
          && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
@@ -68,11 +69,11 @@ int main(int argc, char **argv)
     if (ok) {
         printf("Hertz contact, %d x %d elements\n", m, m);
         printf("%-22s %12s %12s %11s\n", "", "found", "exact", "difference");
-        print_row("approach [mm]", report.approach, exact.approach);
-        print_row("force [N]", report.force, exact.force);
-        print_row("max pressure [N/mm2]", report.max_pressure, exact.max_pressure);
-        print_row("contact area [mm2]", report.contact_area, exact.area);
-        ok = write_solution(path, &scene, report.approach, p, contact);
+        print_row("approach [mm]", report.normal.approach, exact.approach);
+        print_row("force [N]", report.normal.force, exact.force);
+        print_row("max pressure [N/mm2]", report.normal.max_pressure, exact.max_pressure);
+        print_row("contact area [mm2]", report.normal.contact_area, exact.area);
+        ok = write_solution(path, &scene, report.normal.approach, p, contact);
     }
     free(h);
     free(p);

@@ -34,7 +34,7 @@ int main(void)
     for (i = 0; i < 4; i++) {
         layer.compliance = compliances[i];
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%10.0e %10.6f %13.2f %13.2f\n", layer.compliance, report.approach, report.max_pressure, report.contact_area);
+        printf("%10.0e %10.6f %13.2f %13.2f\n", layer.compliance, report.normal.approach, report.normal.max_pressure, report.normal.contact_area);
     }
     return EXIT_SUCCESS;
 }

@@ -48,9 +48,11 @@ int main(int argc, char **argv)
     fields.pressure = p;
     fields.contact = contact;
     contact_normal_report_init(&report);
+    contact_normal_ledger_row_init(ledger); /* the first row says how large one is */
     report.ledger = ledger;
     report.ledger_capacity = sizeof ledger / sizeof *ledger;
 
+    contact_normal_hertz_solution_init(&exact);
     ok = solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")
          && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
                                         scene.approach, &exact),
@@ -66,12 +68,12 @@ int main(int argc, char **argv)
                    row->max_pressure, row->error_max_pressure, fabs(row->max_pressure - exact.max_pressure),
                    row->corrected_area);
         }
-        printf("limited by the grid: %s\n", report.limited_by == CONTACT_NORMAL_LIMITED_BY_GRID ? "yes" : "no");
-        printf("elements of half the size would bring the error of the force from %.0e to %.0e N\n", report.error_force,
-               report.halved_error_force);
-        printf("time: %.2g s so far; that would take about %.2g s\n", report.setup_seconds + report.solve_seconds,
-               report.halved_seconds);
-        ok = write_solution(path, &scene, report.approach, p, contact);
+        printf("limited by the grid: %s\n", report.accuracy.limited_by == CONTACT_NORMAL_LIMITED_BY_GRID ? "yes" : "no");
+        printf("elements of half the size would bring the error of the force from %.0e to %.0e N\n", report.accuracy.error_force,
+               report.accuracy.halved_error_force);
+        printf("time: %.2g s so far; that would take about %.2g s\n", report.statistics.setup_seconds + report.statistics.solve_seconds,
+               report.accuracy.halved_seconds);
+        ok = write_solution(path, &scene, report.normal.approach, p, contact);
     }
     free(h);
     free(p);

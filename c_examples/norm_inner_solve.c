@@ -90,7 +90,7 @@ static int by_v_cycles(const double *h, double approach, struct solution *s)
     scene.approach = approach;
     if (!solved(contact_normal_solver_solve(solver, &scene, &options, &fields, &report), "contact_normal_solver_solve"))
         return 0;
-    s->iterations += (int)report.cycles;
+    s->iterations += (int)report.statistics.cycles;
     return 1;
 }
 

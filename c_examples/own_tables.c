@@ -26,6 +26,7 @@ int main(void)
     static double h[M * M], traction[2][2][M * M], tables[5][C * C];
     contact_normal_scene scene;
     contact_normal_friction friction;
+    contact_normal_influence influence[5]; /* xx, yy, xy, and of unlike bodies xz, yz */
     contact_normal_fields fields;
     contact_normal_report report;
     double g, nu, k, difference = 0.0, largest = 0.0;
@@ -69,17 +70,21 @@ int main(void)
 
     for (own = 0; own < 2; own++) {
         if (own) {
-            for (table = 0; table < 3; table++) friction.influence[table] = tables[table];
-            friction.influence_cross[0] = tables[3];
-            friction.influence_cross[1] = tables[4];
-            friction.influence_cx = friction.influence_cy = M;
-            friction.influence_scale = 1.0 / g;
+            for (table = 0; table < 5; table++) {
+                contact_normal_influence_init(&influence[table]);
+                influence[table].cx = influence[table].cy = M;
+                influence[table].coefficients = tables[table];
+                influence[table].scale = 1.0 / g;
+            }
+            for (table = 0; table < 3; table++) friction.influence[table] = &influence[table];
+            friction.influence_cross[0] = &influence[3];
+            friction.influence_cross[1] = &influence[4];
         }
         fields.traction[0] = traction[own][0];
         fields.traction[1] = traction[own][1];
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
         printf("%s: Fx/(mu N) %.4f, %ld elements stick, %ld slip\n", own ? "own tables  " : "half-space  ",
-               report.tangential_force[0] / (0.3 * report.force), (long)report.stick_count, (long)report.slip_count);
+               report.tangential.force[0] / (0.3 * report.normal.force), (long)report.tangential.stick_count, (long)report.tangential.slip_count);
     }
     for (i = 0; i < M * M; i++) {
         const double qx = traction[0][0][i], qy = traction[0][1][i];

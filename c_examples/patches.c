@@ -41,7 +41,7 @@ int main(void)
     for (i = 0; i < 3; i++) {
         matrix[1] = matrix[2] = factors[i];
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%6.1f %9.6f %13.2f %13.2f\n", factors[i], report.approach, report.max_pressure, report.contact_area);
+        printf("%6.1f %9.6f %13.2f %13.2f\n", factors[i], report.normal.approach, report.normal.max_pressure, report.normal.contact_area);
     }
     return EXIT_SUCCESS;
 }

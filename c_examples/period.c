@@ -38,7 +38,7 @@ int main(void)
     for (i = 0; i < 5; i++) {
         scene.force = shares[i] * full * length * length;
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%16.2f %16.4f %11.4f\n", shares[i], report.contact_area / (length * length), report.approach / d);
+        printf("%16.2f %16.4f %11.4f\n", shares[i], report.normal.contact_area / (length * length), report.normal.approach / d);
     }
     return EXIT_SUCCESS;
 }

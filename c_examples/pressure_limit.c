@@ -42,7 +42,7 @@ int main(void)
             if (contact[i] == 2) area += scene.dx * scene.dy;
             if (contact[i] == 2 && -e[i] > dent) dent = -e[i];
         }
-        printf("%8.0f %13.2f %13.4f %13.4f %9.5f\n", scene.force, report.max_pressure, report.contact_area, area, dent);
+        printf("%8.0f %13.2f %13.4f %13.4f %9.5f\n", scene.force, report.normal.max_pressure, report.normal.contact_area, area, dent);
     }
     return EXIT_SUCCESS;
 }

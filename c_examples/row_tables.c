@@ -46,7 +46,7 @@ int main(void)
                 for (k = 0; k < 2 * M; k++)
                     tables[jy][iy][k] = cos((iy - jy) * scene.dy * curvatures[i]) * plane[iy - jy + M][k];
         if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%9.2f %9.6f %13.1f %13.2f\n", curvatures[i], report.approach, report.max_pressure, report.contact_area);
+        printf("%9.2f %9.6f %13.1f %13.2f\n", curvatures[i], report.normal.approach, report.normal.max_pressure, report.normal.contact_area);
     }
     return EXIT_SUCCESS;
 }

@@ -44,8 +44,8 @@ static int simulate(contact_normal_scene *scene, double *h, int32_t initial_gues
     for (step = 0; ok && step < STEPS; step++) {
         set_step(scene, h, step);
         ok = solved(contact_normal_solver_solve(solver, scene, &options, fields, report), "contact_normal_solver_solve");
-        totals->cycles += (double)report->cycles;
-        totals->work_units += report->work_units;
+        totals->cycles += (double)report->statistics.cycles;
+        totals->work_units += report->statistics.work_units;
     }
     contact_normal_solver_free(solver);
     return ok;
@@ -87,12 +87,12 @@ int main(int argc, char **argv)
         printf("%-30s %12.0f %12.0f\n", "work units per step", cold_totals.work_units / STEPS,
                warm_totals.work_units / STEPS);
         printf("last step:\n");
-        printf("%-30s %12.6f %12.6f\n", "approach [mm]", cold.approach, warm.approach);
-        printf("%-30s %12.1f %12.1f\n", "force [N]", cold.force, warm.force);
-        printf("%-30s %12.2f %12.2f\n", "max pressure [N/mm2]", cold.max_pressure, warm.max_pressure);
-        printf("%-30s %12d %12d\n", "elements in contact", (int)cold.contact_count, (int)warm.contact_count);
-        printf("pressures differ by less than 1e-6 of the maximum: %s\n", difference < 1e-6 * warm.max_pressure ? "yes" : "no");
-        ok = write_solution(argc > 1 ? argv[1] : NULL, &scene, warm.approach, p, contact);
+        printf("%-30s %12.6f %12.6f\n", "approach [mm]", cold.normal.approach, warm.normal.approach);
+        printf("%-30s %12.1f %12.1f\n", "force [N]", cold.normal.force, warm.normal.force);
+        printf("%-30s %12.2f %12.2f\n", "max pressure [N/mm2]", cold.normal.max_pressure, warm.normal.max_pressure);
+        printf("%-30s %12d %12d\n", "elements in contact", (int)cold.normal.contact_count, (int)warm.normal.contact_count);
+        printf("pressures differ by less than 1e-6 of the maximum: %s\n", difference < 1e-6 * warm.normal.max_pressure ? "yes" : "no");
+        ok = write_solution(argc > 1 ? argv[1] : NULL, &scene, warm.normal.approach, p, contact);
     }
     free(h);
     free(p);

@@ -65,8 +65,10 @@ int main(int argc, char **argv)
     accuracy.max_elements = 1024 * 1024;
     accuracy.surface = surface;
     contact_normal_report_init(&report);
+    contact_normal_ledger_row_init(rows); /* the first row says how large one is */
     report.ledger = rows;
     report.ledger_capacity = 16;
+    contact_normal_hertz_solution_init(&exact);
     if (!solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
                                      scene.force, &exact),
                 "contact_normal_hertz")
@@ -76,7 +78,7 @@ int main(int argc, char **argv)
 
     printf("Hertz contact, the approach to be good to %g\n", accuracy.target);
     printf("%-22s %11s %11s %16s %12s\n", "undeformed distance", "elements", "approach", "met by estimate", "met in fact");
-    print_result("from a callback", &accuracy, report.approach, exact.approach);
+    print_result("from a callback", &accuracy, report.normal.approach, exact.approach);
 
     /* The arrays of the last grid, whose size we know only now. */
     n = accuracy.mx * accuracy.my;
@@ -96,7 +98,7 @@ int main(int argc, char **argv)
         last.dx = accuracy.dx;
         last.dy = accuracy.dy;
         last.undeformed_distance = fine;
-        ok = write_solution(path, &last, report.approach, p, contact);
+        ok = write_solution(path, &last, report.normal.approach, p, contact);
     }
     free(fine);
     free(p);
@@ -110,7 +112,7 @@ int main(int argc, char **argv)
     if (!solved(contact_normal_solve_to_accuracy(&scene, &options, &accuracy, NULL, &report),
                 "contact_normal_solve_to_accuracy"))
         return EXIT_FAILURE;
-    print_result("from 16 x 16 values", &accuracy, report.approach, exact.approach);
+    print_result("from 16 x 16 values", &accuracy, report.normal.approach, exact.approach);
 
     /* What the last solve knew on each grid: one row each, coarsest first. */
     printf("\n%-11s %11s %17s\n", "grid", "approach", "estimated error");

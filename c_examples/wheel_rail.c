@@ -69,10 +69,10 @@ static void print_comparison(const struct wheel_rail *reference, const double *p
     }
     printf("wheel-rail contact, %d x %d elements, force prescribed\n", (int)scene->mx, (int)scene->my);
     printf("%-22s %12s %12s\n", "", "found", "CONTACT");
-    printf("%-22s %12.6f %12.6f\n", "approach [mm]", report->approach, reference->approach);
-    printf("%-22s %12.1f %12.1f\n", "force [N]", report->force, force);
-    printf("%-22s %12.2f %12.2f\n", "max pressure [N/mm2]", report->max_pressure, largest);
-    printf("%-22s %12d %12d\n", "elements in contact", (int)report->contact_count, count);
+    printf("%-22s %12.6f %12.6f\n", "approach [mm]", report->normal.approach, reference->approach);
+    printf("%-22s %12.1f %12.1f\n", "force [N]", report->normal.force, force);
+    printf("%-22s %12.2f %12.2f\n", "max pressure [N/mm2]", report->normal.max_pressure, largest);
+    printf("%-22s %12d %12d\n", "elements in contact", (int)report->normal.contact_count, count);
     printf("pressures differ by less than 2e-7 of the maximum: %s\n", difference < 2e-7 * largest ? "yes" : "no");
 }
 
@@ -106,7 +106,7 @@ int main(int argc, char **argv)
     }
     if (ok) {
         print_comparison(&reference, p, &report);
-        ok = write_solution(argc > 2 ? argv[2] : NULL, &reference.scene, report.approach, p, contact);
+        ok = write_solution(argc > 2 ? argv[2] : NULL, &reference.scene, report.normal.approach, p, contact);
     }
     free(p);
     free(contact);

@@ -26,15 +26,15 @@ int main()
             std::fprintf(stderr, "stopped early: %s\n", found.message.c_str());
             return 1;
         }
-        std::printf("force          %8.0f N, exact %.0f\n", found.report.force, exact.force);
-        std::printf("largest p      %8.1f N/mm2, exact %.1f\n", found.report.max_pressure, exact.max_pressure);
+        std::printf("force          %8.0f N, exact %.0f\n", found.report.normal.force, exact.force);
+        std::printf("largest p      %8.1f N/mm2, exact %.1f\n", found.report.normal.max_pressure, exact.max_pressure);
 
         cn::solver solver(scene);
         for (double force : {40000.0, 80000.0}) {
             const cn::result step = solver.solve(scene.force(force));
             if (!step) return 1;
-            std::printf("force %8.0f N: approach %.4f mm, %lld elements in contact\n", force, step.report.approach,
-                        static_cast<long long>(step.report.contact_count));
+            std::printf("force %8.0f N: approach %.4f mm, %lld elements in contact\n", force, step.report.normal.approach,
+                        static_cast<long long>(step.report.normal.contact_count));
         }
     } catch (const cn::error &refused) {
         std::fprintf(stderr, "%s\n", refused.what());

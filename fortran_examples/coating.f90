@@ -35,7 +35,8 @@ program coating_example
     call contact_normal_set_coating(scene, 2, coating, 0.05_c_double, MODULI(i), 0.3_c_double)
     call check(contact_normal_coating_compliance(coating, 80000.0_c_double, 0.3_c_double, 1.0_c_double, compliance))
     call check(contact_normal_solve(scene, fields=fields, report=report))
-    print '(f12.0, f11.6, f14.1, f14.5, es21.4)', MODULI(i), report%approach, report%max_pressure, report%contact_area, compliance
+    print '(f12.0, f11.6, f14.1, f14.5, es21.4)', MODULI(i), report%normal%approach, report%normal%max_pressure, &
+      report%normal%contact_area, compliance
   end do
 
 contains

@@ -49,10 +49,10 @@ program creep_forces
   call contact_normal_set_friction_results(results, force=force, moment=moment, slip_count=slip_count)
   if (contact_normal_friction_batch(scene, options=options, n=N, entries=entries, results=results, report=report) /= &
     CONTACT_NORMAL_OK) error stop "contact_normal_friction_batch failed"
-  print '(i0, a)', report%contact_count, " elements in contact"
+  print '(i0, a)', report%normal%contact_count, " elements in contact"
   print '(a)', "creepage in 1e-3  spin in 1/m  Fx/(mu N)  Fy/(mu N)  Mz in Nm   slip"
   do i = 1, N
-    print '(f16.1, f13.2, 2f11.3, f10.2, i7)', 1e3_dp*entries(1, i), 1e3_dp*entries(3, i), force(:, i)/(MU*report%force), &
+    print '(f16.1, f13.2, 2f11.3, f10.2, i7)', 1e3_dp*entries(1, i), 1e3_dp*entries(3, i), force(:, i)/(MU*report%normal%force), &
       1e-3_dp*moment(i), slip_count(i)
   end do
 end program creep_forces

@@ -38,16 +38,17 @@ program hertz
   call contact_normal_set_fields(fields, pressure=pressure, contact=contact)
   call contact_normal_report_init(report)
   call check(contact_normal_solve(scene, options, fields, report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 
   print '(a, i0, a, i0, a)', "Hertz contact on ", M, " x ", M, " elements"
   print '(a)', "                          computed       exact"
-  print '(a, 2f12.5)', "approach       mm     ", report%approach, exact%approach
-  print '(a, 2f12.1)', "force          N      ", report%force, exact%force
-  print '(a, 2f12.2)', "max pressure   N/mm2  ", report%max_pressure, exact%max_pressure
-  print '(a, 2f12.4)', "contact area   mm2    ", report%contact_area, exact%area
-  print '(a, f8.4, a)', "time", report%setup_seconds + report%solve_seconds, " s"
+  print '(a, 2f12.5)', "approach       mm     ", report%normal%approach, exact%approach
+  print '(a, 2f12.1)', "force          N      ", report%normal%force, exact%force
+  print '(a, 2f12.2)', "max pressure   N/mm2  ", report%normal%max_pressure, exact%max_pressure
+  print '(a, 2f12.4)', "contact area   mm2    ", report%normal%contact_area, exact%area
+  print '(a, f8.4, a)', "time", report%statistics%setup_seconds + report%statistics%solve_seconds, " s"
   call write_arrays()
 
 contains
@@ -66,7 +67,7 @@ contains
     if (command_argument_count() < 1) return
     call get_command_argument(1, name)
     open (newunit=unit, file=trim(name), action="write", status="replace")
-    write (unit, '(i0, 1x, i0, 3es26.16e3)') scene%mx, scene%my, scene%dx, scene%dy, report%approach
+    write (unit, '(i0, 1x, i0, 3es26.16e3)') scene%mx, scene%my, scene%dx, scene%dy, report%normal%approach
     do iy = 1, M
       do ix = 1, M
         write (unit, '(2es26.16e3, 1x, i0)') h(ix, iy), pressure(ix, iy), contact(ix, iy)

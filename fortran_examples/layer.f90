@@ -37,6 +37,6 @@ program layer_example
       print '(a)', contact_normal_last_error_message()
       error stop 1
     end if
-    print '(es10.1, f11.6, 2f14.2)', COMPLIANCES(i), report%approach, report%max_pressure, report%contact_area
+    print '(es10.1, f11.6, 2f14.2)', COMPLIANCES(i), report%normal%approach, report%normal%max_pressure, report%normal%contact_area
   end do
 end program layer_example

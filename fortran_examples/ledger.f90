@@ -35,6 +35,7 @@ program ledger_example
   call contact_normal_report_init(report)
   call contact_normal_set_ledger(report, ledger)
   call check(contact_normal_solve(scene, fields=fields, report=report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 
@@ -45,9 +46,10 @@ program ledger_example
         abs(row%force - exact%force)
     end associate
   end do
-  print '(a, l1)', "limited by the grid: ", report%limited_by == CONTACT_NORMAL_LIMITED_BY_GRID
-  print '(a, f8.4, a, f8.4, a)', "time", report%setup_seconds + report%solve_seconds, " s; with elements of half the size about ", &
-    report%halved_seconds, " s"
+  print '(a, l1)', "limited by the grid: ", report%accuracy%limited_by == CONTACT_NORMAL_LIMITED_BY_GRID
+  print '(a, f8.4, a, f8.4, a)', "time", report%statistics%setup_seconds + report%statistics%solve_seconds, &
+    " s; with elements of half the size about ", &
+    report%accuracy%halved_seconds, " s"
   call write_arrays()
 
 contains
@@ -66,7 +68,7 @@ contains
     if (command_argument_count() < 1) return
     call get_command_argument(1, name)
     open (newunit=unit, file=trim(name), action="write", status="replace")
-    write (unit, '(i0, 1x, i0, 3es26.16e3)') scene%mx, scene%my, scene%dx, scene%dy, report%approach
+    write (unit, '(i0, 1x, i0, 3es26.16e3)') scene%mx, scene%my, scene%dx, scene%dy, report%normal%approach
     do iy = 1, M
       do ix = 1, M
         write (unit, '(2es26.16e3, 1x, i0)') h(ix, iy), pressure(ix, iy), contact(ix, iy)

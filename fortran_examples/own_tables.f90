@@ -9,6 +9,7 @@ program own_tables
   real(dp), pointer, contiguous :: h(:, :), qx(:, :), qy(:, :), tables(:, :, :)
   type(contact_normal_scene), pointer :: scene
   type(contact_normal_friction), pointer :: friction
+  type(contact_normal_influence), target :: named(5)
   type(contact_normal_fields) :: fields
   type(contact_normal_report) :: report
   real(dp), pointer, contiguous :: xx(:, :), yy(:, :), xy(:, :), xz(:, :), yz(:, :)
@@ -54,14 +55,15 @@ program own_tables
     scene%force = 500
     call contact_normal_set_friction(scene, friction, coefficient=0.3_dp)
     friction%creepage = [-1.2e-3_dp, 0.0_dp]
-    if (own == 1) call contact_normal_set_tangential_influence(friction, xx, yy, xy, scale=1/both, xz=xz, yz=yz)
+    if (own == 1) call contact_normal_set_tangential_influence(friction, named, xx, yy, xy, scale=1/both, xz=xz, yz=yz)
     call contact_normal_fields_init(fields)
     call contact_normal_set_friction_fields(fields, traction_x=qx, traction_y=qy)
     call contact_normal_report_init(report)
     status = contact_normal_solve(scene, fields=fields, report=report)
     if (status /= CONTACT_NORMAL_OK) error stop "contact_normal_solve failed"
     print '(a, f7.4, a, i0, a, i0, a)', merge("own tables: Fx/(mu N)", "half-space: Fx/(mu N)", own == 1), &
-      report%tangential_force(1)/(0.3_dp*report%force), ", ", report%stick_count, " elements stick, ", report%slip_count, " slip"
+      report%tangential%force(1)/(0.3_dp*report%normal%force), ", ", &
+      report%tangential%stick_count, " elements stick, ", report%tangential%slip_count, " slip"
   end do
   deallocate (h, qx, qy, tables, scene, friction)
 

@@ -43,6 +43,6 @@ program patches_example
       print '(a)', contact_normal_last_error_message()
       error stop 1
     end if
-    print '(f6.1, f10.6, 2f14.2)', FACTORS(i), report%approach, report%max_pressure, report%contact_area
+    print '(f6.1, f10.6, 2f14.2)', FACTORS(i), report%normal%approach, report%normal%max_pressure, report%normal%contact_area
   end do
 end program patches_example

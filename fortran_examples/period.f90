@@ -40,6 +40,6 @@ program period_example
       print '(a)', contact_normal_last_error_message()
       error stop 1
     end if
-    print '(f16.2, f17.4, f12.4)', SHARES(i), report%contact_area/LENGTH**2, report%approach/D
+    print '(f16.2, f17.4, f12.4)', SHARES(i), report%normal%contact_area/LENGTH**2, report%normal%approach/D
   end do
 end program period_example

@@ -39,7 +39,7 @@ program pressure_limit_example
       print '(a)', contact_normal_last_error_message()
       error stop 1
     end if
-    print '(f8.0, f14.2, 2f14.4, f10.5)', scene%force, report%max_pressure, report%contact_area, &
+    print '(f8.0, f14.2, 2f14.4, f10.5)', scene%force, report%normal%max_pressure, report%normal%contact_area, &
       count(contact == 2)*scene%dx*scene%dy, max(0.0_c_double, maxval(-e, mask=contact == 2))
   end do
 end program pressure_limit_example

@@ -44,7 +44,8 @@ program row_tables_example
     end do
     call contact_normal_set_row_tables(scene, row_tables, M, tables)
     if (contact_normal_solve(scene, fields=fields, report=report) /= CONTACT_NORMAL_OK) call stop_with_message()
-    print '(f9.2, f10.6, f14.1, f14.2)', CURVATURES(i), report%approach, report%max_pressure, report%contact_area
+    print '(f9.2, f10.6, f14.1, f14.2)', CURVATURES(i), report%normal%approach, report%normal%max_pressure, &
+      report%normal%contact_area
   end do
 contains
   subroutine stop_with_message()

@@ -62,6 +62,7 @@ program to_accuracy
   call contact_normal_report_init(report)
   call contact_normal_set_ledger(report, rows)
   call check(contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report))
+  call contact_normal_hertz_solution_init(exact)
   call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
                                   scene%approach, exact))
 
@@ -74,11 +75,11 @@ program to_accuracy
 
   print '(a, es7.1)', "Hertz contact, the force to be good to ", accuracy%target
   print '(a, i0, a, i0)', "elements              ", accuracy%mx, " x ", accuracy%my
-  print '(a, f0.0)', "force                 ", report%force
+  print '(a, f0.0)', "force                 ", report%normal%force
   print '(2a)', "met by the estimate   ", merge("yes", "no ", accuracy%reached <= accuracy%target)
-  print '(2a)', "met in fact           ", merge("yes", "no ", abs(report%force/exact%force - 1) <= accuracy%target)
+  print '(2a)', "met in fact           ", merge("yes", "no ", abs(report%normal%force/exact%force - 1) <= accuracy%target)
   print '(2a)', "pressures sum to it   ", &
-    merge("yes", "no ", abs(sum(pressure)*accuracy%dx*accuracy%dy - report%force) <= 1e-9_c_double*report%force)
+    merge("yes", "no ", abs(sum(pressure)*accuracy%dx*accuracy%dy - report%normal%force) <= 1e-9_c_double*report%normal%force)
   print '(a)', "grid             force   estimated error"
   do i = 1, int(min(report%ledger_rows, size(rows, kind=c_int64_t)))
     if (rows(i)%error_force >= 0) then
@@ -108,7 +109,7 @@ contains
     call get_command_argument(1, name)
     if (surface(accuracy%mx, accuracy%my, accuracy%dx, accuracy%dy, h, c_null_ptr) /= 0) error stop 1
     open (newunit=unit, file=trim(name), action="write", status="replace")
-    write (unit, '(i0, 1x, i0, 3es26.16e3)') accuracy%mx, accuracy%my, accuracy%dx, accuracy%dy, report%approach
+    write (unit, '(i0, 1x, i0, 3es26.16e3)') accuracy%mx, accuracy%my, accuracy%dx, accuracy%dy, report%normal%approach
     do iy = 1, accuracy%my
       do ix = 1, accuracy%mx
         write (unit, '(2es26.16e3, 1x, i0)') h(ix, iy), pressure(ix, iy), contact(ix, iy)

@@ -79,7 +79,107 @@
 /*
  Version of the ABI: grows with every release that adds to it.
  */
-#define CONTACT_NORMAL_ABI_VERSION 1
+#define CONTACT_NORMAL_ABI_VERSION 2
+
+/*
+ `kind`: `contact_normal_scene`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_SCENE 1
+
+/*
+ `kind`: `contact_normal_options`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_OPTIONS 2
+
+/*
+ `kind`: `contact_normal_fields`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_FIELDS 3
+
+/*
+ `kind`: `contact_normal_report`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_REPORT 4
+
+/*
+ `kind`: `contact_normal_accuracy`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_ACCURACY 5
+
+/*
+ `kind`: `contact_normal_influence`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_INFLUENCE 6
+
+/*
+ `kind`: `contact_normal_row_tables`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_ROW_TABLES 7
+
+/*
+ `kind`: `contact_normal_layer`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_LAYER 8
+
+/*
+ `kind`: `contact_normal_pressure_limit`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PRESSURE_LIMIT 9
+
+/*
+ `kind`: `contact_normal_period`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PERIOD 10
+
+/*
+ `kind`: `contact_normal_patches`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_PATCHES 11
+
+/*
+ `kind`: `contact_normal_coating`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_COATING 12
+
+/*
+ `kind`: `contact_normal_friction`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FRICTION 13
+
+/*
+ `kind`: `contact_normal_friction_results`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FRICTION_RESULTS 14
+
+/*
+ `kind`: `contact_normal_stress_outputs`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_STRESS_OUTPUTS 15
+
+/*
+ `kind`: `contact_normal_stress_maximum`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_STRESS_MAXIMUM 16
+
+/*
+ `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_LEDGER_ROW 17
+
+/*
+ `kind`: `contact_normal_price`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_PRICE 18
+
+/*
+ `kind`: `contact_normal_hertz_solution`. Since 0.1.
+ */
+#define CONTACT_NORMAL_KIND_HERTZ_SOLUTION 19
+
+/*
+ `kind`: `contact_normal_cycle`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_CYCLE 20
 
 /*
  `load`: the approach of the bodies is given.
@@ -117,19 +217,19 @@
 #define CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE 1
 
 /*
- `fields->adhesion`: the element is not in contact.
+ `fields->stick_slip`: the element is not in contact.
  */
-#define CONTACT_NORMAL_ADHESION_EXTERIOR 0
+#define CONTACT_NORMAL_STICK_SLIP_EXTERIOR 0
 
 /*
- `fields->adhesion`: it sticks.
+ `fields->stick_slip`: it sticks.
  */
-#define CONTACT_NORMAL_ADHESION_STICK 1
+#define CONTACT_NORMAL_STICK_SLIP_STICK 1
 
 /*
- `fields->adhesion`: it slips.
+ `fields->stick_slip`: it slips.
  */
-#define CONTACT_NORMAL_ADHESION_SLIP 2
+#define CONTACT_NORMAL_STICK_SLIP_SLIP 2
 
 /*
  `method`: the fastest way known that is safe.
@@ -335,6 +435,28 @@ typedef struct contact_normal_solver contact_normal_solver;
 typedef int32_t contact_normal_status;
 
 /*
+ Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+ */
+typedef struct contact_normal_coating {
+  /*
+   Set by `contact_normal_coating_init`.
+   */
+  int64_t struct_size;
+  /*
+   Its thickness, a length >= 0; default 0: no coating.
+   */
+  double thickness;
+  /*
+   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+   */
+  double shear_modulus;
+  /*
+   Its nu, in (-1, 0.5]; default 0.
+   */
+  double poisson_ratio;
+} contact_normal_coating;
+
+/*
  Effect: the caller's own influence coefficients instead of the half-space. Nothing is assumed of them but that a pressure
  displaces its own element inwards: they need be neither symmetric nor positive.
  */
@@ -477,28 +599,6 @@ typedef struct contact_normal_row_tables {
 } contact_normal_row_tables;
 
 /*
- Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
- */
-typedef struct contact_normal_coating {
-  /*
-   Set by `contact_normal_coating_init`.
-   */
-  int64_t struct_size;
-  /*
-   Its thickness, a length >= 0; default 0: no coating.
-   */
-  double thickness;
-  /*
-   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
-   */
-  double shear_modulus;
-  /*
-   Its nu, in (-1, 0.5]; default 0.
-   */
-  double poisson_ratio;
-} contact_normal_coating;
-
-/*
  Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
  Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
  gives a positive force in x. Rigid slips, and but in steady rolling the tractions before, must be less than 1e140; the rms of rigid
@@ -539,7 +639,7 @@ typedef struct contact_normal_friction {
    */
   double spin;
   /*
-   Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+   Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
    */
   double spin_centre[2];
   /*
@@ -568,38 +668,25 @@ typedef struct contact_normal_friction {
   const double *rigid_slip[2];
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
-   y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
-   xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
-   tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or
-   `influence_cross` given.
+   y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
+   even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the tables must reach beyond
+   the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
-  const double *influence[3];
+  const struct contact_normal_influence *influence[3];
   /*
-   The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
+   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
+   scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
+   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
    */
-  int32_t influence_cx;
+  const struct contact_normal_influence *influence_cross[2];
   /*
-   And -cy..cy-1.
-   */
-  int32_t influence_cy;
-  /*
-   Every coefficient is multiplied by this, positive; default 1.
-   */
-  double influence_scale;
-  /*
-   1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+   1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
    */
   int32_t sensitivities;
   /*
    Must be 0.
    */
   int32_t reserved;
-  /*
-   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure, laid out and scaled as
-   those; both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
-   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
-   */
-  const double *influence_cross[2];
 } contact_normal_friction;
 
 /*
@@ -628,7 +715,7 @@ typedef struct contact_normal_scene {
    */
   double dy;
   /*
-   h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
+   h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
    */
   const double *undeformed_distance;
   /*
@@ -648,7 +735,7 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
+   Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
    */
   double approach;
   /*
@@ -680,7 +767,7 @@ typedef struct contact_normal_scene {
    */
   const struct contact_normal_row_tables *row_tables;
   /*
-   Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
+   Effect, or NULL (default): a coating on body 1 (`coating[0]`), on body 2. The elastic constants are then those of the bodies below.
    */
   const struct contact_normal_coating *coating[2];
   /*
@@ -739,17 +826,13 @@ typedef int32_t (*contact_normal_progress_callback)(const struct contact_normal_
                                                     void *user);
 
 /*
- How a scene is solved; the defaults suit everybody.
+ The cycle of the paper's methods.
  */
-typedef struct contact_normal_options {
+typedef struct contact_normal_cycle {
   /*
-   Set by `contact_normal_options_init`.
+   Set by `contact_normal_cycle_init`.
    */
   int64_t struct_size;
-  /*
-   CONTACT_NORMAL_METHOD_...; default AUTO.
-   */
-  int32_t method;
   /*
    CONTACT_NORMAL_SMOOTHER_...; default AUTO.
    */
@@ -763,13 +846,27 @@ typedef struct contact_normal_options {
    */
   int32_t post_sweeps;
   /*
-   omega, in (0, 2); default 0: what suits the smoother.
-   */
-  double relaxation;
-  /*
    The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
    */
   int32_t coarsest;
+  /*
+   omega, in (0, 2); default 0: what suits the smoother.
+   */
+  double relaxation;
+} contact_normal_cycle;
+
+/*
+ How a scene is solved; the defaults suit everybody.
+ */
+typedef struct contact_normal_options {
+  /*
+   Set by `contact_normal_options_init`.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_METHOD_...; default AUTO.
+   */
+  int32_t method;
   /*
    CONTACT_NORMAL_ACTIVE_SET_...; default FREE.
    */
@@ -788,7 +885,7 @@ typedef struct contact_normal_options {
   double tolerance;
   /*
    > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-   that `report->tolerance` says. Default 0: the tolerance above.
+   that `report->normal.tolerance` says. Default 0: the tolerance above.
    */
   double error_ratio;
   /*
@@ -815,6 +912,10 @@ typedef struct contact_normal_options {
    Passed to `progress`; default NULL.
    */
   void *user;
+  /*
+   The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
+   */
+  const struct contact_normal_cycle *cycle;
 } contact_normal_options;
 
 /*
@@ -851,9 +952,9 @@ typedef struct contact_normal_fields {
    */
   double *slip[2];
   /*
-   With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
+   With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
    */
-  int32_t *adhesion;
+  int32_t *stick_slip;
 } contact_normal_fields;
 
 /*
@@ -861,6 +962,10 @@ typedef struct contact_normal_fields {
  known, and if the bit is set in `untrusted`, not to be known from these grids.
  */
 typedef struct contact_normal_ledger_row {
+  /*
+   Set by `contact_normal_ledger_row_init`, which the first row of an array needs, and by the solve.
+   */
+  int64_t struct_size;
   /*
    Elements in x of the grid.
    */
@@ -940,13 +1045,170 @@ typedef struct contact_normal_ledger_row {
 } contact_normal_ledger_row;
 
 /*
- What a solve found and what it cost. Written only when the status is >= 0.
+ What was found of the normal problem: a group of `contact_normal_report`.
  */
-typedef struct contact_normal_report {
+typedef struct contact_normal_report_normal {
   /*
-   Set by `contact_normal_report_init`.
+   Approach.
    */
-  int64_t struct_size;
+  double approach;
+  /*
+   Sum of p dx dy.
+   */
+  double force;
+  /*
+   Largest pressure.
+   */
+  double max_pressure;
+  /*
+   Smallest pressure.
+   */
+  double min_pressure;
+  /*
+   Contact area: that of the elements in contact.
+   */
+  double contact_area;
+  /*
+   Contact area, corrected for the elements along its outline; < 0: not known.
+   */
+  double corrected_area;
+  /*
+   Elements in contact.
+   */
+  int64_t contact_count;
+  /*
+   Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+   */
+  int64_t edge_count;
+  /*
+   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+   an accuracy asks for.
+   */
+  double tolerance;
+  /*
+   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+   */
+  double residual;
+  /*
+   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
+   */
+  double violation;
+  /*
+   `sum of p |e| / sum of p |u|`.
+   */
+  double complementarity;
+  /*
+   rms over C of the last change of p.
+   */
+  double update;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_normal;
+
+/*
+ What was found of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
+ */
+typedef struct contact_normal_report_tangential {
+  /*
+   The sum of q dx dy in x and y, on body 1.
+   */
+  double force[2];
+  /*
+   The sum of (x qy - y qx) dx dy about the centre of spin.
+   */
+  double moment;
+  /*
+   Creepages in x and y, given or found.
+   */
+  double creepage[2];
+  /*
+   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
+   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
+   round-off leaves); with a fresh product in double precision.
+   */
+  double residual;
+  /*
+   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+   */
+  double gap;
+  /*
+   Elements that stick.
+   */
+  int64_t stick_count;
+  /*
+   Elements that slip.
+   */
+  int64_t slip_count;
+  /*
+   If `friction->sensitivities` is 1, else 0: derivatives of `force` in x, in y and of `moment`, each by the creepages in x and y and by
+   the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow the tractions, but
+   those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
+   */
+  double sensitivities[9];
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_tangential;
+
+/*
+ How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
+ ledger; they are absolute, and < 0 where they are not known.
+ */
+typedef struct contact_normal_report_accuracy {
+  /*
+   Estimated error of the force (of the approach, when the force is prescribed).
+   */
+  double error_force;
+  /*
+   Of the largest pressure.
+   */
+  double error_max_pressure;
+  /*
+   Of the contact area.
+   */
+  double error_contact_area;
+  /*
+   Of the corrected area.
+   */
+  double error_corrected_area;
+  /*
+   Of the pressures: rms of the error over that of p.
+   */
+  double error_pressure;
+  /*
+   Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
+   shifts from rest, and for bodies that are alike of steady rolling from rest.
+   */
+  double error_tangential[2];
+  /*
+   CONTACT_NORMAL_UNTRUSTED_... bits.
+   */
+  int32_t untrusted;
+  /*
+   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+   */
+  int32_t limited_by;
+  /*
+   About the seconds of a solve with elements of half the size; < 0: not known.
+   */
+  double halved_seconds;
+  /*
+   And the error of the force (or the approach) that it would leave.
+   */
+  double halved_error_force;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_accuracy;
+
+/*
+ What it cost: a group of `contact_normal_report`.
+ */
+typedef struct contact_normal_report_statistics {
   /*
    Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
    */
@@ -968,58 +1230,9 @@ typedef struct contact_normal_report {
    */
   double work_units;
   /*
-   rms over C of the last change of p.
+   With friction: products of two components on all grids, in products on the finest.
    */
-  double update;
-  /*
-   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
-   */
-  double residual;
-  /*
-   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
-   */
-  double violation;
-  /*
-   `sum of p |e| / sum of p |u|`.
-   */
-  double complementarity;
-  /*
-   Smallest pressure.
-   */
-  double min_pressure;
-  /*
-   Approach.
-   */
-  double approach;
-  /*
-   Sum of p dx dy.
-   */
-  double force;
-  /*
-   Largest pressure.
-   */
-  double max_pressure;
-  /*
-   Contact area.
-   */
-  double contact_area;
-  /*
-   Elements in contact.
-   */
-  int64_t contact_count;
-  /*
-   Estimated error of the force (of the approach, when the force is prescribed), absolute; < 0: not known. Errors are estimated
-   after a start from nothing, and after any start if there is a ledger.
-   */
-  double error_force;
-  /*
-   Of the largest pressure.
-   */
-  double error_max_pressure;
-  /*
-   Of the contact area.
-   */
-  double error_contact_area;
+  double tangential_products;
   /*
    Seconds of set-up: 0 for later solves with a handle.
    */
@@ -1029,9 +1242,28 @@ typedef struct contact_normal_report {
    */
   double solve_seconds;
   /*
+   Seconds of the tangential problem, which are part of `solve_seconds`.
+   */
+  double tangential_seconds;
+  /*
    Bytes held by operators and unknowns.
    */
   int64_t bytes;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[8];
+} contact_normal_report_statistics;
+
+/*
+ What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
+ where the library does not know what a newer header has there; later groups come at the end of the report.
+ */
+typedef struct contact_normal_report {
+  /*
+   Set by `contact_normal_report_init`.
+   */
+  int64_t struct_size;
   /*
    Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
    */
@@ -1041,95 +1273,25 @@ typedef struct contact_normal_report {
    */
   int64_t ledger_capacity;
   /*
-   In: the caller's array, or NULL (default).
+   In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
    */
   struct contact_normal_ledger_row *ledger;
   /*
-   Contact area, corrected for the elements along its outline; < 0: not known.
+   What was found of the normal problem.
    */
-  double corrected_area;
+  struct contact_normal_report_normal normal;
   /*
-   Estimated error of the corrected area.
+   What was found of the tangential problem.
    */
-  double error_corrected_area;
+  struct contact_normal_report_tangential tangential;
   /*
-   Of the pressures: rms of the error over that of p.
+   How wrong it is.
    */
-  double error_pressure;
+  struct contact_normal_report_accuracy accuracy;
   /*
-   CONTACT_NORMAL_UNTRUSTED_... bits.
+   What it cost.
    */
-  int32_t untrusted;
-  /*
-   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
-   */
-  int32_t limited_by;
-  /*
-   About the seconds of a solve with elements of half the size; < 0: not known.
-   */
-  double halved_seconds;
-  /*
-   And the error of the force (or the approach) that it would leave.
-   */
-  double halved_error_force;
-  /*
-   Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
-   */
-  int64_t edge_count;
-  /*
-   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
-   an accuracy asks for.
-   */
-  double tolerance;
-  /*
-   With friction, as are the following: the sum of q dx dy in x and y, on body 1.
-   */
-  double tangential_force[2];
-  /*
-   The sum of (x qy - y qx) dx dy about the centre of spin.
-   */
-  double tangential_moment;
-  /*
-   Creepages in x and y, given or found.
-   */
-  double creepage[2];
-  /*
-   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
-   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
-   round-off leaves); with a fresh product in double precision.
-   */
-  double tangential_residual;
-  /*
-   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
-   */
-  double tangential_gap;
-  /*
-   Elements that stick.
-   */
-  int64_t stick_count;
-  /*
-   Elements that slip.
-   */
-  int64_t slip_count;
-  /*
-   Products of two components on all grids, in products on the finest.
-   */
-  double tangential_products;
-  /*
-   Seconds of the tangential problem, which are part of `solve_seconds`.
-   */
-  double tangential_seconds;
-  /*
-   If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-   creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow
-   the tractions, but those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
-   */
-  double sensitivities[9];
-  /*
-   Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
-   They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.
-   */
-  double error_tangential[2];
+  struct contact_normal_report_statistics statistics;
 } contact_normal_report;
 
 /*
@@ -1185,9 +1347,9 @@ typedef struct contact_normal_friction_results {
    */
   double *slip;
   /*
-   CONTACT_NORMAL_ADHESION_... of each element, `[n][my][mx]`.
+   CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
    */
-  int32_t *adhesion;
+  int32_t *stick_slip;
 } contact_normal_friction_results;
 
 /*
@@ -1274,6 +1436,10 @@ typedef struct contact_normal_accuracy {
  */
 typedef struct contact_normal_price {
   /*
+   Set by `contact_normal_price_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
    The relative error that is wanted, between 0 and 1.
    */
   double target;
@@ -1328,6 +1494,10 @@ typedef struct contact_normal_price {
  */
 typedef struct contact_normal_hertz_solution {
   /*
+   Set by `contact_normal_hertz_solution_init`.
+   */
+  int64_t struct_size;
+  /*
    Semi-axis of the contact ellipse in x.
    */
   double semi_axis_x;
@@ -1358,11 +1528,15 @@ typedef struct contact_normal_hertz_solution {
  */
 typedef struct contact_normal_stress_maximum {
   /*
+   Set by `contact_normal_stress_maximum_init`.
+   */
+  int64_t struct_size;
+  /*
    The value.
    */
   double value;
   /*
-   Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+   Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
    */
   double x;
   /*
@@ -1461,24 +1635,14 @@ const char *contact_normal_version(void);
 int32_t contact_normal_abi_version(void);
 
 /*
- Fills a scene with nothing: sizes, elastic constants and the undeformed distance have to be set. Since 0.1.
+ Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
+ and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
+ size of their own struct. No more than `size` bytes are written, and what this library does not know of them is 0. `to` NULL is ignored.
+ Since 0.2.
  */
-void contact_normal_scene_init(struct contact_normal_scene *scene);
-
-/*
- Fills an influence table with nothing, and a scale of 1. Since 0.1.
- */
-void contact_normal_influence_init(struct contact_normal_influence *influence);
-
-/*
- Fills row tables with nothing, and a scale of 1. Since 0.1.
- */
-void contact_normal_row_tables_init(struct contact_normal_row_tables *tables);
-
-/*
- Fills a coating with no thickness. Since 0.2.
- */
-void contact_normal_coating_init(struct contact_normal_coating *coating);
+void contact_normal_init(int32_t kind,
+                         void *to,
+                         int64_t size);
 
 /*
  What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
@@ -1492,46 +1656,6 @@ contact_normal_status contact_normal_coating_compliance(const struct contact_nor
                                                         double *compliance);
 
 /*
- Fills patches with none. Since 0.1.
- */
-void contact_normal_patches_init(struct contact_normal_patches *patches);
-
-/*
- Fills a period with none. Since 0.1.
- */
-void contact_normal_period_init(struct contact_normal_period *period);
-
-/*
- Fills a layer with a compliance of 0. Since 0.1.
- */
-void contact_normal_layer_init(struct contact_normal_layer *layer);
-
-/*
- Fills a pressure limit with +infinity. Since 0.1.
- */
-void contact_normal_pressure_limit_init(struct contact_normal_pressure_limit *limit);
-
-/*
- Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
- */
-void contact_normal_friction_init(struct contact_normal_friction *friction);
-
-/*
- Fills options with the defaults. Since 0.1.
- */
-void contact_normal_options_init(struct contact_normal_options *options);
-
-/*
- Fills fields with NULL: nothing is wanted. Since 0.1.
- */
-void contact_normal_fields_init(struct contact_normal_fields *fields);
-
-/*
- Fills a report with nothing, without a ledger. Since 0.1.
- */
-void contact_normal_report_init(struct contact_normal_report *report);
-
-/*
  Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
  */
 contact_normal_status contact_normal_solve(const struct contact_normal_scene *scene,
@@ -1540,8 +1664,8 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
- relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+ Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
+ precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
  valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
  Since 0.1.
  */
@@ -1580,27 +1704,22 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
                                                    struct contact_normal_fields *fields);
 
 /*
- Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 512 MiB of what
+ Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. The library keeps up to 512 MiB of what
  solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
  */
-void contact_normal_solver_free(struct contact_normal_solver *solver);
+contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
 
 /*
  Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
  contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
  used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
- `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
+ `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(const struct contact_normal_scene *scene,
                                                       const double *pressure,
                                                       const struct contact_normal_options *options,
                                                       struct contact_normal_fields *fields,
                                                       struct contact_normal_report *report);
-
-/*
- Fills results with NULL: nothing is wanted. Since 0.2.
- */
-void contact_normal_friction_results_init(struct contact_normal_friction_results *results);
 
 /*
  Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
@@ -1654,12 +1773,7 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
                                                         contact_normal_status *statuses);
 
 /*
- Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
- */
-void contact_normal_accuracy_init(struct contact_normal_accuracy *accuracy);
-
-/*
- Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
+ Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
  `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
  corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
  scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
@@ -1677,7 +1791,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_report *report);
 
 /*
- Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`. The scene is solved on small
+ Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
+ `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
  grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
@@ -1717,11 +1832,6 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           double *coefficients);
 
 /*
- Fills outputs with NULL: nothing is wanted. Since 0.2.
- */
-void contact_normal_stress_outputs_init(struct contact_normal_stress_outputs *outputs);
-
-/*
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
@@ -1740,8 +1850,8 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
                                                        struct contact_normal_stress_outputs *outputs);
 
 /*
- Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so
- that element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
+ Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
+ element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
  yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
  `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
  Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
@@ -1767,5 +1877,165 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+/*
+ Fills a contact_normal_scene with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_scene_init(contact_normal_scene *scene)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_SCENE, scene, (int64_t)sizeof(contact_normal_scene));
+}
+
+/*
+ Fills a contact_normal_options with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_options_init(contact_normal_options *options)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_OPTIONS, options, (int64_t)sizeof(contact_normal_options));
+}
+
+/*
+ Fills a contact_normal_fields with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_fields_init(contact_normal_fields *fields)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FIELDS, fields, (int64_t)sizeof(contact_normal_fields));
+}
+
+/*
+ Fills a contact_normal_report with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_report_init(contact_normal_report *report)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_REPORT, report, (int64_t)sizeof(contact_normal_report));
+}
+
+/*
+ Fills a contact_normal_accuracy with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_accuracy_init(contact_normal_accuracy *accuracy)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ACCURACY, accuracy, (int64_t)sizeof(contact_normal_accuracy));
+}
+
+/*
+ Fills a contact_normal_influence with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_influence_init(contact_normal_influence *influence)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_INFLUENCE, influence, (int64_t)sizeof(contact_normal_influence));
+}
+
+/*
+ Fills a contact_normal_row_tables with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_row_tables_init(contact_normal_row_tables *row_tables)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ROW_TABLES, row_tables, (int64_t)sizeof(contact_normal_row_tables));
+}
+
+/*
+ Fills a contact_normal_layer with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_layer_init(contact_normal_layer *layer)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_LAYER, layer, (int64_t)sizeof(contact_normal_layer));
+}
+
+/*
+ Fills a contact_normal_pressure_limit with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_pressure_limit_init(contact_normal_pressure_limit *pressure_limit)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PRESSURE_LIMIT, pressure_limit, (int64_t)sizeof(contact_normal_pressure_limit));
+}
+
+/*
+ Fills a contact_normal_period with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_period_init(contact_normal_period *period)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PERIOD, period, (int64_t)sizeof(contact_normal_period));
+}
+
+/*
+ Fills a contact_normal_patches with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_patches_init(contact_normal_patches *patches)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PATCHES, patches, (int64_t)sizeof(contact_normal_patches));
+}
+
+/*
+ Fills a contact_normal_coating with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_coating_init(contact_normal_coating *coating)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_COATING, coating, (int64_t)sizeof(contact_normal_coating));
+}
+
+/*
+ Fills a contact_normal_friction with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_friction_init(contact_normal_friction *friction)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FRICTION, friction, (int64_t)sizeof(contact_normal_friction));
+}
+
+/*
+ Fills a contact_normal_friction_results with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_friction_results_init(contact_normal_friction_results *friction_results)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FRICTION_RESULTS, friction_results, (int64_t)sizeof(contact_normal_friction_results));
+}
+
+/*
+ Fills a contact_normal_stress_outputs with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_stress_outputs_init(contact_normal_stress_outputs *stress_outputs)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_STRESS_OUTPUTS, stress_outputs, (int64_t)sizeof(contact_normal_stress_outputs));
+}
+
+/*
+ Fills a contact_normal_stress_maximum with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_stress_maximum_init(contact_normal_stress_maximum *stress_maximum)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_STRESS_MAXIMUM, stress_maximum, (int64_t)sizeof(contact_normal_stress_maximum));
+}
+
+/*
+ Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_ledger_row_init(contact_normal_ledger_row *ledger_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_LEDGER_ROW, ledger_row, (int64_t)sizeof(contact_normal_ledger_row));
+}
+
+/*
+ Fills a contact_normal_price with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_price_init(contact_normal_price *price)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_PRICE, price, (int64_t)sizeof(contact_normal_price));
+}
+
+/*
+ Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.1.
+ */
+static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solution *hertz_solution)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_HERTZ_SOLUTION, hertz_solution, (int64_t)sizeof(contact_normal_hertz_solution));
+}
+
+/*
+ Fills a contact_normal_cycle with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_cycle_init(contact_normal_cycle *cycle)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_CYCLE, cycle, (int64_t)sizeof(contact_normal_cycle));
+}
 
 #endif  /* CONTACT_NORMAL_H */

@@ -6,7 +6,7 @@
 // scene.undeformed_distance(h).force(1000.0);                       // h: a std::vector<double> of my * mx, x fastest
 // cn::result found = cn::solve(scene);                              // throws cn::error if the scene is refused
 // if (!found) std::cerr << found.message;                           // stopped early: found.status > 0
-// found.pressure, found.contact, found.report.approach, found.ledger
+// found.pressure, found.contact, found.report.normal.approach, found.ledger
 //
 // A scene does not copy arrays: they must live until the solve is over. contact_normal.h says what each member and each status
 // means. `solver` is a handle for many solves on one grid; one thread at a time may use it.
@@ -209,10 +209,13 @@ public:
         layer_->compliances = per_element("layer", compliances);
         return *this;
     }
-    /// A coating on body 0 or 1 of the scene: an elastic layer of this thickness and material, bonded to the body.
+    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body.
     scene &coating(std::size_t body, double thickness, const contact_normal::body &material)
     {
-        std::optional<contact_normal_coating> &coating = coating_.at(body);
+        if (body < 1 || body > 2) {
+            throw error(CONTACT_NORMAL_INVALID_ARGUMENT, "body is " + std::to_string(body) + "; it must be 1 or 2");
+        }
+        std::optional<contact_normal_coating> &coating = coating_[body - 1];
         contact_normal_coating_init(&coating.emplace());
         coating->thickness = thickness, coating->shear_modulus = material.shear_modulus;
         coating->poisson_ratio = material.poisson_ratio;
@@ -306,7 +309,7 @@ struct result {
     std::vector<double> pressure, deformed_distance, displacement;
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
     std::array<std::vector<double>, 2> traction, slip; // in x and y; zeros without friction
-    std::vector<std::int32_t> adhesion;                // 0: exterior, 1: stick, 2: slip
+    std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip
     contact_normal_report report;
     std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
 
@@ -357,9 +360,10 @@ contact_normal_status run(std::size_t size, result &found, options how, const co
         found.traction[k].resize(size), found.slip[k].resize(size);
         fields.traction[k] = found.traction[k].data(), fields.slip[k] = found.slip[k].data();
     }
-    found.adhesion.resize(size);
-    fields.adhesion = found.adhesion.data();
+    found.stick_slip.resize(size);
+    fields.stick_slip = found.stick_slip.data();
     contact_normal_report_init(&found.report);
+    contact_normal_ledger_row_init(found.ledger.data());
     found.report.ledger = found.ledger.data(), found.report.ledger_capacity = ledger_room;
     found.status = call(&how, &fields, &found.report);
     found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
@@ -492,7 +496,9 @@ struct loads {
 struct stresses {
     std::array<std::vector<double>, 6> components; // xx, yy, zz, xy, xz, yz
     std::vector<double> von_mises, maximum_shear;
-    contact_normal_stress_maximum largest_von_mises{}, largest_shear{};
+    contact_normal_stress_maximum largest_von_mises, largest_shear;
+
+    stresses() { contact_normal_stress_maximum_init(&largest_von_mises), contact_normal_stress_maximum_init(&largest_shear); }
 };
 
 namespace detail {
@@ -536,7 +542,7 @@ inline stresses subsurface_stress(const scene &of, std::int32_t body, const load
     return found;
 }
 
-/// The six components at points (x, y, z), x and y from the outer corner of element (0, 0).
+/// The six components at points (x, y, z), x and y from the middle of the grid.
 inline std::vector<std::array<double, 6>> stress_at_points(const scene &of, std::int32_t body, const loads &on,
                                                            view<std::array<double, 3>> points, const options &how = {})
 {
@@ -557,6 +563,7 @@ inline contact_normal_hertz_solution hertz(double curvature_x, double curvature_
     const double shear_modulus[2] = {one.shear_modulus, other.shear_modulus};
     const double poisson_ratio[2] = {one.poisson_ratio, other.poisson_ratio};
     contact_normal_hertz_solution exact;
+    contact_normal_hertz_solution_init(&exact);
     check(contact_normal_hertz(curvature_x, curvature_y, shear_modulus, poisson_ratio, load, amount, &exact));
     return exact;
 }

@@ -7,10 +7,9 @@ INSTALL ?= install
 OBJCOPY ?= objcopy
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
-# The soname changes when the ABI breaks, not with every version: build.rs links with it.
-SONAME := libcontact_normal.so.0
-# libcontact_normal.so.0.2.0
-REALNAME := $(SONAME).$(VERSION:0.%=%)
+# The soname has the version of the ABI that broke last, and changes when it breaks again: build.rs links with it.
+SONAME := libcontact_normal.so.2
+REALNAME := libcontact_normal.so.$(VERSION)
 
 # Where the built libraries are: a packager (or a test) may have them elsewhere.
 LIBDIR_BUILT ?= $(or $(CARGO_TARGET_DIR),target)/release
@@ -21,7 +20,7 @@ STATIC_LIBS := -lgcc_eh -lutil -lrt -lpthread -lm -ldl -lc
 INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
 LIBDIR := $(DESTDIR)$(PREFIX)/lib
 SHAREDIR := $(DESTDIR)$(PREFIX)/share/contact-normal
-HEADERS := $(addprefix contact_normal,.h .hpp .f90 _exports.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
+HEADERS := $(addprefix contact_normal,.h .hpp .f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
 
 # $(call filled,template,file): a template of packaging/ with its names filled in.
 filled = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONAME@|$(SONAME)|' \
@@ -51,7 +50,7 @@ install:
 	@$(call filled,contact-normal-config-version.cmake,$(LIBDIR)/cmake/contact-normal)
 	# The Fortran module as a package of fpm, and the licences.
 	$(INSTALL) -m 644 fpm.toml LICENSE-MIT LICENSE-APACHE THIRD_PARTY_NOTICES $(SHAREDIR)
-	$(INSTALL) -m 644 $(addprefix include/contact_normal,.f90 _exports.inc _procedures.inc _norm_solve.inc _tang_solve.inc) $(SHAREDIR)/include
+	$(INSTALL) -m 644 $(addprefix include/contact_normal,.f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc) $(SHAREDIR)/include
 
 # What `make install` of this version with the same PREFIX and DESTDIR has written.
 uninstall:

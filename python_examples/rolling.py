@@ -97,7 +97,7 @@ def draw(picture, rolled, forces, spun):
     left.plot(x, ROLLING["coefficient"] * result.pressure[0], ":", color="0.5", label="mu p")
     left.plot(fine, exact, "-", color="0.6", label="Carter")
     for side, colour, label in ((1, "tab:blue", "found, stick"), (2, "tab:orange", "found, slip")):
-        chosen = result.adhesion[0] == side
+        chosen = result.stick_slip[0] == side
         left.plot(x[chosen], result.traction[0, 0, chosen], "o", color=colour, markersize=4, label=label)
     left.set(title="a cylinder that rolls to the right", xlabel="x [mm]", ylabel="traction [N/mm²]", ylim=(0.0, 47.0))
     left.legend(ncols=2, loc="upper center", fontsize="small")

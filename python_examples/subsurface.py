@@ -51,7 +51,7 @@ def main(case, folder=None):
     wheel = wheel_on_rail(case)
     p0, (fx, fy) = wheel.report["max_pressure"], wheel.report["tangential_force"]
     print(f"wheel on rail: p0 = {p0:.0f} N/mm2, tangential force ({fx / 1000:.1f}, {fy / 1000:.1f}) kN, "
-          f"{(wheel.adhesion == 1).sum() / wheel.contact.sum():.0%} of the contact area sticks")
+          f"{(wheel.stick_slip == 1).sum() / wheel.contact.sum():.0%} of the contact area sticks")
     below = wheel.subsurface(np.linspace(0.0, 8.0, 41))  # of body 1, the wheel, with the tractions that were found
     say("wheel on rail", below, p0)
     at = finer(wheel, below)

@@ -186,7 +186,7 @@ fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
         };
         assert_eq!(status, CONTACT_NORMAL_OK, "{what}");
         unsafe { contact_normal_solver_free(null_mut()) };
-        bytes = [report.bytes as f64, (limited_memory::held() - before) as f64];
+        bytes = [report.statistics.bytes as f64, (limited_memory::held() - before) as f64];
         unsafe { contact_normal_solver_free(handle) };
     }
     bytes

@@ -60,7 +60,7 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     let mut report = initialised(contact_normal_report_init);
     // SAFETY: structs, and a callback that writes what it is asked for.
     let status = unsafe { contact_normal_solve_to_accuracy(&scene, null(), &mut accuracy, null_mut(), &mut report) };
-    let (found, exact) = if by_force { (report.approach, approach) } else { (report.force, force) };
+    let (found, exact) = if by_force { (report.normal.approach, approach) } else { (report.normal.force, force) };
     let error = (found / exact - 1.0).abs();
     let (target, reached) = (accuracy.target, accuracy.reached);
     let details = format!(

@@ -30,6 +30,7 @@ pub struct Call {
     structs: Box<EffectStructs>,
     distance: Vec<f64>,
     sliding: Option<Box<Sliding>>,
+    cycle: Box<contact_normal_cycle>,
     pub options: contact_normal_options,
     pub fields: contact_normal_fields,
     pub report: contact_normal_report,
@@ -49,6 +50,7 @@ impl Call {
             structs: effect_structs(&Effects::default()),
             distance: vec![SENTINEL; ROOM],
             sliding: None,
+            cycle: Box::default(),
             options: initialised(contact_normal_options_init),
             fields: initialised(contact_normal_fields_init),
             report: initialised(contact_normal_report_init),
@@ -95,10 +97,12 @@ impl Call {
 
     fn set_options(&mut self, bytes: &mut Bytes<'_>) {
         let options = &mut self.options;
-        (options.method, options.smoother) = (bytes.integer(5), bytes.integer(5));
-        (options.pre_sweeps, options.post_sweeps) = (bytes.integer(4), bytes.integer(4));
-        options.relaxation = bytes.sometimes(0.0);
-        options.coarsest = 1 + bytes.integer(8).min(1000);
+        let cycle = &mut self.cycle;
+        (options.method, cycle.smoother) = (bytes.integer(5), bytes.integer(5));
+        (cycle.pre_sweeps, cycle.post_sweeps) = (bytes.integer(4), bytes.integer(4));
+        cycle.relaxation = bytes.sometimes(0.0);
+        cycle.coarsest = 1 + bytes.integer(8).min(1000);
+        options.cycle = &raw const **cycle;
         (options.active_set, options.initial_guess) = (bytes.integer(2), bytes.integer(3));
         options.tolerance = bytes.sometimes(1e-6);
         (options.criterion, options.precision) = (bytes.integer(2), bytes.integer(3));
@@ -199,7 +203,7 @@ impl Call {
     /// What a call may write, as bits.
     pub fn outputs(&self) -> Vec<u64> {
         let numbers = self.pressure.iter().chain(&self.displacement).chain(&self.distance).map(|value| value.to_bits());
-        let report = [self.report.force.to_bits(), self.report.cycles as u64];
+        let report = [self.report.normal.force.to_bits(), self.report.statistics.cycles as u64];
         let sliding = self.sliding.iter().flat_map(|sliding| sliding.outputs());
         numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).chain(sliding).collect()
     }
@@ -244,13 +248,13 @@ impl Call {
         let is_fixed = options.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
         let how = How {
             method: options.method,
-            smoother: options.smoother,
+            smoother: self.cycle.smoother,
             // A discretisation error that is met instead of the tolerance is judged as an update is: by 1e-2.
             criterion: if options.error_ratio > 0.0 { CONTACT_NORMAL_CRITERION_UPDATE } else { options.criterion },
             tolerance: options.tolerance,
             precision: options.precision,
             threads: options.threads,
-            coarsest: options.coarsest,
+            coarsest: self.cycle.coarsest,
             max_cycles: options.max_cycles,
             cancel_at: None,
             fixed: is_fixed.then(|| fixed[..grid.len()].to_vec()),

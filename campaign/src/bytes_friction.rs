@@ -23,12 +23,13 @@ pub struct Sliding {
     rigid: Option<Pair>,
     /// xx, yy, xy, xz, yz.
     tables: Vec<Vec<f64>>,
+    own: Vec<contact_normal_influence>,
     /// Whether the oracle's coefficients and slip are those of the call.
     certified: bool,
     pub input: contact_normal_friction,
     traction: Pair,
     slip: Pair,
-    adhesion: Vec<i32>,
+    stick_slip: Vec<i32>,
 }
 
 /// Numbers for a grid of n elements, of which some are any.
@@ -48,6 +49,11 @@ fn pair(bytes: &mut Bytes<'_>, n: usize, named: bool) -> Option<Pair> {
     })
 }
 
+/// One of the tables, as friction takes it.
+fn own_table((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
+    contact_normal_influence { cx, cy, coefficients: coefficients.as_ptr(), scale, ..Default::default() }
+}
+
 impl Sliding {
     /// Friction of the scene's grid of n elements; `scene` gets bodies that are alike, mostly.
     pub fn new(bytes: &mut Bytes<'_>, n: usize, scene: &mut contact_normal_scene) -> Sliding {
@@ -61,11 +67,12 @@ impl Sliding {
             previous: pair(bytes, n, named & 6 == 2),
             rigid: pair(bytes, n, named & 24 == 8),
             tables: Vec::new(),
+            own: Vec::new(),
             certified: true,
             input: initialised(contact_normal_friction_init),
             traction: [0, 1].map(|_| vec![SENTINEL; ROOM]),
             slip: [0, 1].map(|_| vec![SENTINEL; ROOM]),
-            adhesion: vec![SENTINEL_CONTACT; ROOM],
+            stick_slip: vec![SENTINEL_CONTACT; ROOM],
         };
         sliding.set_motion(bytes);
         if named & 96 == 32 && n > 0 {
@@ -126,14 +133,16 @@ impl Sliding {
             self.certified = false;
         }
         let input = &mut self.input;
-        (input.influence_cx, input.influence_cy) = (cx, cy);
-        input.influence = [0, 1, 2].map(|k| self.tables[k].as_ptr());
-        input.influence_scale = bytes.sometimes(1.0);
-        self.certified &= input.influence_scale.to_bits() == 1.0f64.to_bits();
+        let scale = bytes.sometimes(1.0);
+        self.certified &= scale.to_bits() == 1.0f64.to_bits();
         if bytes.byte() % 8 == 0 {
             // Of unlike bodies: here of no coupling.
             self.tables.extend([vec![0.0; self.tables[0].len()], vec![0.0; self.tables[0].len()]]);
-            input.influence_cross = [3, 4].map(|k: usize| self.tables[k].as_ptr());
+        }
+        self.own = self.tables.iter().map(|table| own_table((cx, cy), table, scale)).collect();
+        input.influence = [0, 1, 2].map(|k: usize| &raw const self.own[k]);
+        if self.own.len() > 3 {
+            input.influence_cross = [3, 4].map(|k: usize| &raw const self.own[k]);
         }
     }
 
@@ -141,13 +150,13 @@ impl Sliding {
     pub fn point_from(&mut self, fields: &mut contact_normal_fields) {
         fields.traction = [0, 1].map(|k: usize| self.traction[k].as_mut_ptr());
         fields.slip = [0, 1].map(|k: usize| self.slip[k].as_mut_ptr());
-        fields.adhesion = self.adhesion.as_mut_ptr();
+        fields.stick_slip = self.stick_slip.as_mut_ptr();
     }
 
     /// What a call may write, as bits.
     pub fn outputs(&self) -> impl Iterator<Item = u64> + '_ {
         let numbers = self.traction.iter().chain(&self.slip).flatten().map(|value| value.to_bits());
-        numbers.chain(self.adhesion.iter().map(|&a| a as u64))
+        numbers.chain(self.stick_slip.iter().map(|&a| a as u64))
     }
 
     /// What does not hold of an answer: place, pressures and displacements are those of the call.
@@ -185,7 +194,7 @@ impl Sliding {
             u: u.to_vec(),
             q: vectors(&self.traction),
             slip: vectors(&self.slip),
-            adhesion: self.adhesion[..n].to_vec(),
+            stick_slip: self.stick_slip[..n].to_vec(),
             report,
             overrun: None,
             written: true,
@@ -204,6 +213,6 @@ impl Sliding {
     fn outputs_beyond(&self, n: usize) -> bool {
         let beyond =
             self.traction.iter().chain(&self.slip).any(|a| a[n..].iter().any(|v| v.to_bits() != SENTINEL.to_bits()));
-        beyond || self.adhesion[n..].iter().any(|&a| a != SENTINEL_CONTACT)
+        beyond || self.stick_slip[n..].iter().any(|&a| a != SENTINEL_CONTACT)
     }
 }

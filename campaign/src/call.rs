@@ -71,11 +71,21 @@ pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user:
     i32::from(canceller.calls == canceller.at)
 }
 
-fn options(how: &How, previous: bool, canceller: &mut Canceller) -> contact_normal_options {
+fn cycle(how: &How) -> contact_normal_cycle {
+    contact_normal_cycle { smoother: how.smoother, coarsest: how.coarsest, ..Default::default() }
+}
+
+/// `cycle` and `canceller` must live as long as the options.
+fn options(
+    how: &How,
+    previous: bool,
+    cycle: &contact_normal_cycle,
+    canceller: &mut Canceller,
+) -> contact_normal_options {
     let mut options = initialised(contact_normal_options_init);
-    (options.method, options.smoother, options.criterion) = (how.method, how.smoother, how.criterion);
+    (options.method, options.cycle, options.criterion) = (how.method, cycle, how.criterion);
     (options.tolerance, options.precision, options.threads) = (how.tolerance, how.precision, how.threads);
-    (options.coarsest, options.max_cycles) = (how.coarsest, how.max_cycles);
+    options.max_cycles = how.max_cycles;
     options.active_set = i32::from(how.fixed.is_some());
     options.initial_guess = match (previous, &how.given) {
         (true, _) => CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS,
@@ -109,7 +119,7 @@ impl Outputs {
     /// Bits that have to be the same where the same is asked for twice.
     pub fn bits(&self) -> Vec<u64> {
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).map(|value| value.to_bits());
-        let counts = [self.report.approach.to_bits(), self.report.cycles as u64, self.status as u64];
+        let counts = [self.report.normal.approach.to_bits(), self.report.statistics.cycles as u64, self.status as u64];
         numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(counts).collect()
     }
 }
@@ -136,7 +146,7 @@ fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
     let mut fields = initialised(contact_normal_fields_init);
     (fields.pressure, fields.displacement) = (outputs.p.as_mut_ptr(), outputs.u.as_mut_ptr());
     (fields.deformed_distance, fields.contact) = (outputs.e.as_mut_ptr(), outputs.contact.as_mut_ptr());
-    (outputs.report.force, outputs.report.cycles) = (SENTINEL, -1);
+    (outputs.report.normal.force, outputs.report.statistics.cycles) = (SENTINEL, -1);
     (outputs, fields)
 }
 
@@ -146,7 +156,7 @@ pub struct Handle(*mut contact_normal_solver);
 impl Drop for Handle {
     fn drop(&mut self) {
         // SAFETY: made by `contact_normal_solver_new`, or NULL.
-        unsafe { contact_normal_solver_free(self.0) }
+        unsafe { contact_normal_solver_free(self.0) };
     }
 }
 
@@ -160,7 +170,8 @@ impl Handle {
     /// Set up for a case, or the status and why not.
     pub fn new(case: &Case) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
-        let (scene, options) = (Scene::of(case), options(&case.how, false, &mut canceller));
+        let cycle = cycle(&case.how);
+        let (scene, options) = (Scene::of(case), options(&case.how, false, &cycle, &mut canceller));
         let mut handle = null_mut();
         // SAFETY: structs with the arrays that they declare.
         let status = unsafe { contact_normal_solver_new(&scene.scene, &options, &mut handle) };
@@ -189,7 +200,8 @@ impl Handle {
     /// Solves cases that differ in surface and load only, in one call: its status, and what came of each.
     pub fn solve_batch(&mut self, cases: &[Case]) -> (i32, Vec<Outputs>) {
         let mut canceller = Canceller { calls: 0, at: 0 };
-        let options = options(&cases[0].how, false, &mut canceller);
+        let cycle = cycle(&cases[0].how);
+        let options = options(&cases[0].how, false, &cycle, &mut canceller);
         let scenes: Vec<Scene> = cases.iter().map(Scene::of).collect();
         let list: Vec<contact_normal_scene> = scenes.iter().map(|scene| scene.scene).collect();
         let (mut outputs, mut fields): (Vec<_>, Vec<_>) = cases.iter().map(outputs).unzip();
@@ -211,8 +223,8 @@ impl Handle {
             )
         };
         for (k, outputs) in outputs.iter_mut().enumerate() {
-            outputs.written =
-                outputs.bits() != before[k] || reports[k].force.to_bits() != outputs.report.force.to_bits();
+            outputs.written = outputs.bits() != before[k]
+                || reports[k].normal.force.to_bits() != outputs.report.normal.force.to_bits();
             outputs.report = reports[k];
             outputs.status = statuses[k];
             outputs.message = if statuses[k] == CONTACT_NORMAL_OK { String::new() } else { last_error() };
@@ -251,11 +263,12 @@ fn run(
 ) -> Outputs {
     let (mut outputs, mut fields) = outputs(case);
     let mut canceller = Canceller { calls: 0, at: 0 };
-    let (scene, options) = (Scene::of(case), options(&case.how, previous, &mut canceller));
+    let cycle = cycle(&case.how);
+    let (scene, options) = (Scene::of(case), options(&case.how, previous, &cycle, &mut canceller));
     let before = outputs.bits();
-    let force = outputs.report.force.to_bits();
+    let force = outputs.report.normal.force.to_bits();
     let status = call(&scene.scene, &options, &mut fields, &mut outputs.report);
-    outputs.written = outputs.bits() != before || outputs.report.force.to_bits() != force;
+    outputs.written = outputs.bits() != before || outputs.report.normal.force.to_bits() != force;
     (outputs.status, outputs.overrun) = (status, canceller.overrun());
     outputs.message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
     outputs

@@ -81,7 +81,7 @@ struct Arrays {
 impl Arrays {
     fn new(n: usize) -> Arrays {
         let mut report = initialised(contact_normal_report_init);
-        report.force = SENTINEL;
+        report.normal.force = SENTINEL;
         Arrays { numbers: vec![vec![SENTINEL; n]; 7], integers: [vec![-77; n], vec![-77; n]], report }
     }
 
@@ -90,14 +90,14 @@ impl Arrays {
         let at: Vec<*mut f64> = self.numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
         (fields.pressure, fields.displacement, fields.deformed_distance) = (at[0], at[1], at[2]);
         (fields.traction, fields.slip) = ([at[3], at[4]], [at[5], at[6]]);
-        [fields.contact, fields.adhesion] = self.integers.each_mut().map(|integers| integers.as_mut_ptr());
+        [fields.contact, fields.stick_slip] = self.integers.each_mut().map(|integers| integers.as_mut_ptr());
         fields
     }
 
     fn is_written(&self) -> bool {
         self.numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
             || self.integers.iter().flatten().any(|&integer| integer != -77)
-            || self.report.force.to_bits() != SENTINEL.to_bits()
+            || self.report.normal.force.to_bits() != SENTINEL.to_bits()
     }
 
     fn found(self, status: i32, overrun: Option<u32>) -> Found {
@@ -105,9 +105,9 @@ impl Arrays {
         let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
         let [p, u, e, qx, qy, sx, sy]: [Vec<f64>; 7] = self.numbers.try_into().expect("seven arrays");
         let pairs = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-        let [contact, adhesion] = self.integers;
+        let [contact, stick_slip] = self.integers;
         let (q, slip, report) = (pairs(qx, qy), pairs(sx, sy), self.report);
-        Found { status, message, p, e, contact, u, q, slip, adhesion, report, overrun, written }
+        Found { status, message, p, e, contact, u, q, slip, stick_slip, report, overrun, written }
     }
 }
 
@@ -159,7 +159,7 @@ pub struct Handle(*mut contact_normal_solver);
 impl Drop for Handle {
     fn drop(&mut self) {
         // SAFETY: made by `contact_normal_solver_new`.
-        unsafe { contact_normal_solver_free(self.0) }
+        unsafe { contact_normal_solver_free(self.0) };
     }
 }
 

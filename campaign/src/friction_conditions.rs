@@ -79,7 +79,7 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         if !(found.p[i] > 0.0) {
             continue;
         }
-        let (own, largest) = slide.rigid_slip(&case.place.grid, i, found.report.creepage);
+        let (own, largest) = slide.rigid_slip(&case.place.grid, i, found.report.tangential.creepage);
         let w = [0, 1].map(|k: usize| own[k] + d.sideways[i][k]);
         rounding = rounding.max(8.0 * f64::EPSILON * largest + d.rounding);
         let s = [0, 1].map(|k: usize| w[k] + d.by_q[i][k] - d.before[i][k]);

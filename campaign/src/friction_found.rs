@@ -21,7 +21,7 @@ pub struct Found {
     pub u: Vec<f64>,
     pub q: Vec<[f64; 2]>,
     pub slip: Vec<[f64; 2]>,
-    pub adhesion: Vec<i32>,
+    pub stick_slip: Vec<i32>,
     pub report: contact_normal_report,
     /// Callbacks after the one that cancelled, if one did.
     pub overrun: Option<u32>,
@@ -34,6 +34,6 @@ impl Found {
     pub fn bits(&self) -> Vec<u64> {
         let vectors = self.q.iter().chain(&self.slip).flatten();
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).chain(vectors).map(|value| value.to_bits());
-        numbers.chain(self.adhesion.iter().map(|&a| a as u64)).chain([self.status as u64]).collect()
+        numbers.chain(self.stick_slip.iter().map(|&a| a as u64)).chain([self.status as u64]).collect()
     }
 }

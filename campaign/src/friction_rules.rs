@@ -79,9 +79,10 @@ pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
 fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let (status, slide) = (found.status, &case.slide);
     let report = &found.report;
-    let of_report = report.tangential_force.iter().chain(&report.creepage).chain(&report.sensitivities);
+    let of_report =
+        report.tangential.force.iter().chain(&report.tangential.creepage).chain(&report.tangential.sensitivities);
     let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
-    let numbers = numbers.chain(of_report).chain([&report.tangential_moment, &report.tangential_residual]);
+    let numbers = numbers.chain(of_report).chain([&report.tangential.moment, &report.tangential.residual]);
     broken.unless(numbers.copied().all(f64::is_finite), "friction returns numbers", || format!("status {status}"));
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);
@@ -92,21 +93,23 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
         broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
             format!("element {i}: {q:?}, bound {bound:e}, status {status}")
         });
-        let adhesion = found.adhesion[i];
+        let stick_slip = found.stick_slip[i];
         let expected = match found.p[i] > 0.0 {
-            false => CONTACT_NORMAL_ADHESION_EXTERIOR,
-            true if length(q) >= bound * ON_THE_CIRCLE => CONTACT_NORMAL_ADHESION_SLIP,
-            true => CONTACT_NORMAL_ADHESION_STICK,
+            false => CONTACT_NORMAL_STICK_SLIP_EXTERIOR,
+            true if length(q) >= bound * ON_THE_CIRCLE => CONTACT_NORMAL_STICK_SLIP_SLIP,
+            true => CONTACT_NORMAL_STICK_SLIP_STICK,
         };
         let at_edge = (length(q) - bound * ON_THE_CIRCLE).abs() <= 4.0 * f64::EPSILON * bound;
-        broken.unless(adhesion == expected || at_edge && adhesion > 0, "adhesion is that of the tractions", || {
-            format!("element {i}: {adhesion} for {expected}, {q:?}, bound {bound:e}, status {status}")
-        });
+        broken.unless(
+            stick_slip == expected || at_edge && stick_slip > 0,
+            "stick_slip is that of the tractions",
+            || format!("element {i}: {stick_slip} for {expected}, {q:?}, bound {bound:e}, status {status}"),
+        );
         carried += bound * area;
         sum = [0, 1].map(|k: usize| sum[k] + q[k] * area);
     }
     for (k, sum) in sum.into_iter().enumerate() {
-        let reported = found.report.tangential_force[k];
+        let reported = found.report.tangential.force[k];
         broken.unless((reported - sum).abs() <= 1e-12 * carried, "the force is the sum of tractions", || {
             format!("{reported:e} for {sum:e}, status {status}")
         });
@@ -131,7 +134,7 @@ fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
         left <= 1.000001 * allowed + rounding,
         "OK: what is left of the slip is within the tolerance",
         || {
-            let reported = found.report.tangential_residual;
+            let reported = found.report.tangential.residual;
             format!("{left:e} left of {scale:e}, rounding {rounding:e}, reported {reported:e}")
         },
     );

@@ -27,7 +27,7 @@ impl Measures {
     pub fn of(case: &Case, found: &Outputs) -> Measures {
         let operator = case.operator();
         let u = operator.displace(&found.p);
-        let approach = found.report.approach;
+        let approach = found.report.normal.approach;
         let mut m = Measures {
             residual: 0.0,
             distance: 0.0,
@@ -78,7 +78,7 @@ impl Measures {
 
     /// In one line.
     pub fn text(&self, found: &Outputs) -> String {
-        let (status, cycles, work) = (found.status, found.report.cycles, found.report.work_units);
+        let (status, cycles, work) = (found.status, found.report.statistics.cycles, found.report.statistics.work_units);
         let (residual, violation, rms) = (self.relative(), self.violation, self.rms);
         format!("status {status}, {cycles} cycles, {work:.1} units: residual {residual:.2e}, violation {violation:.2e} of {rms:.2e}")
     }

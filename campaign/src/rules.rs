@@ -101,9 +101,18 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     let gaps =
         (0..n).all(|i| if case.h[i].is_infinite() { found.e[i] == f64::INFINITY } else { found.e[i].is_finite() });
     let report = &found.report;
-    let numbers = [report.approach, report.force, report.residual, report.violation, report.max_pressure];
+    let numbers = [
+        report.normal.approach,
+        report.normal.force,
+        report.normal.residual,
+        report.normal.violation,
+        report.normal.max_pressure,
+    ];
     if !finite || !gaps || numbers.iter().any(|v| !v.is_finite()) {
-        return failure("no NaN or infinity", format!("status {status}, residual reported {:.2e}", report.residual));
+        return failure(
+            "no NaN or infinity",
+            format!("status {status}, residual reported {:.2e}", report.normal.residual),
+        );
     }
     let mut failures = Vec::new();
     if let Some(overrun) = found.overrun.filter(|n| *n > 0 || found.status != CONTACT_NORMAL_CANCELLED) {
@@ -138,9 +147,11 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
         failures.extend(failure("a fixed area stays", format!("status {status}")));
     }
     if let Load::Approach(approach) = case.load {
-        if report.approach != approach {
-            failures
-                .extend(failure("the approach is the prescribed one", format!("{} for {approach}", report.approach)));
+        if report.normal.approach != approach {
+            failures.extend(failure(
+                "the approach is the prescribed one",
+                format!("{} for {approach}", report.normal.approach),
+            ));
         }
     }
     failures
@@ -176,14 +187,14 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
             failures.extend(failure("OK: force", format!("{force:e} for {prescribed:e}")));
         }
     }
-    if m.count == 0.0 && found.report.residual != 0.0 {
-        let details = format!("reported {:.2e}, no element in contact", found.report.residual);
+    if m.count == 0.0 && found.report.normal.residual != 0.0 {
+        let details = format!("reported {:.2e}, no element in contact", found.report.normal.residual);
         failures.extend(failure("the report's residual is the residual", details));
     }
     // Two sums of the same numbers, and a residual whose e is off by rounding.
     let rounding = m.rounding * m.count.sqrt() / m.distance;
-    if m.distance > 0.0 && !((found.report.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {
-        let details = format!("reported {:.2e}, {sizes}", found.report.residual);
+    if m.distance > 0.0 && !((found.report.normal.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {
+        let details = format!("reported {:.2e}, {sizes}", found.report.normal.residual);
         failures.extend(failure("the report's residual is the residual", details));
     }
     failures

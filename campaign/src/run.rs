@@ -84,8 +84,8 @@ fn single(run: &mut Run) {
     run.verdict.add(rules::check(case, &found));
     let how = &case.how;
     if found.status >= 0 && how.method == 0 && how.given.is_none() && how.fixed.is_none() && how.is_unhindered() {
-        run.products = Some(found.report.work_units);
-        if found.status == 0 && found.report.work_units > MANY_PRODUCTS {
+        run.products = Some(found.report.statistics.work_units);
+        if found.status == 0 && found.report.statistics.work_units > MANY_PRODUCTS {
             run.verdict.excuse("AUTO took more than 200 products");
         }
     }

@@ -127,6 +127,9 @@ impl Loaded {
         // SAFETY: arrays as long as the grid and the depths say.
         let status = unsafe { contact_normal_subsurface_stress(&scene, 2, p, qx, qy, z, n, null(), &mut outputs) };
         let mut at = vec![[f64::NAN; 6]; points.len()];
+        // Here places are counted from the outer corner of element (0, 0), there from the middle of the grid.
+        let half = [self.grid.mx as f64 * self.grid.dx / 2.0, self.grid.my as f64 * self.grid.dy / 2.0];
+        let points: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [x - half[0], y - half[1], *z]).collect();
         let (place, n) = (points.as_ptr().cast(), points.len() as i32);
         // SAFETY: as above, and room for six values of each point.
         let at_points =

@@ -18,12 +18,12 @@ const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
         let greatest = greatest(&found.p);
         found.p[greatest] *= 1.0 + 1e-3;
     }),
-    ("a displacement", |found, _| found.u[0] += 1e-3 * found.report.max_pressure),
+    ("a displacement", |found, _| found.u[0] += 1e-3 * found.report.normal.max_pressure),
     ("a distance", |found, _| {
         let greatest = greatest(&found.p);
         found.e[greatest] += 1e-3 * found.u[greatest];
     }),
-    ("the residual", |found, _| found.report.residual += 1e-2),
+    ("the residual", |found, _| found.report.normal.residual += 1e-2),
     ("the contact", |found, _| {
         let greatest = greatest(&found.p);
         found.contact[greatest] = 0;
@@ -36,7 +36,7 @@ const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
         // Nothing of the displacements that belong to them.
         found.p.iter_mut().for_each(|p| *p *= 1.1);
         found.u = case.operator().displace(&found.p);
-        let e = |i: usize| case.h[i] - found.report.approach + found.u[i];
+        let e = |i: usize| case.h[i] - found.report.normal.approach + found.u[i];
         found.e = (0..found.p.len()).map(e).collect();
     }),
 ];
@@ -55,7 +55,7 @@ fn spoiled_answers_without_friction_are_found() {
             continue;
         }
         let found = call::solve(&case);
-        if found.status != 0 || !(found.report.force > 0.0) || !rules::check(&case, &found).failures.is_empty() {
+        if found.status != 0 || !(found.report.normal.force > 0.0) || !rules::check(&case, &found).failures.is_empty() {
             continue;
         }
         for (what, spoil) in NORMAL {
@@ -79,11 +79,11 @@ const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
         let (greatest, u) = (greatest(&found.p), found.u.iter().copied().fold(0.0, f64::max));
         found.slip[greatest][1] += 1e-3 * u;
     }),
-    ("adhesion", |found, _| {
+    ("stick_slip", |found, _| {
         let greatest = greatest(&found.p);
-        found.adhesion[greatest] = 0;
+        found.stick_slip[greatest] = 0;
     }),
-    ("the reported force", |found, _| found.report.tangential_force[0] += 0.1 * found.report.force),
+    ("the reported force", |found, _| found.report.tangential.force[0] += 0.1 * found.report.normal.force),
     ("a distance beside the contact", |found, _| {
         let u = found.u.iter().copied().fold(0.0, f64::max);
         found.e.iter_mut().filter(|e| e.is_finite()).for_each(|e| *e += 1e-3 * u);
@@ -97,7 +97,7 @@ fn spoiled_answers_with_friction_are_found() {
         let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
         let found = call(&case.place, &case.slide, &case.stop);
         // Tractions before of 1e9 times the bounds leave no digits of the slip.
-        let is_usual = found.status == 0 && found.report.contact_count > 3 && case.slide.previous.is_none();
+        let is_usual = found.status == 0 && found.report.normal.contact_count > 3 && case.slide.previous.is_none();
         if !is_usual || !campaign::friction_rules::check(&case, &found, &case.before(&found.p)).failures.is_empty() {
             continue;
         }

@@ -51,7 +51,7 @@ impl Cattaneo {
             let exact = (1.0 - r2).max(0.0).sqrt() - (self.c * self.c - r2).max(0.0).sqrt();
             error += (q[0] - exact).hypot(q[1]);
             all += exact;
-            stick += f64::from(u8::from(solution.adhesion[i] == STICK));
+            stick += f64::from(u8::from(solution.stick_slip[i] == STICK));
         }
         Compared { error: error / all, stick_radius: (stick * self.grid.element_area() / PI).sqrt() }
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import operator
 from collections.abc import Mapping
 from ctypes import POINTER, c_double, c_int32
@@ -12,7 +13,7 @@ import numpy.typing as npt
 
 from . import _constants
 from ._library import initialised
-from ._structs import Options
+from ._structs import Cycle, Options, names
 
 if TYPE_CHECKING:
     Integers = npt.NDArray[np.int32]
@@ -23,7 +24,7 @@ Both = Union[float, "npt.ArrayLike"]
 
 
 class SolveOptions(TypedDict, total=False):
-    """The options of a solve: the members of `contact_normal_options`. A name stands for its constant: `method="NORM"`.
+    """The options of a solve: the members of `contact_normal_options` and `contact_normal_cycle`. A name stands for its constant: `method="NORM"`.
 
     Attributes
     ----------
@@ -229,7 +230,9 @@ def pair(name: str, value: Any) -> Any:
     return _PAIR(*np.broadcast_to(values, (2,)))
 
 
-_OPTIONS = {field[0]: field[1] for field in Options._fields_ if field[0] in SolveOptions.__annotations__}
+_OPTIONS = {field[0]: field[1] for kind in (Options, Cycle) for field in kind._fields_ if field[0] in SolveOptions.__annotations__}
+# Those of the cycle of the paper's methods.
+_CYCLE = frozenset(names(Cycle))
 
 
 def options(given: Mapping[str, Any]) -> Any:
@@ -240,5 +243,8 @@ def options(given: Mapping[str, Any]) -> Any:
             raise TypeError(f"no option {name}; there are: {', '.join(sorted(_OPTIONS))}")
         if isinstance(value, str):
             value = _constants.value_of(name, value)
-        setattr(struct, name, integer(name, value) if _OPTIONS[name] is c_int32 else number(name, value))
+        if name in _CYCLE and not struct.cycle:
+            struct.cycle = ctypes.pointer(initialised("cycle"))
+        member = integer(name, value) if _OPTIONS[name] is c_int32 else number(name, value)
+        setattr(struct.cycle.contents if name in _CYCLE else struct, name, member)
     return struct

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._arguments import both, doubles, flag, integer, number, pointer, two
 from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE, value_of
 from ._library import initialised
+
+if TYPE_CHECKING:
+    from ._arguments import Doubles
 
 _NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
 _PAIRS = ("creepage", "spin_centre")
@@ -73,12 +77,20 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
     shape = kept[0].shape
     if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
         raise ValueError(f"friction['influence'] has shapes {[table.shape for table in kept]}; all must be (2 cy, 2 cx)")
-    effect.influence_cy, effect.influence_cx = shape[0] // 2, shape[1] // 2
-    for k, table in enumerate(kept):
-        effect.influence[k] = pointer(table)
-    if len(tables) == 4:
-        effect.influence_scale = number("friction['influence'][3], the scale,", tables[3])
+    scale = number("friction['influence'][3], the scale,", tables[3]) if len(tables) == 4 else 1.0
     for k, table in enumerate(both("friction['influence_cross']", given["influence_cross"]) if "influence_cross" in given else ()):
         kept.append(doubles(f"friction['influence_cross'][{k}]", table, shape))
-        effect.influence_cross[k] = pointer(kept[-1])
-    return kept
+    structs = [_table(coefficients, scale) for coefficients in kept]
+    for k, struct in enumerate(structs[:3]):
+        effect.influence[k] = ctypes.pointer(struct)
+    for k, struct in enumerate(structs[3:]):
+        effect.influence_cross[k] = ctypes.pointer(struct)
+    return [*kept, *structs]
+
+
+def _table(coefficients: Doubles, scale: float) -> Any:
+    """A `contact_normal_influence` that points to the coefficients."""
+    effect = initialised("influence")
+    effect.cy, effect.cx = coefficients.shape[0] // 2, coefficients.shape[1] // 2
+    effect.coefficients, effect.scale = pointer(coefficients), scale
+    return effect

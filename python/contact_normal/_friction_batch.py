@@ -40,7 +40,7 @@ class FrictionBatch:
         Elements that stick, that slip.
     traction, slip : ndarray, (n, 2, my, mx), or None
         With `fields=True`.
-    adhesion : ndarray of int, (n, my, mx), or None
+    stick_slip : ndarray of int, (n, my, mx), or None
         With `fields=True`: 0 exterior, 1 stick, 2 slip.
     report : dict
         Of the normal problem.
@@ -48,7 +48,7 @@ class FrictionBatch:
 
     traction: npt.NDArray[np.float64] | None = None
     slip: npt.NDArray[np.float64] | None = None
-    adhesion: npt.NDArray[np.int32] | None = None
+    stick_slip: npt.NDArray[np.int32] | None = None
 
     def __init__(self, count: int, shape: tuple[int, int], fields: bool) -> None:
         self.message = ""
@@ -60,7 +60,7 @@ class FrictionBatch:
         self.status = np.zeros(count, dtype=np.int32)
         if fields:
             self.traction, self.slip = np.full((count, 2, *shape), np.nan), np.full((count, 2, *shape), np.nan)
-            self.adhesion = np.zeros((count, *shape), dtype=np.int32)
+            self.stick_slip = np.zeros((count, *shape), dtype=np.int32)
 
     def __repr__(self) -> str:
         solved = int((self.status == 0).sum())
@@ -71,7 +71,7 @@ class FrictionBatch:
     def _results(self) -> Any:
         """The struct that points to these arrays."""
         results = initialised("friction_results")
-        kinds = {"stick_count": c_int64, "slip_count": c_int64, "status": c_int32, "adhesion": c_int32}
+        kinds = {"stick_count": c_int64, "slip_count": c_int64, "status": c_int32, "stick_slip": c_int32}
         for name in names(type(results))[1:]:
             array = getattr(self, name)
             if array is not None:

@@ -1,4 +1,4 @@
-"""Finds and loads the library, and compares it with this package: ABI version and sizes of the structs."""
+"""Finds and loads the library, and compares it with this package."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import ctypes
 import ctypes.util
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_double, c_int32, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
 from pathlib import Path
 from typing import Any
 
 from ._constants import ABI_VERSION
 from ._structs import (
-    SIZED,
+    KINDS,
     Accuracy,
     Coating,
     Fields,
@@ -20,15 +20,10 @@ from ._structs import (
     FrictionResults,
     HertzSolution,
     Influence,
-    Layer,
     LogCallback,
     Options,
-    Patches,
-    Period,
-    PressureLimit,
     Price,
     Report,
-    RowTables,
     Scene,
     StressOutputs,
 )
@@ -39,23 +34,12 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "last_error": (c_char_p, []),
     "version": (c_char_p, []),
     "abi_version": (c_int32, []),
-    "scene_init": (None, [POINTER(Scene)]),
-    "influence_init": (None, [POINTER(Influence)]),
-    "layer_init": (None, [POINTER(Layer)]),
-    "pressure_limit_init": (None, [POINTER(PressureLimit)]),
-    "period_init": (None, [POINTER(Period)]),
-    "patches_init": (None, [POINTER(Patches)]),
-    "friction_init": (None, [POINTER(Friction)]),
-    "row_tables_init": (None, [POINTER(RowTables)]),
-    "options_init": (None, [POINTER(Options)]),
-    "fields_init": (None, [POINTER(Fields)]),
-    "report_init": (None, [POINTER(Report)]),
+    "init": (None, [c_int32, c_void_p, c_int64]),
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solve_tangential": (
         c_int32,
         [POINTER(Scene), POINTER(c_double), POINTER(Options), POINTER(Fields), POINTER(Report)],
     ),
-    "friction_results_init": (None, [POINTER(FrictionResults)]),
     "friction_batch": (
         c_int32,
         [POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],
@@ -68,8 +52,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     ),
     "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
-    "solver_free": (None, [c_void_p]),
-    "accuracy_init": (None, [POINTER(Accuracy)]),
+    "solver_free": (c_int32, [c_void_p]),
     "solve_to_accuracy": (
         c_int32,
         [POINTER(Scene), POINTER(Options), POINTER(Accuracy), POINTER(c_void_p), POINTER(Report)],
@@ -86,9 +69,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
     ),
-    "coating_init": (None, [POINTER(Coating)]),
     "coating_compliance": (c_int32, [POINTER(Coating), c_double, c_double, c_double, POINTER(c_double)]),
-    "stress_outputs_init": (None, [POINTER(StressOutputs)]),
     "subsurface_stress": (
         c_int32,
         [POINTER(Scene), c_int32] + [POINTER(c_double)] * 4 + [c_int32, POINTER(Options), POINTER(StressOutputs)],
@@ -112,9 +93,9 @@ def candidates() -> list[str]:
         return [named]
     here = Path(__file__).resolve().parent
     paths = [here / "libcontact_normal.so", here.parents[1] / "target" / "release" / "libcontact_normal.so"]
-    paths += [prefix / "lib" / "libcontact_normal.so.0" for prefix in [Path(sys.prefix), *here.parents[2:5]]]
+    paths += [prefix / "lib" / "libcontact_normal.so.2" for prefix in [Path(sys.prefix), *here.parents[2:5]]]
     found = [str(path) for path in paths if path.exists()]
-    return found + [ctypes.util.find_library("contact_normal") or "libcontact_normal.so.0"]
+    return found + [ctypes.util.find_library("contact_normal") or "libcontact_normal.so.2"]
 
 
 def load() -> ctypes.CDLL:
@@ -137,14 +118,6 @@ def load() -> ctypes.CDLL:
     for name, (result, arguments) in PROTOTYPES.items():
         function = getattr(library, "contact_normal_" + name)
         function.restype, function.argtypes = result, arguments
-    for name, kind in SIZED.items():
-        # Larger than we think: room for a struct that has grown, so that finding out does no harm.
-        room = ctypes.create_string_buffer(4096)
-        struct = ctypes.cast(room, POINTER(kind))
-        getattr(library, f"contact_normal_{name}_init")(struct)
-        size = struct.contents.struct_size
-        if size != ctypes.sizeof(kind):
-            raise ImportError(f"{path}: contact_normal_{name} has {size} bytes, here {ctypes.sizeof(kind)}")
     return library
 
 
@@ -157,11 +130,11 @@ _INITIALISED: dict[str, Any] = {}
 
 
 def initialised(name: str) -> Any:
-    """A struct as its `_init` of the library fills it."""
-    kind = SIZED[name]
+    """A struct with the library's defaults."""
+    number, kind = KINDS[name]
     if name not in _INITIALISED:
         struct = kind()
-        getattr(library, f"contact_normal_{name}_init")(ctypes.byref(struct))
+        library.contact_normal_init(number, ctypes.byref(struct), ctypes.sizeof(kind))
         # Only now: another thread may look for it at any time.
         _INITIALISED[name] = struct
     return kind.from_buffer_copy(_INITIALISED[name])

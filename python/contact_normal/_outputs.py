@@ -30,7 +30,7 @@ class Outputs:
 
     traction: Doubles | None = None
     slip: Doubles | None = None
-    adhesion: npt.NDArray[np.int32] | None = None
+    stick_slip: npt.NDArray[np.int32] | None = None
 
     def __init__(
         self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
@@ -44,7 +44,7 @@ class Outputs:
         self.fields.contact = pointer(self.contact, c_int32)
         if has_friction:
             self._hold_friction()
-        self.rows = _ROWS()
+        self.rows = _ROWS(initialised("ledger_row"))
         self.report.ledger, self.report.ledger_capacity = self.rows, LEDGER_ROOM
         if pressure is not None or contact is not None:
             self._start(pressure, contact, options, scene)
@@ -67,7 +67,7 @@ class Outputs:
     def _hold_friction(self) -> None:
         """Arrays of what friction finds."""
         self.traction, self.slip = np.zeros((2, *self._shape)), np.zeros((2, *self._shape))
-        self.adhesion = np.zeros(self._shape, dtype=np.int32)
+        self.stick_slip = np.zeros(self._shape, dtype=np.int32)
         for k in range(2):
             self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
-        self.fields.adhesion = pointer(self.adhesion, c_int32)
+        self.fields.stick_slip = pointer(self.stick_slip, c_int32)

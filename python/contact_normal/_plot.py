@@ -61,22 +61,22 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
 def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
     axes = axes or _new_axes((8.0, 6.0))
-    my, mx = result.adhesion.shape
+    my, mx = result.stick_slip.shape
     x_edges, y_edges = _edges(result.x, result.dx), _edges(result.y, result.dy)
     colours = {1: (0.78, 0.87, 0.96), 2: (0.99, 0.85, 0.74)}
     shown = np.ones((my, mx, 3)) * 0.94
     for side, colour in colours.items():
-        shown[result.adhesion == side] = colour
+        shown[result.stick_slip == side] = colour
     extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
     axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest")
     # Some 30 arrows across.
     step = max(1, max(mx, my) // 30)
     chosen = np.zeros((my, mx), dtype=bool)
     chosen[step // 2 :: step, step // 2 :: step] = True
-    iy, ix = np.nonzero(chosen & (result.adhesion > 0))
+    iy, ix = np.nonzero(chosen & (result.stick_slip > 0))
     axes.quiver(result.x[ix], result.y[iy], result.traction[0, iy, ix], result.traction[1, iy, ix], angles="xy", pivot="mid", width=0.003)
-    _outline(axes, result.adhesion > 0, x_edges, y_edges)
-    _outline(axes, result.adhesion == 1, x_edges, y_edges)
+    _outline(axes, result.stick_slip > 0, x_edges, y_edges)
+    _outline(axes, result.stick_slip == 1, x_edges, y_edges)
     fx, fy = result.tangential_force
     _name_axes(axes, result.units)
     force = with_unit(f"({fx:.4g}, {fy:.4g})", "force", result.units)

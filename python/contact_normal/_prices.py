@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ._arguments import Both, SolveOptions, doubles, options
 from ._calls import called
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
-from ._library import check, library
+from ._library import check, initialised, library
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
 
@@ -122,7 +122,7 @@ def cost_of_accuracy(
     struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
     relative = doubles("targets", targets, dimensions="n")
     n = len(relative)
-    wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)()
+    wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)(*[initialised("price")][:n])
     status, message = called(
         library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
         QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),

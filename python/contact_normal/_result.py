@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-_ROW = [name for name in names(LedgerRow) if name != "reserved"]
+_ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 
 
 class Result(Solved):
@@ -40,7 +40,7 @@ class Result(Solved):
         The elements at the pressure limit.
     traction, slip : ndarray of float, (2, my, mx)
         With friction: q on body 1 and the slip of body 1 over body 2 in the step, in x and y; else zeros.
-    adhesion : ndarray of int, (my, mx)
+    stick_slip : ndarray of int, (my, mx)
         With friction: 0 exterior, 1 stick, 2 slip.
     x, y : ndarray of float, (mx,) and (my,)
         Centres of the elements, from the middle of the grid.
@@ -53,7 +53,7 @@ class Result(Solved):
     units : (str, str) or None
         Names of the units of lengths and forces, which pictures and files then have. May be set.
     report : dict
-        The numbers of `contact_normal_report`: "cycles", "residual", "error_force", ...
+        The numbers of `contact_normal_report`, of all its groups: "cycles", "residual", "error_force", ...
     ledger : Ledger
         One dict per grid.
     """
@@ -119,7 +119,7 @@ class TangentialResult(Solved):
         Those that were given, 0 where they are not positive.
     contact : ndarray of bool, (my, mx)
         Where the pressure is positive.
-    traction, slip, adhesion, x, y, dx, dy, units
+    traction, slip, stick_slip, x, y, dx, dy, units
         As those of `Result`.
     force, mean_pressure, max_pressure, contact_area : float
         Of the pressures.

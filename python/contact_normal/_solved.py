@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._library import library
-from ._structs import Report, names
+from ._structs import names
 from ._units import Units, checked, with_unit
 
 if TYPE_CHECKING:
@@ -22,13 +22,23 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._stress import SubsurfaceStress
 
-_REPORTED = [name for name in names(Report) if name not in ("struct_size", "ledger", "ledger_capacity")]
+# The groups of a report.
+_GROUPS = ("normal", "tangential", "accuracy", "statistics")
+# Members of the tangential group that have the name of one of the normal problem.
+_ALSO_NORMAL = ("force", "moment", "residual", "gap")
 
 
 def reported(report: Any) -> dict[str, Any]:
-    """The numbers of a report, tuples of those of its arrays."""
-    values = {name: getattr(report, name) for name in _REPORTED}
-    return {name: value if isinstance(value, (int, float)) else tuple(value) for name, value in values.items()}
+    """The numbers of all groups of a report, tuples of those of its arrays: "force" is normal.force, "tangential_force" is tangential.force."""
+    found: dict[str, Any] = {"ledger_rows": report.ledger_rows}
+    for group in _GROUPS:
+        members = getattr(report, group)
+        for name in names(type(members)):
+            if name != "reserved":
+                key = f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
+                value = getattr(members, name)
+                found[key] = value if isinstance(value, (int, float)) else tuple(value)
+    return found
 
 
 class Solved:
@@ -38,7 +48,7 @@ class Solved:
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
-        self._traction, self._slip, self._adhesion = outputs.traction, outputs.slip, outputs.adhesion
+        self._traction, self._slip, self._stick_slip = outputs.traction, outputs.slip, outputs.stick_slip
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
@@ -75,9 +85,9 @@ class Solved:
         return self._slip if self._slip is not None else np.zeros((2, *self.pressure.shape))
 
     @cached_property
-    def adhesion(self) -> npt.NDArray[np.int32]:
+    def stick_slip(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip; zeros without friction."""
-        return self._adhesion if self._adhesion is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+        return self._stick_slip if self._stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
 
     @cached_property
     def report(self) -> dict[str, Any]:

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from . import _structs
 from ._arguments import Both, integer, number, pointer, real, two
 from ._bodies import bodies, load
 from ._calls import called
-from ._library import check, library
+from ._library import check, initialised, library
 from ._scene import coating_of
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def hertz(
     """
     which, amount = load(approach, force)
     constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
-    solution = _structs.HertzSolution()
+    solution = initialised("hertz_solution")
     check(
         library.contact_normal_hertz(
             number("curvature_x", curvature_x),

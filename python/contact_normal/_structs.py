@@ -1,7 +1,19 @@
-"""The structs and callbacks of include/contact_normal.h for ctypes, member by member."""
+"""The structs and callbacks of include/contact_normal.h for ctypes. Made from that; do not edit."""
 
 import ctypes
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
+
+
+class Coating(ctypes.Structure):
+    """contact_normal_coating."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("thickness", c_double),
+        ("shear_modulus", c_double),
+        ("poisson_ratio", c_double),
+    ]
+
 
 class Influence(ctypes.Structure):
     """contact_normal_influence."""
@@ -18,19 +30,31 @@ class Influence(ctypes.Structure):
 class Layer(ctypes.Structure):
     """contact_normal_layer."""
 
-    _fields_ = [("struct_size", c_int64), ("compliance", c_double), ("compliances", POINTER(c_double))]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("compliance", c_double),
+        ("compliances", POINTER(c_double)),
+    ]
 
 
 class PressureLimit(ctypes.Structure):
     """contact_normal_pressure_limit."""
 
-    _fields_ = [("struct_size", c_int64), ("limit", c_double), ("limits", POINTER(c_double))]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("limit", c_double),
+        ("limits", POINTER(c_double)),
+    ]
 
 
 class Period(ctypes.Structure):
     """contact_normal_period."""
 
-    _fields_ = [("struct_size", c_int64), ("x", c_int32), ("y", c_int32)]
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("x", c_int32),
+        ("y", c_int32),
+    ]
 
 
 class Patches(ctypes.Structure):
@@ -57,17 +81,6 @@ class RowTables(ctypes.Structure):
     ]
 
 
-class Coating(ctypes.Structure):
-    """contact_normal_coating."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("thickness", c_double),
-        ("shear_modulus", c_double),
-        ("poisson_ratio", c_double),
-    ]
-
-
 class Friction(ctypes.Structure):
     """contact_normal_friction."""
 
@@ -87,13 +100,10 @@ class Friction(ctypes.Structure):
         ("spin_offset", c_double),
         ("previous_traction", POINTER(c_double) * 2),
         ("rigid_slip", POINTER(c_double) * 2),
-        ("influence", POINTER(c_double) * 3),
-        ("influence_cx", c_int32),
-        ("influence_cy", c_int32),
-        ("influence_scale", c_double),
+        ("influence", POINTER(Influence) * 3),
+        ("influence_cross", POINTER(Influence) * 2),
         ("sensitivities", c_int32),
         ("reserved", c_int32),
-        ("influence_cross", POINTER(c_double) * 2),
     ]
 
 
@@ -140,8 +150,20 @@ class Progress(ctypes.Structure):
     ]
 
 
+class Cycle(ctypes.Structure):
+    """contact_normal_cycle."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("smoother", c_int32),
+        ("pre_sweeps", c_int32),
+        ("post_sweeps", c_int32),
+        ("coarsest", c_int32),
+        ("relaxation", c_double),
+    ]
+
+
 ProgressCallback = CFUNCTYPE(c_int32, POINTER(Progress), c_void_p)
-LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
 
 
 class Options(ctypes.Structure):
@@ -150,11 +172,6 @@ class Options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_int64),
         ("method", c_int32),
-        ("smoother", c_int32),
-        ("pre_sweeps", c_int32),
-        ("post_sweeps", c_int32),
-        ("relaxation", c_double),
-        ("coarsest", c_int32),
         ("active_set", c_int32),
         ("initial_guess", c_int32),
         ("criterion", c_int32),
@@ -166,6 +183,7 @@ class Options(ctypes.Structure):
         ("reserved", c_int32),
         ("progress", ProgressCallback),
         ("user", c_void_p),
+        ("cycle", POINTER(Cycle)),
     ]
 
 
@@ -180,7 +198,7 @@ class Fields(ctypes.Structure):
         ("contact", POINTER(c_int32)),
         ("traction", POINTER(c_double) * 2),
         ("slip", POINTER(c_double) * 2),
-        ("adhesion", POINTER(c_int32)),
+        ("stick_slip", POINTER(c_int32)),
     ]
 
 
@@ -188,6 +206,7 @@ class LedgerRow(ctypes.Structure):
     """contact_normal_ledger_row."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("mx", c_int32),
         ("my", c_int32),
         ("cycles", c_int64),
@@ -210,55 +229,91 @@ class LedgerRow(ctypes.Structure):
     ]
 
 
-class Report(ctypes.Structure):
-    """contact_normal_report."""
+class ReportNormal(ctypes.Structure):
+    """contact_normal_report_normal."""
 
     _fields_ = [
-        ("struct_size", c_int64),
+        ("approach", c_double),
+        ("force", c_double),
+        ("max_pressure", c_double),
+        ("min_pressure", c_double),
+        ("contact_area", c_double),
+        ("corrected_area", c_double),
+        ("contact_count", c_int64),
+        ("edge_count", c_int64),
+        ("tolerance", c_double),
+        ("residual", c_double),
+        ("violation", c_double),
+        ("complementarity", c_double),
+        ("update", c_double),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportTangential(ctypes.Structure):
+    """contact_normal_report_tangential."""
+
+    _fields_ = [
+        ("force", c_double * 2),
+        ("moment", c_double),
+        ("creepage", c_double * 2),
+        ("residual", c_double),
+        ("gap", c_double),
+        ("stick_count", c_int64),
+        ("slip_count", c_int64),
+        ("sensitivities", c_double * 9),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportAccuracy(ctypes.Structure):
+    """contact_normal_report_accuracy."""
+
+    _fields_ = [
+        ("error_force", c_double),
+        ("error_max_pressure", c_double),
+        ("error_contact_area", c_double),
+        ("error_corrected_area", c_double),
+        ("error_pressure", c_double),
+        ("error_tangential", c_double * 2),
+        ("untrusted", c_int32),
+        ("limited_by", c_int32),
+        ("halved_seconds", c_double),
+        ("halved_error_force", c_double),
+        ("reserved", c_double * 8),
+    ]
+
+
+class ReportStatistics(ctypes.Structure):
+    """contact_normal_report_statistics."""
+
+    _fields_ = [
         ("cycles", c_int64),
         ("active_set_steps", c_int64),
         ("active_set_changes", c_int64),
         ("matrix_products", c_int64),
         ("work_units", c_double),
-        ("update", c_double),
-        ("residual", c_double),
-        ("violation", c_double),
-        ("complementarity", c_double),
-        ("min_pressure", c_double),
-        ("approach", c_double),
-        ("force", c_double),
-        ("max_pressure", c_double),
-        ("contact_area", c_double),
-        ("contact_count", c_int64),
-        ("error_force", c_double),
-        ("error_max_pressure", c_double),
-        ("error_contact_area", c_double),
+        ("tangential_products", c_double),
         ("setup_seconds", c_double),
         ("solve_seconds", c_double),
+        ("tangential_seconds", c_double),
         ("bytes", c_int64),
+        ("reserved", c_double * 8),
+    ]
+
+
+class Report(ctypes.Structure):
+    """contact_normal_report."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
         ("ledger_rows", c_int64),
         ("ledger_capacity", c_int64),
         ("ledger", POINTER(LedgerRow)),
-        ("corrected_area", c_double),
-        ("error_corrected_area", c_double),
-        ("error_pressure", c_double),
-        ("untrusted", c_int32),
-        ("limited_by", c_int32),
-        ("halved_seconds", c_double),
-        ("halved_error_force", c_double),
-        ("edge_count", c_int64),
-        ("tolerance", c_double),
-        ("tangential_force", c_double * 2),
-        ("tangential_moment", c_double),
-        ("creepage", c_double * 2),
-        ("tangential_residual", c_double),
-        ("tangential_gap", c_double),
-        ("stick_count", c_int64),
-        ("slip_count", c_int64),
-        ("tangential_products", c_double),
-        ("tangential_seconds", c_double),
-        ("sensitivities", c_double * 9),
-        ("error_tangential", c_double * 2),
+        ("normal", ReportNormal),
+        ("tangential", ReportTangential),
+        ("accuracy", ReportAccuracy),
+        ("statistics", ReportStatistics),
     ]
 
 
@@ -278,7 +333,7 @@ class FrictionResults(ctypes.Structure):
         ("status", POINTER(c_int32)),
         ("traction", POINTER(c_double)),
         ("slip", POINTER(c_double)),
-        ("adhesion", POINTER(c_int32)),
+        ("stick_slip", POINTER(c_int32)),
     ]
 
 
@@ -308,9 +363,10 @@ class Accuracy(ctypes.Structure):
 
 
 class Price(ctypes.Structure):
-    """contact_normal_price: what one accuracy costs, predicted."""
+    """contact_normal_price."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("target", c_double),
         ("error", c_double),
         ("tolerance", c_double),
@@ -327,9 +383,10 @@ class Price(ctypes.Structure):
 
 
 class HertzSolution(ctypes.Structure):
-    """contact_normal_hertz_solution: the exact solution."""
+    """contact_normal_hertz_solution."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("semi_axis_x", c_double),
         ("semi_axis_y", c_double),
         ("max_pressure", c_double),
@@ -340,9 +397,10 @@ class HertzSolution(ctypes.Structure):
 
 
 class StressMaximum(ctypes.Structure):
-    """contact_normal_stress_maximum: the largest value of a field of stresses, and where it is."""
+    """contact_normal_stress_maximum."""
 
     _fields_ = [
+        ("struct_size", c_int64),
         ("value", c_double),
         ("x", c_double),
         ("y", c_double),
@@ -369,26 +427,34 @@ class StressOutputs(ctypes.Structure):
     ]
 
 
+LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
+
+
 def names(kind: type[ctypes.Structure]) -> list[str]:
     """The members of a struct."""
     return [field[0] for field in kind._fields_]
 
 
-# The structs that begin with their size, by the name of their _init.
-SIZED: dict[str, type[ctypes.Structure]] = {
-    "scene": Scene,
-    "influence": Influence,
-    "layer": Layer,
-    "pressure_limit": PressureLimit,
-    "period": Period,
-    "patches": Patches,
-    "row_tables": RowTables,
-    "coating": Coating,
-    "friction": Friction,
-    "options": Options,
-    "fields": Fields,
-    "report": Report,
-    "friction_results": FrictionResults,
-    "accuracy": Accuracy,
-    "stress_outputs": StressOutputs,
+# The structs that have an _init, and the kind of each.
+KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
+    "scene": (1, Scene),
+    "options": (2, Options),
+    "fields": (3, Fields),
+    "report": (4, Report),
+    "accuracy": (5, Accuracy),
+    "influence": (6, Influence),
+    "row_tables": (7, RowTables),
+    "layer": (8, Layer),
+    "pressure_limit": (9, PressureLimit),
+    "period": (10, Period),
+    "patches": (11, Patches),
+    "coating": (12, Coating),
+    "friction": (13, Friction),
+    "friction_results": (14, FrictionResults),
+    "stress_outputs": (15, StressOutputs),
+    "stress_maximum": (16, StressMaximum),
+    "ledger_row": (17, LedgerRow),
+    "price": (18, Price),
+    "hertz_solution": (19, HertzSolution),
+    "cycle": (20, Cycle),
 }

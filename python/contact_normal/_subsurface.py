@@ -14,7 +14,6 @@ from ._calls import called, parts
 from ._library import check, initialised, library
 from ._scene import Scene
 from ._stress import COMPONENTS, TENSOR, SubsurfaceStress
-from ._structs import StressMaximum
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -47,7 +46,7 @@ def subsurface(
     if found.principal is not None and found.directions is not None:
         for k in range(3):
             outputs.principal[k], outputs.directions[k] = pointer(found.principal[k]), pointer(found.directions[k])
-    largest = {"von_mises": StressMaximum(), "maximum_shear": StressMaximum()}
+    largest = {name: initialised("stress_maximum") for name in ("von_mises", "maximum_shear")}
     for name, member in (("von_mises", "largest_von_mises"), ("maximum_shear", "largest_shear")):
         if name in wanted:
             setattr(outputs, member, ctypes.pointer(largest[name]))
@@ -59,11 +58,10 @@ def subsurface(
         levels.size, ctypes.byref(struct), ctypes.byref(outputs), keep=(scene, given, levels, found, largest),
     )
     check(status, message)
-    corner = _corner(scene)
     for name, member in (("von_mises", "largest_von_mises"), ("maximum_shear", "largest_shear")):
         if name in wanted:
             values: dict[str, Any] = {key: getattr(largest[name], key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
-            setattr(found, member, {**values, "x": values["x"] + corner[0], "y": values["y"] + corner[1]})
+            setattr(found, member, values)
     return found
 
 
@@ -75,9 +73,8 @@ def at_points(
     places = doubles("points", points, dimensions="(n, 3)")
     if places.shape[1] != 3:
         raise ValueError(f"points has shape {places.shape}; it must be (n, 3)")
-    corner = _corner(scene)
-    # The library counts from the corner.
-    moved = places - np.array([corner[0] + middle[0], corner[1] + middle[1], 0.0])
+    # The library counts from the middle of the grid.
+    moved = places - np.array([*middle, 0.0])
     given, struct = _loads(pressure, traction, scene.shape), options({"threads": threads})
     stress = np.zeros((len(moved), 6))
     for part in parts(len(moved), 100):
@@ -189,12 +186,6 @@ def _loads(pressure: Any, traction: Any, shape: tuple[int, int]) -> list[Any]:
     given = both("traction", traction) if traction is not None else (None, None)
     tractions = [None if one is None else doubles(f"traction[{k}]", one, shape) for k, one in enumerate(given)]
     return [None if array is None else pointer(array) for array in (pressure, *tractions)]
-
-
-def _corner(scene: Scene) -> tuple[float, float]:
-    """The outer corner of element (0, 0), from which the library counts places, from the middle of the grid."""
-    my, mx = scene.shape
-    return -0.5 * mx * scene.struct.dx, -0.5 * my * scene.struct.dy
 
 
 def _wanted(components: Iterable[str] | None) -> tuple[str, ...]:

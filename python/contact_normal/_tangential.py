@@ -86,7 +86,7 @@ def solve_tangential(
     >>> pressure = np.pad(np.full((8, 8), 100.0), 2)
     >>> found = contact_normal.solve_tangential(pressure, 0.1, 0.1, friction={"coefficient": 0.3, "force": (9.6, 0.0)},
     ...                                         shear_modulus=82000.0, poisson_ratio=0.28)
-    >>> round(found.tangential_force[0], 4), bool((found.adhesion == 1).any() and (found.adhesion == 2).any())
+    >>> round(found.tangential_force[0], 4), bool((found.stick_slip == 1).any() and (found.stick_slip == 2).any())
     (9.6, True)
     """
     effects = {"influence": influence, "layer": layer, "period": period, "friction": friction}

@@ -1,4 +1,4 @@
-"""The library that is loaded must suit the package: which one is tried, its ABI version, the sizes of its structs."""
+"""The library that is loaded must suit the package: which one is tried, its ABI version, structs of other versions."""
 
 import ctypes
 import os
@@ -6,7 +6,10 @@ import threading
 import unittest
 from unittest import mock
 
-from contact_normal import _library
+import numpy as np
+
+import contact_normal
+from contact_normal import _library, _structs
 from contact_normal._constants import ABI_VERSION
 
 LIBRARY = _library.library
@@ -56,29 +59,51 @@ class Libraries(unittest.TestCase):
     def test_threads_meet_no_struct_that_is_half_initialised(self):
         begun, ended = threading.Event(), threading.Event()
 
-        def slow(struct):
+        def slow(*given):
             begun.set()
             ended.wait()
-            LIBRARY.contact_normal_scene_init(struct)
+            LIBRARY.contact_normal_init(*given)
 
-        with mock.patch.dict(_library._INITIALISED, clear=True), mock.patch.object(_library, "library", Another(scene_init=slow)) as another:
+        with mock.patch.dict(_library._INITIALISED, clear=True), mock.patch.object(_library, "library", Another(init=slow)) as another:
             thread = threading.Thread(target=_library.initialised, args=("scene",))
             thread.start()
             begun.wait()
-            another.functions["contact_normal_scene_init"].call = LIBRARY.contact_normal_scene_init
+            another.functions["contact_normal_init"].call = LIBRARY.contact_normal_init
             size = _library.initialised("scene").struct_size
             ended.set()
             thread.join()
-        self.assertEqual(size, ctypes.sizeof(_library.SIZED["scene"]))
+        self.assertEqual(size, ctypes.sizeof(_structs.Scene))
 
-    def test_sizes_of_structs(self):
-        for name, kind in _library.SIZED.items():
+    def test_the_sizes_of_all_structs_are_told(self):
+        for name, (_, kind) in _structs.KINDS.items():
+            self.assertEqual(_library.initialised(name).struct_size, ctypes.sizeof(kind), name)
 
-            def larger(struct, kind=kind):
-                struct.contents.struct_size = ctypes.sizeof(kind) + 8
 
-            with self.assertRaisesRegex(ImportError, f"contact_normal_{name} has {ctypes.sizeof(kind) + 8} bytes, here {ctypes.sizeof(kind)}"):
-                loaded(Another(**{f"{name}_init": larger}))
+X = (np.arange(16) - 7.5) * 0.2
+H = 0.01 * (X[None, :] ** 2 + X[:, None] ** 2)
+
+
+def solved(**given):
+    return contact_normal.solve(H, 0.2, 0.2, force=100.0, shear_modulus=82000.0, poisson_ratio=0.28, **given)
+
+
+class OtherVersions(unittest.TestCase):
+    """Structs grow at their end: a package of a newer version has longer ones than the library."""
+
+    def test_a_newer_package(self):
+        expected = solved()
+        for name in ("scene", "options", "fields", "report"):
+            number, kind = _structs.KINDS[name]
+            longer = type(kind.__name__, (kind,), {"_fields_": [("later", ctypes.c_double)]})
+            with mock.patch.dict(_structs.KINDS, {name: (number, longer)}), mock.patch.dict(_library._INITIALISED, clear=True):
+                found = solved()
+                np.testing.assert_array_equal(found.pressure, expected.pressure)
+                self.assertEqual((found.force, found.report["cycles"]), (expected.force, expected.report["cycles"]))
+                self.assertEqual(_library._INITIALISED[name].later, 0.0)
+                _library._INITIALISED[name].later = 1.0
+                with self.assertRaisesRegex(contact_normal.ContactNormalError, f"{name} sets the member at byte") as caught:
+                    solved()
+                self.assertEqual(caught.exception.status, contact_normal.STRUCT_SIZE)
 
 
 if __name__ == "__main__":

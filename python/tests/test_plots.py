@@ -80,11 +80,12 @@ class Plots(unittest.TestCase):
             self.assertEqual((qx, qy), tuple(self.found.traction[:, iy, ix]))
         self.assertGreater(len(arrows.U), 20)
         self.assert_outline(axes, self.found.contact)
-        self.assert_outline(axes, self.found.adhesion == 1)
+        self.assert_outline(axes, self.found.stick_slip == 1)
         blue, orange = (np.array(colour) * 255 for colour in ((0.78, 0.87, 0.96), (0.99, 0.85, 0.74)))
         shown = axes.images[0].get_array()
         for side, colour in ((1, blue), (2, orange)):
-            np.testing.assert_allclose(shown[self.found.adhesion == side] * 255, np.broadcast_to(colour, ((self.found.adhesion == side).sum(), 3)))
+            inside = self.found.stick_slip == side
+            np.testing.assert_allclose(shown[inside] * 255, np.broadcast_to(colour, (inside.sum(), 3)))
         self.assertEqual(axes.images[0].origin, "lower")
         self.assertEqual(axes.get_xlabel(), "x [mm]")
         self.assertRegex(axes.get_title(), r"force \(60, .*\) N;")

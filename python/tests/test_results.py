@@ -198,7 +198,7 @@ class Tangential(unittest.TestCase):
         found = cn.solve_tangential(pressure, DX, DY, friction=friction, tolerance=1e-8, units=("mm", "N"), **STEEL)
         self.assertEqual((type(found), found.status, found.message), (cn.TangentialResult, cn.OK, ""))
         np.testing.assert_allclose(found.traction, both.traction, atol=1e-5 * both.max_pressure)
-        np.testing.assert_array_equal(found.adhesion, both.adhesion)
+        np.testing.assert_array_equal(found.stick_slip, both.stick_slip)
         np.testing.assert_array_equal(found.pressure, both.pressure)
         np.testing.assert_array_equal(found.contact, both.contact)
         self.assertEqual((found.max_pressure, found.contact_area), (both.max_pressure, both.contact_area))

@@ -26,15 +26,15 @@ def resident_bytes():
 class Results(unittest.TestCase):
     def test_friction_takes_arrays_only_where_it_is(self):
         plain = cn.solve(ball(20), 0.1, 0.1, force=100.0, **STEEL)
-        self.assertTrue(plain._traction is None and plain._slip is None and plain._adhesion is None)
+        self.assertTrue(plain._traction is None and plain._slip is None and plain._stick_slip is None)
         friction = {"coefficient": 0.3, "force": (10.0, 0.0)}
         slid = cn.solve(ball(20), 0.1, 0.1, force=100.0, friction=friction, **STEEL)
         for result in (plain, slid):
-            self.assertEqual((result.traction.shape, result.slip.shape, result.adhesion.shape), ((2, 20, 20), (2, 20, 20), (20, 20)))
-        self.assertFalse(plain.traction.any() or plain.slip.any() or plain.adhesion.any())
+            self.assertEqual((result.traction.shape, result.slip.shape, result.stick_slip.shape), ((2, 20, 20), (2, 20, 20), (20, 20)))
+        self.assertFalse(plain.traction.any() or plain.slip.any() or plain.stick_slip.any())
         self.assertAlmostEqual(slid.traction[0].sum() * 0.01, 10.0, places=6)
         self.assertTrue(slid.slip.any())
-        np.testing.assert_array_equal(slid.adhesion > 0, slid.contact)
+        np.testing.assert_array_equal(slid.stick_slip > 0, slid.contact)
 
 
 class Handles(unittest.TestCase):

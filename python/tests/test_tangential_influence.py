@@ -32,7 +32,7 @@ class TangentialInfluence(unittest.TestCase):
             self.assertEqual(found.status, cn.OK)
             # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
-            self.assertGreater(np.count_nonzero(found.adhesion == 1), 0)
+            self.assertGreater(np.count_nonzero(found.stick_slip == 1), 0)
 
     def test_a_batch_takes_tables_for_both_problems(self):
         # nu = 0: the normal displacements by a pressure are those in x by a traction in x (Kalker 1990, appendix B).

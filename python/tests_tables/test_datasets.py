@@ -35,7 +35,7 @@ class Datasets(unittest.TestCase):
         found.to_netcdf(self.path)
         self.assertEqual(os.listdir(self.folder.name), ["result.nc"])
         dataset = self.read()
-        for name in ("pressure", "deformed_distance", "displacement", "contact", "at_limit", "adhesion"):
+        for name in ("pressure", "deformed_distance", "displacement", "contact", "at_limit", "stick_slip"):
             self.assertEqual(dataset[name].dims, ("y", "x"))
             np.testing.assert_array_equal(dataset[name].values, getattr(found, name))
         for name in ("traction", "slip"):
@@ -54,7 +54,7 @@ class Datasets(unittest.TestCase):
 
     def test_without_friction_and_units(self):
         dataset = cn.solve(H, 0.1, 0.12, force=100.0, **STEEL).to_xarray()
-        self.assertFalse({"traction", "slip", "adhesion", "component"} & (set(dataset.data_vars) | set(dataset.coords)))
+        self.assertFalse({"traction", "slip", "stick_slip", "component"} & (set(dataset.data_vars) | set(dataset.coords)))
         self.assertFalse(any("units" in dataset[name].attrs for name in (*dataset.data_vars, *dataset.coords)))
 
     def test_others(self):

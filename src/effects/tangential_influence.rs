@@ -49,11 +49,11 @@ impl TangentialInfluence<'_> {
     /// Refuses tables that do not reach offsets of `mx` by `my`, and what no coefficients of a half-space's kind are.
     fn check(&self, mx: usize, my: usize) -> Result<()> {
         let scale = "coefficients are scaled by a positive, finite number";
-        require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence_scale", self.scale, scale)?;
+        require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, scale)?;
         for (name, c, m) in [("cx", self.cx, mx), ("cy", self.cy, my)] {
             if c < m {
                 let rule = format!("the tables must reach the offsets of the grid, and of a step of rolling: {m}");
-                return invalid(format!("friction->influence_{name} is {c}; {rule}"));
+                return invalid(format!("friction->influence->{name} is {c}; {rule}"));
             }
         }
         let expected = self.cx.checked_mul(self.cy).and_then(|n| n.checked_mul(4));

@@ -60,16 +60,9 @@ pub struct contact_normal_accuracy {
     pub contact_area_target: f64,
 }
 
-versioned! { contact_normal_accuracy, 112, target: 1e-3, reached: -1.0 }
+versioned! { contact_normal_accuracy, contact_normal_accuracy_init, 112, target: 1e-3, reached: -1.0 }
 
-/// Fills an accuracy with the defaults: a target of 1e-3, no limits, no surface. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_accuracy_init(accuracy: *mut contact_normal_accuracy) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(accuracy) }
-}
-
-/// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->error_force` is at most
+/// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
 /// `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
 /// corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
 /// scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and

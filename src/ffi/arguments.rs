@@ -1,7 +1,7 @@
 //! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
 
 use super::status::Refusal;
-use super::structs::{size_of_callers, Versioned};
+use super::structs::{size_of_callers, Rows, Versioned};
 use crate::grid::Grid;
 use crate::memory::reserve;
 
@@ -95,13 +95,24 @@ impl Regions {
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
     }
 
+    /// `count` structs that are written.
+    pub fn output_rows<T: Versioned>(
+        &mut self,
+        name: &'static str,
+        start: *const T,
+        rows: &Rows<T>,
+        count: usize,
+    ) -> Result<(), Refusal> {
+        self.add(name, start as usize, rows.bytes(count), true)
+    }
+
     fn add(&mut self, name: &'static str, start: usize, bytes: usize, is_output: bool) -> Result<(), Refusal> {
         if start == 0 || bytes == 0 {
             return Ok(());
         }
         if self.list.len() == self.list.capacity() {
-            // All regions of one problem fit at once: 11 outputs, 9 structs and 13 arrays that are read.
-            let room = (2 * self.list.len()).max(33);
+            // All regions of one problem fit at once: 11 outputs, 15 structs and 13 arrays that are read.
+            let room = (2 * self.list.len()).max(39);
             reserve(&mut self.list, room, "the addresses of the arrays")?;
         }
         self.list.push(Region { start, end: start.saturating_add(bytes), name, problem: self.problem, is_output });

@@ -22,14 +22,7 @@ pub struct contact_normal_coating {
     pub poisson_ratio: f64,
 }
 
-versioned! { contact_normal_coating, 32 }
-
-/// Fills a coating with no thickness. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_coating_init(coating: *mut contact_normal_coating) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(coating) }
-}
+versioned! { contact_normal_coating, contact_normal_coating_init, 32 }
 
 /// What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
 /// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of

@@ -2,7 +2,7 @@
 
 use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::status::Refusal;
-use super::structs::{self, versioned};
+use super::structs::versioned;
 use crate::grid::Grid;
 use crate::scene::{Layer, Patches, Period, PressureLimit};
 
@@ -19,7 +19,7 @@ pub struct contact_normal_period {
     pub y: i32,
 }
 
-versioned! { contact_normal_period, 16 }
+versioned! { contact_normal_period, contact_normal_period_init, 16 }
 
 /// Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
 #[repr(C)]
@@ -33,7 +33,7 @@ pub struct contact_normal_layer {
     pub compliances: *const f64,
 }
 
-versioned! { contact_normal_layer, 24 }
+versioned! { contact_normal_layer, contact_normal_layer_init, 24 }
 
 /// Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
 /// `deformed_distance` <= 0: the plastic penetration, with its sign turned.
@@ -48,7 +48,7 @@ pub struct contact_normal_pressure_limit {
     pub limits: *const f64,
 }
 
-versioned! { contact_normal_pressure_limit, 24, limit: f64::INFINITY }
+versioned! { contact_normal_pressure_limit, contact_normal_pressure_limit_init, 24, limit: f64::INFINITY }
 
 /// Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
 #[repr(C)]
@@ -67,35 +67,7 @@ pub struct contact_normal_patches {
     pub factors: *const f64,
 }
 
-versioned! { contact_normal_patches, 32 }
-
-/// Fills patches with none. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_patches_init(patches: *mut contact_normal_patches) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(patches) }
-}
-
-/// Fills a period with none. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_period_init(period: *mut contact_normal_period) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(period) }
-}
-
-/// Fills a layer with a compliance of 0. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_layer_init(layer: *mut contact_normal_layer) {
-    // SAFETY: as above.
-    unsafe { structs::init(layer) }
-}
-
-/// Fills a pressure limit with +infinity. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_pressure_limit_init(limit: *mut contact_normal_pressure_limit) {
-    // SAFETY: as above.
-    unsafe { structs::init(limit) }
-}
+versioned! { contact_normal_patches, contact_normal_patches_init, 32 }
 
 impl contact_normal_period {
     pub(super) fn translate(&self) -> Result<Period, Refusal> {

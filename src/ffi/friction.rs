@@ -1,16 +1,21 @@
 //! `contact_normal_friction`.
 
-use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
-use super::influence::table_size;
+use super::arguments::{optional, required, reserved, GivenEffect, Regions};
+use super::influence::contact_normal_influence;
 use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::friction::{EXTERIOR, SLIP, STICK};
 use crate::grid::Grid;
 use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
 
-/// The tables of own coefficients.
-const TABLES: [&str; 3] = ["friction->influence[0]", "friction->influence[1]", "friction->influence[2]"];
-const CROSS_TABLES: [&str; 2] = ["friction->influence_cross[0]", "friction->influence_cross[1]"];
+/// The tables of own coefficients: xx, yy, xy, and those of unlike bodies, xz, yz.
+const TABLES: [&str; 5] = [
+    "friction->influence[0]",
+    "friction->influence[1]",
+    "friction->influence[2]",
+    "friction->influence_cross[0]",
+    "friction->influence_cross[1]",
+];
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -24,18 +29,18 @@ pub const CONTACT_NORMAL_PRESCRIBED_CREEPAGE: i32 = 0;
 /// `prescribed`: the tangential force of a direction is given, its creepage is found.
 pub const CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE: i32 = 1;
 
-/// `fields->adhesion`: the element is not in contact.
-pub const CONTACT_NORMAL_ADHESION_EXTERIOR: i32 = 0;
-/// `fields->adhesion`: it sticks.
-pub const CONTACT_NORMAL_ADHESION_STICK: i32 = 1;
-/// `fields->adhesion`: it slips.
-pub const CONTACT_NORMAL_ADHESION_SLIP: i32 = 2;
+/// `fields->stick_slip`: the element is not in contact.
+pub const CONTACT_NORMAL_STICK_SLIP_EXTERIOR: i32 = 0;
+/// `fields->stick_slip`: it sticks.
+pub const CONTACT_NORMAL_STICK_SLIP_STICK: i32 = 1;
+/// `fields->stick_slip`: it slips.
+pub const CONTACT_NORMAL_STICK_SLIP_SLIP: i32 = 2;
 
 // The core writes its own.
 const _: () = assert!(
-    CONTACT_NORMAL_ADHESION_EXTERIOR == EXTERIOR
-        && CONTACT_NORMAL_ADHESION_STICK == STICK
-        && CONTACT_NORMAL_ADHESION_SLIP == SLIP
+    CONTACT_NORMAL_STICK_SLIP_EXTERIOR == EXTERIOR
+        && CONTACT_NORMAL_STICK_SLIP_STICK == STICK
+        && CONTACT_NORMAL_STICK_SLIP_SLIP == SLIP
 );
 
 /// Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
@@ -62,7 +67,7 @@ pub struct contact_normal_friction {
     pub creepage: [f64; 2],
     /// About the normal; default 0.
     pub spin: f64,
-    /// Where the spin turns about and the moment is taken, from the centre of the grid: lengths; default 0.
+    /// Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
     pub spin_centre: [f64; 2],
     /// The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
     pub force: [f64; 2],
@@ -77,35 +82,21 @@ pub struct contact_normal_friction {
     /// A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
     pub rigid_slip: [*const f64; 2],
     /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
-    /// y by one in y, and in either by one in the other; each laid out as those of `contact_normal_influence`; all or none, default NULL.
-    /// xx and yy must be even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the
-    /// tables must reach beyond the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or
-    /// `influence_cross` given.
-    pub influence: [*const f64; 3],
-    /// The tables cover offsets -cx..cx-1; default 0: to be set if there are tables.
-    pub influence_cx: i32,
-    /// And -cy..cy-1.
-    pub influence_cy: i32,
-    /// Every coefficient is multiplied by this, positive; default 1.
-    pub influence_scale: f64,
-    /// 1: derivatives of forces and moment by creepages and spin, in `report->sensitivities`; default 0.
+    /// y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
+    /// even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the tables must reach beyond
+    /// the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+    pub influence: [*const contact_normal_influence; 3],
+    /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
+    /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
+    /// then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
+    pub influence_cross: [*const contact_normal_influence; 2],
+    /// 1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
     pub sensitivities: i32,
     /// Must be 0.
     pub reserved: i32,
-    /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure, laid out and scaled as
-    /// those; both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
-    /// then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
-    pub influence_cross: [*const f64; 2],
 }
 
-versioned! { contact_normal_friction, 152, spin_offset: 1.0 / 6.0, influence_scale: 1.0 }
-
-/// Fills a friction with a coefficient of 0 and a shift of 0. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_friction_init(friction: *mut contact_normal_friction) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(friction) }
-}
+versioned! { contact_normal_friction, contact_normal_friction_init, 200, spin_offset: 1.0 / 6.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.
@@ -164,27 +155,43 @@ impl contact_normal_friction {
         })
     }
 
-    /// cx, cy and the values of each table; none if there are no tables.
-    fn table_size(&self) -> Result<Option<(usize, usize, usize)>, Refusal> {
-        if self.influence.iter().chain(&self.influence_cross).all(|table| table.is_null()) {
-            return Ok(None);
+    /// The structs of the tables, as the caller's header has them; none if there are no tables.
+    fn tables(&self) -> Result<Option<[Option<contact_normal_influence>; 5]>, Refusal> {
+        let [xx, yy, xy] = self.influence;
+        let [xz, yz] = self.influence_cross;
+        let at = [xx, yy, xy, xz, yz];
+        let mut tables = [None; 5];
+        for (k, table) in tables.iter_mut().enumerate() {
+            // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+            *table = unsafe { structs::read_optional(at[k], TABLES[k])? };
         }
-        let cx = count("friction->influence_cx", self.influence_cx)?;
-        let cy = count("friction->influence_cy", self.influence_cy)?;
-        Ok(Some((cx, cy, table_size(cx, cy)?)))
+        Ok(tables.iter().any(Option::is_some).then_some(tables))
     }
 
     /// The caller's own tangential coefficients.
     fn own_influence<'a>(&self) -> Result<Option<TangentialInfluence<'a>>, Refusal> {
-        let Some((cx, cy, size)) = self.table_size()? else { return Ok(None) };
-        // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
-        let table = |k: usize| unsafe { required(TABLES[k], self.influence[k], size) };
+        let Some(tables) = self.tables()? else { return Ok(None) };
+        let first = tables[0].ok_or_else(|| Refusal::null(TABLES[0]))?;
+        let (cx, cy, size) = first.size(TABLES[0])?;
+        let table = |k: usize| {
+            let table = tables[k].ok_or_else(|| Refusal::null(TABLES[k]))?;
+            let members = [
+                ("cx", f64::from(table.cx), f64::from(first.cx)),
+                ("cy", f64::from(table.cy), f64::from(first.cy)),
+                ("scale", table.scale, first.scale),
+            ];
+            if let Some((member, value, of_first)) = members.into_iter().find(|(_, value, of_first)| value != of_first)
+            {
+                let rule = format!("it must be {of_first}, as that of {}", TABLES[0]);
+                return Err(Refusal::invalid(format!("{}->{member} is {value}; {rule}", TABLES[k])));
+            }
+            // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
+            unsafe { required(&format!("{}->coefficients", TABLES[k]), table.coefficients, size) }
+        };
         let coefficients = [table(0)?, table(1)?, table(2)?];
-        let has_cross = self.influence_cross.iter().any(|table| !table.is_null());
-        // SAFETY: as above.
-        let cross = |k: usize| unsafe { required(CROSS_TABLES[k], self.influence_cross[k], size) };
-        let cross = if has_cross { Some([cross(0)?, cross(1)?]) } else { None };
-        Ok(Some(TangentialInfluence { cx, cy, coefficients, cross, scale: self.influence_scale }))
+        let has_cross = tables[3].is_some() || tables[4].is_some();
+        let cross = if has_cross { Some([table(3)?, table(4)?]) } else { None };
+        Ok(Some(TangentialInfluence { cx, cy, coefficients, cross, scale: first.scale }))
     }
 
     fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
@@ -207,10 +214,11 @@ impl GivenEffect for contact_normal_friction {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
         }
-        if let Some((_, _, size)) = self.table_size()? {
-            let cross = CROSS_TABLES.into_iter().zip(self.influence_cross);
-            for (name, table) in TABLES.into_iter().zip(self.influence).chain(cross) {
-                regions.input(name, table, size)?;
+        let at = self.influence.into_iter().chain(self.influence_cross);
+        for ((at, table), name) in at.zip(self.tables()?.iter().flatten()).zip(TABLES) {
+            if let Some(table) = table {
+                regions.input_struct(at, table)?;
+                regions.input(name, table.coefficients, table.size(name)?.2)?;
             }
         }
         Ok(())

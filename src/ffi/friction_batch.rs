@@ -46,18 +46,11 @@ pub struct contact_normal_friction_results {
     pub traction: *mut f64,
     /// Slip, `[n][2][my][mx]`.
     pub slip: *mut f64,
-    /// CONTACT_NORMAL_ADHESION_... of each element, `[n][my][mx]`.
-    pub adhesion: *mut i32,
+    /// CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
+    pub stick_slip: *mut i32,
 }
 
-versioned! { contact_normal_friction_results, 104 }
-
-/// Fills results with NULL: nothing is wanted. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_friction_results_init(results: *mut contact_normal_friction_results) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(results) }
-}
+versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
 
 /// Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
 /// (the creepage or, where `scene->friction->prescribed` says so, the force) and the spin; those of `scene->friction` itself are not
@@ -150,7 +143,7 @@ impl contact_normal_friction_results {
         regions.output("status", self.status, n)?;
         regions.output("traction", self.traction, fields.saturating_mul(2))?;
         regions.output("slip", self.slip, fields.saturating_mul(2))?;
-        regions.output("adhesion", self.adhesion, fields)
+        regions.output("stick_slip", self.stick_slip, fields)
     }
 
     /// Writes how entry i ended, and what was found of it.
@@ -171,15 +164,15 @@ impl contact_normal_friction_results {
                 put(self.products, i, report.products);
                 put(self.stick_count, i, report.certificate.stick_count as i64);
                 put(self.slip_count, i, report.certificate.slip_count as i64);
-                let elements = solution.adhesion.len();
+                let elements = solution.stick_slip.len();
                 for (field, to) in [(&solution.traction, self.traction), (&solution.slip, self.slip)] {
                     for (element, v) in field.iter().enumerate().filter(|_| !to.is_null()) {
                         put(to, 2 * i * elements + element, v[0]);
                         put(to, (2 * i + 1) * elements + element, v[1]);
                     }
                 }
-                for (element, adhesion) in solution.adhesion.iter().enumerate() {
-                    put(self.adhesion, i * elements + element, *adhesion);
+                for (element, stick_slip) in solution.stick_slip.iter().enumerate() {
+                    put(self.stick_slip, i * elements + element, *stick_slip);
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::arguments::{count, required, GivenEffect, Regions};
 use super::status::Refusal;
-use super::structs::{self, versioned};
+use super::structs::versioned;
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};
 
@@ -25,7 +25,7 @@ pub struct contact_normal_influence {
     pub scale: f64,
 }
 
-versioned! { contact_normal_influence, 32, scale: 1.0 }
+versioned! { contact_normal_influence, contact_normal_influence_init, 32, scale: 1.0 }
 
 /// Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
 /// y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
@@ -47,21 +47,7 @@ pub struct contact_normal_row_tables {
     pub scale: f64,
 }
 
-versioned! { contact_normal_row_tables, 32, scale: 1.0 }
-
-/// Fills an influence table with nothing, and a scale of 1. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_influence_init(influence: *mut contact_normal_influence) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(influence) }
-}
-
-/// Fills row tables with nothing, and a scale of 1. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_row_tables_init(tables: *mut contact_normal_row_tables) {
-    // SAFETY: as above.
-    unsafe { structs::init(tables) }
-}
+versioned! { contact_normal_row_tables, contact_normal_row_tables_init, 32, scale: 1.0 }
 
 /// Number of values in a table of coefficients.
 pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
@@ -72,22 +58,22 @@ pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
 impl contact_normal_influence {
     /// Copies what the grid needs of the caller's table.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<Table, Refusal> {
-        let (cx, cy, size) = self.size()?;
+        let (cx, cy, size) = self.size("influence")?;
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
         let values = unsafe { required("influence->coefficients", self.coefficients, size)? };
         Ok(Table::scaled(cx, cy, values, self.scale, grid)?)
     }
 
-    /// cx, cy, and the number of values.
-    fn size(&self) -> Result<(usize, usize, usize), Refusal> {
-        let (cx, cy) = (count("influence->cx", self.cx)?, count("influence->cy", self.cy)?);
+    /// cx, cy, and the number of values; `name` is what messages call the table.
+    pub(super) fn size(&self, name: &str) -> Result<(usize, usize, usize), Refusal> {
+        let (cx, cy) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->cy"), self.cy)?);
         Ok((cx, cy, table_size(cx, cy)?))
     }
 }
 
 impl GivenEffect for contact_normal_influence {
     fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
-        regions.input("influence->coefficients", self.coefficients, self.size()?.2)
+        regions.input("influence->coefficients", self.coefficients, self.size("influence")?.2)
     }
 }
 

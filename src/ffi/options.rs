@@ -69,16 +69,6 @@ pub struct contact_normal_options {
     pub struct_size: i64,
     /// CONTACT_NORMAL_METHOD_...; default AUTO.
     pub method: i32,
-    /// CONTACT_NORMAL_SMOOTHER_...; default AUTO.
-    pub smoother: i32,
-    /// n1 of V(n1, n2); default 1.
-    pub pre_sweeps: i32,
-    /// n2 of V(n1, n2); default 1.
-    pub post_sweeps: i32,
-    /// omega, in (0, 2); default 0: what suits the smoother.
-    pub relaxation: f64,
-    /// The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
-    pub coarsest: i32,
     /// CONTACT_NORMAL_ACTIVE_SET_...; default FREE.
     pub active_set: i32,
     /// CONTACT_NORMAL_INITIAL_GUESS_...; default NONE.
@@ -88,7 +78,7 @@ pub struct contact_normal_options {
     /// Of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
     pub tolerance: f64,
     /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-    /// that `report->tolerance` says. Default 0: the tolerance above.
+    /// that `report->normal.tolerance` says. Default 0: the tolerance above.
     pub error_ratio: f64,
     /// Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000.
     pub max_cycles: i32,
@@ -102,35 +92,54 @@ pub struct contact_normal_options {
     pub progress: contact_normal_progress_callback,
     /// Passed to `progress`; default NULL.
     pub user: *mut c_void,
+    /// The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
+    pub cycle: *const contact_normal_cycle,
+}
+
+/// The cycle of the paper's methods.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_cycle {
+    /// Set by `contact_normal_cycle_init`.
+    pub struct_size: i64,
+    /// CONTACT_NORMAL_SMOOTHER_...; default AUTO.
+    pub smoother: i32,
+    /// n1 of V(n1, n2); default 1.
+    pub pre_sweeps: i32,
+    /// n2 of V(n1, n2); default 1.
+    pub post_sweeps: i32,
+    /// The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
+    pub coarsest: i32,
+    /// omega, in (0, 2); default 0: what suits the smoother.
+    pub relaxation: f64,
 }
 
 versioned! {
-    contact_normal_options, 96,
+    contact_normal_cycle, contact_normal_cycle_init, 32,
     pre_sweeps: Options::default().cycle.pre_sweeps as i32,
     post_sweeps: Options::default().cycle.post_sweeps as i32,
     coarsest: Options::default().cycle.coarsest as i32,
+}
+
+versioned! {
+    contact_normal_options, contact_normal_options_init, 80,
     tolerance: Options::default().tolerance,
     max_cycles: Options::default().max_cycles as i32,
     threads: Options::default().threads as i32,
 }
 
-/// Fills options with the defaults. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_options_init(options: *mut contact_normal_options) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(options) }
-}
-
 /// Options, and as the caller gave them: with the callback and its user pointer.
 pub(super) struct Translated {
     pub given: contact_normal_options,
+    cycle: Option<contact_normal_cycle>,
     pub options: Options,
 }
 
 impl Translated {
-    /// Adds the struct, which stands at `at`, NULL or not.
+    /// Adds the struct, which stands at `at`, NULL or not, and its cycle.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_options) -> Result<(), Refusal> {
-        regions.input_struct(at, &self.given)
+        regions.input_struct(at, &self.given)?;
+        self.cycle.iter().try_for_each(|cycle| regions.input_struct(self.given.cycle, cycle))
     }
 }
 
@@ -138,16 +147,12 @@ impl Translated {
 pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result<Translated, Refusal> {
     // SAFETY: NULL or a struct that declares its size.
     let given = unsafe { structs::read_optional(options, "options")? }.unwrap_or_else(contact_normal_options::defaults);
+    // SAFETY: likewise.
+    let cycle = unsafe { structs::read_optional(given.cycle, "options->cycle")? };
     reserved("options->reserved", given.reserved)?;
     let options = Options {
         method: method(given.method)?,
-        cycle: CycleShape {
-            smoother: smoother(given.smoother)?,
-            pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
-            post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
-            relaxation: given.relaxation,
-            coarsest: count("coarsest", given.coarsest)?,
-        },
+        cycle: cycle.map_or(Ok(CycleShape::default()), shape)?,
         active_set: match given.active_set {
             CONTACT_NORMAL_ACTIVE_SET_FREE => ActiveSet::Free,
             CONTACT_NORMAL_ACTIVE_SET_FIXED => ActiveSet::Fixed,
@@ -178,7 +183,17 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
         estimates: false,
     };
     options.check()?;
-    Ok(Translated { given, options })
+    Ok(Translated { given, cycle, options })
+}
+
+fn shape(given: contact_normal_cycle) -> Result<CycleShape, Refusal> {
+    Ok(CycleShape {
+        smoother: smoother(given.smoother)?,
+        pre_sweeps: not_negative("pre_sweeps", given.pre_sweeps)?,
+        post_sweeps: not_negative("post_sweeps", given.post_sweeps)?,
+        relaxation: given.relaxation,
+        coarsest: count("coarsest", given.coarsest)?,
+    })
 }
 
 fn method(value: i32) -> Result<Method, Refusal> {

@@ -1,9 +1,9 @@
 //! What the caller wants written: fields, a report, a ledger; and what is read of them, the initial guess.
 
 use super::arguments::Regions;
-use super::report::{contact_normal_fields, contact_normal_report};
+use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
 use super::status::Refusal;
-use super::structs::{self, Versioned};
+use super::structs::{self, Rows, Versioned};
 use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
@@ -15,6 +15,8 @@ pub(super) struct Outputs {
     report: *mut contact_normal_report,
     /// What the caller's report held.
     given_report: Option<contact_normal_report>,
+    /// Its ledger, if there is room for one.
+    ledger: Option<Rows<contact_normal_ledger_row>>,
 }
 
 impl Outputs {
@@ -30,6 +32,7 @@ impl Outputs {
                 structs::read_optional(report.cast_const(), "report")?,
             )
         };
+        let mut rows = None;
         if let Some(contact_normal_report { ledger, ledger_capacity, .. }) = given_report {
             if ledger_capacity < 0 {
                 return Err(Refusal::invalid(format!(
@@ -39,9 +42,13 @@ impl Outputs {
             if ledger_capacity > 0 && ledger.is_null() {
                 return Err(Refusal::null("report->ledger (with ledger_capacity > 0)"));
             }
+            if ledger_capacity > 0 {
+                // SAFETY: not null: its first row declares its size.
+                rows = Some(unsafe { Rows::of(ledger, "report->ledger")? });
+            }
         }
         let given_fields = given_fields.unwrap_or_else(contact_normal_fields::defaults);
-        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report })
+        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows })
     }
 
     /// Whether the arrays that are read are there and hold what they must.
@@ -113,10 +120,12 @@ impl Outputs {
             regions.output("traction", fields.traction[k], n)?;
             regions.output("slip", fields.slip[k], n)?;
         }
-        regions.output("adhesion", fields.adhesion, n)?;
+        regions.output("stick_slip", fields.stick_slip, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
-            regions.output("ledger", report.ledger, self.ledger_capacity())?;
+            if let Some(rows) = &self.ledger {
+                regions.output_rows("ledger", report.ledger, rows, self.ledger_capacity())?;
+            }
         }
         Ok(())
     }
@@ -151,7 +160,7 @@ impl Outputs {
         let fields = &self.fields;
         let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
         let none = Solution::default();
-        let Solution { traction, slip, adhesion } = found.unwrap_or(&none);
+        let Solution { traction, slip, stick_slip } = found.unwrap_or(&none);
         for (k, (q, s)) in fields.traction.iter().zip(fields.slip).enumerate() {
             // SAFETY (both): not null: room for n values, as above.
             unsafe {
@@ -163,10 +172,10 @@ impl Outputs {
                 }
             }
         }
-        if !fields.adhesion.is_null() {
-            let adhesion = |i: usize| if found.is_some() { adhesion[i] } else { EXTERIOR };
+        if !fields.stick_slip.is_null() {
+            let stick_slip = |i: usize| if found.is_some() { stick_slip[i] } else { EXTERIOR };
             // SAFETY: likewise.
-            unsafe { (0..n).for_each(|i| fields.adhesion.add(i).write(adhesion(i))) };
+            unsafe { (0..n).for_each(|i| fields.stick_slip.add(i).write(stick_slip(i))) };
         }
     }
 
@@ -175,9 +184,9 @@ impl Outputs {
         let Some(given) = &self.given_report else { return Ok(()) };
         // Where there is not room for all, those of the finest grids.
         let skipped = rows.len().saturating_sub(self.ledger_capacity());
-        for (i, row) in rows[skipped..].iter().enumerate() {
+        if let Some(ledger) = &self.ledger {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
-            unsafe { given.ledger.add(i).write(row.into()) };
+            rows[skipped..].iter().enumerate().for_each(|(i, row)| unsafe { ledger.write(i, &row.into()) });
         }
         let report = contact_normal_report::of(report, rows.len(), given);
         // SAFETY: not null: a struct that declares its size.

@@ -7,7 +7,7 @@ use super::options::{self, contact_normal_options};
 use super::scene::{contact_normal_scene, Named};
 use super::solve::Conclusion;
 use super::status::{contact_normal_status, Refusal};
-use super::structs::{self, Versioned};
+use super::structs::{self, versioned, Rows, Versioned};
 use crate::solver::{cost_of_accuracy, Obstacle, Price, Quantity, SurfaceCallback};
 
 /// `quantity`: the force, or the approach where the force is prescribed.
@@ -34,6 +34,8 @@ pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_price {
+    /// Set by `contact_normal_price_init`, which the first row of an array needs, and by the call.
+    pub struct_size: i64,
     /// The relative error that is wanted, between 0 and 1.
     pub target: f64,
     /// Relative error that the grid and the tolerance leave; < 0: not known.
@@ -60,11 +62,14 @@ pub struct contact_normal_price {
     pub reserved: i32,
 }
 
+versioned! { contact_normal_price, contact_normal_price_init, 88, error: -1.0, seconds: -1.0, seconds_one_thread: -1.0 }
+
 impl From<&Price> for contact_normal_price {
     fn from(price: &Price) -> Self {
         // Grids beyond what an int holds are none.
         let count = |n: usize| i32::try_from(n).unwrap_or(0);
         contact_normal_price {
+            struct_size: size_of::<contact_normal_price>() as i64,
             target: price.target,
             error: price.error,
             tolerance: price.tolerance,
@@ -88,7 +93,8 @@ impl From<&Price> for contact_normal_price {
     }
 }
 
-/// Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`. The scene is solved on small
+/// Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
+/// `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
 /// grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
 /// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
 /// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
@@ -115,9 +121,8 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
                 required("targets", targets, n)?,
             )
         };
-        if rows.is_null() {
-            return Err(Refusal::null("rows"));
-        }
+        // SAFETY: NULL or rows of which the first declares its size.
+        let written = unsafe { Rows::of(rows, "rows")? };
         let mut regions = Regions::default();
         named.add_to(&mut regions, scene)?;
         translated.add_to(&mut regions, options)?;
@@ -125,7 +130,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
             regions.input_struct(accuracy, given)?;
         }
         regions.input("targets", targets.as_ptr(), n)?;
-        regions.output("rows", rows, n)?;
+        regions.output_rows("rows", rows, &written, n)?;
         regions.check()?;
         let given = given.unwrap_or_else(contact_normal_accuracy::defaults);
         // SAFETY: as above.
@@ -150,7 +155,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         let (stop, prices) = cost_of_accuracy(&scene, &translated.options, &asked, (quantity, &targets), surface)?;
         for (i, price) in prices.iter().enumerate() {
             // SAFETY: the caller has n rows.
-            unsafe { rows.add(i).write(price.into()) };
+            unsafe { written.write(i, &price.into()) };
         }
         Conclusion { status: stop.into(), message: "the surface callback cancelled".into() }.conclude()
     })

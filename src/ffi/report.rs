@@ -1,6 +1,7 @@
 //! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
 
-use super::structs::{self, versioned, Versioned};
+use super::structs::{versioned, Versioned};
+use crate::friction;
 use crate::solver::{LedgerRow, Limit, Progress, Report};
 
 /// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
@@ -22,11 +23,11 @@ pub struct contact_normal_fields {
     pub traction: [*mut f64; 2],
     /// With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
     pub slip: [*mut f64; 2],
-    /// With friction: CONTACT_NORMAL_ADHESION_... of each element; EXTERIOR without friction.
-    pub adhesion: *mut i32,
+    /// With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
+    pub stick_slip: *mut i32,
 }
 
-versioned! { contact_normal_fields, 40 }
+versioned! { contact_normal_fields, contact_normal_fields_init, 80 }
 
 /// `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
 pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
@@ -45,8 +46,10 @@ pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
 /// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
 /// known, and if the bit is set in `untrusted`, not to be known from these grids.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct contact_normal_ledger_row {
+    /// Set by `contact_normal_ledger_row_init`, which the first row of an array needs, and by the solve.
+    pub struct_size: i64,
     /// Elements in x of the grid.
     pub mx: i32,
     /// Elements in y.
@@ -87,16 +90,24 @@ pub struct contact_normal_ledger_row {
     pub reserved: i32,
 }
 
+versioned! { contact_normal_ledger_row, contact_normal_ledger_row_init, 144 }
+
 /// Copies members of the same name, converted as C has them.
 macro_rules! copy {
     ($from:expr => $to:ident: $($member:ident),+) => { $($to.$member = $from.$member as _;)+ };
 }
 
-/// Sets what rows of the ledger and reports both have.
-macro_rules! set_result {
-    ($to:ident, $measures:expr, $error:expr) => {
+/// Sets what rows of the ledger and reports both have of the result.
+macro_rules! set_measures {
+    ($to:ident, $measures:expr) => {
         copy!($measures.certificate => $to: residual);
         copy!($measures => $to: approach, force, max_pressure, contact_area, corrected_area, contact_count);
+    };
+}
+
+/// And of its errors.
+macro_rules! set_errors {
+    ($to:ident, $error:expr) => {
         copy!($error => $to: untrusted);
         ($to.error_force, $to.error_max_pressure) = ($error.force, $error.max_pressure);
         ($to.error_contact_area, $to.error_corrected_area) = ($error.contact_area, $error.corrected_area);
@@ -106,19 +117,111 @@ macro_rules! set_result {
 
 impl From<&LedgerRow> for contact_normal_ledger_row {
     fn from(row: &LedgerRow) -> Self {
-        let mut to = Self::default();
+        let mut to = Self::defaults();
         copy!(row => to: mx, my, cycles, seconds, work_units);
-        set_result!(to, row.measures, row.error);
+        set_measures!(to, row.measures);
+        set_errors!(to, row.error);
         to
     }
 }
 
-/// What a solve found and what it cost. Written only when the status is >= 0.
+/// What was found of the normal problem: a group of `contact_normal_report`.
 #[repr(C)]
-#[derive(Clone, Copy)]
-pub struct contact_normal_report {
-    /// Set by `contact_normal_report_init`.
-    pub struct_size: i64,
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_report_normal {
+    /// Approach.
+    pub approach: f64,
+    /// Sum of p dx dy.
+    pub force: f64,
+    /// Largest pressure.
+    pub max_pressure: f64,
+    /// Smallest pressure.
+    pub min_pressure: f64,
+    /// Contact area: that of the elements in contact.
+    pub contact_area: f64,
+    /// Contact area, corrected for the elements along its outline; < 0: not known.
+    pub corrected_area: f64,
+    /// Elements in contact.
+    pub contact_count: i64,
+    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+    pub edge_count: i64,
+    /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
+    /// an accuracy asks for.
+    pub tolerance: f64,
+    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+    pub residual: f64,
+    /// Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
+    pub violation: f64,
+    /// `sum of p |e| / sum of p |u|`.
+    pub complementarity: f64,
+    /// rms over C of the last change of p.
+    pub update: f64,
+    /// Room for later versions: 0.
+    pub reserved: [f64; 8],
+}
+
+/// What was found of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_report_tangential {
+    /// The sum of q dx dy in x and y, on body 1.
+    pub force: [f64; 2],
+    /// The sum of (x qy - y qx) dx dy about the centre of spin.
+    pub moment: f64,
+    /// Creepages in x and y, given or found.
+    pub creepage: [f64; 2],
+    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
+    /// steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
+    /// round-off leaves); with a fresh product in double precision.
+    pub residual: f64,
+    /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+    pub gap: f64,
+    /// Elements that stick.
+    pub stick_count: i64,
+    /// Elements that slip.
+    pub slip_count: i64,
+    /// If `friction->sensitivities` is 1, else 0: derivatives of `force` in x, in y and of `moment`, each by the creepages in x and y and by
+    /// the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow the tractions, but
+    /// those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
+    pub sensitivities: [f64; 9],
+    /// Room for later versions: 0.
+    pub reserved: [f64; 8],
+}
+
+/// How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
+/// ledger; they are absolute, and < 0 where they are not known.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_report_accuracy {
+    /// Estimated error of the force (of the approach, when the force is prescribed).
+    pub error_force: f64,
+    /// Of the largest pressure.
+    pub error_max_pressure: f64,
+    /// Of the contact area.
+    pub error_contact_area: f64,
+    /// Of the corrected area.
+    pub error_corrected_area: f64,
+    /// Of the pressures: rms of the error over that of p.
+    pub error_pressure: f64,
+    /// Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
+    /// shifts from rest, and for bodies that are alike of steady rolling from rest.
+    pub error_tangential: [f64; 2],
+    /// CONTACT_NORMAL_UNTRUSTED_... bits.
+    pub untrusted: i32,
+    /// What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+    pub limited_by: i32,
+    /// About the seconds of a solve with elements of half the size; < 0: not known.
+    pub halved_seconds: f64,
+    /// And the error of the force (or the approach) that it would leave.
+    pub halved_error_force: f64,
+    /// Room for later versions: 0.
+    pub reserved: [f64; 8],
+}
+
+/// What it cost: a group of `contact_normal_report`.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_report_statistics {
     /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
     pub cycles: i64,
     /// Active-set steps on the finest grid.
@@ -129,99 +232,57 @@ pub struct contact_normal_report {
     pub matrix_products: i64,
     /// Products on all grids, in products on the finest.
     pub work_units: f64,
-    /// rms over C of the last change of p.
-    pub update: f64,
-    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
-    pub residual: f64,
-    /// Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
-    pub violation: f64,
-    /// `sum of p |e| / sum of p |u|`.
-    pub complementarity: f64,
-    /// Smallest pressure.
-    pub min_pressure: f64,
-    /// Approach.
-    pub approach: f64,
-    /// Sum of p dx dy.
-    pub force: f64,
-    /// Largest pressure.
-    pub max_pressure: f64,
-    /// Contact area.
-    pub contact_area: f64,
-    /// Elements in contact.
-    pub contact_count: i64,
-    /// Estimated error of the force (of the approach, when the force is prescribed), absolute; < 0: not known. Errors are estimated
-    /// after a start from nothing, and after any start if there is a ledger.
-    pub error_force: f64,
-    /// Of the largest pressure.
-    pub error_max_pressure: f64,
-    /// Of the contact area.
-    pub error_contact_area: f64,
+    /// With friction: products of two components on all grids, in products on the finest.
+    pub tangential_products: f64,
     /// Seconds of set-up: 0 for later solves with a handle.
     pub setup_seconds: f64,
     /// Seconds of the solve.
     pub solve_seconds: f64,
+    /// Seconds of the tangential problem, which are part of `solve_seconds`.
+    pub tangential_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: i64,
+    /// Room for later versions: 0.
+    pub reserved: [f64; 8],
+}
+
+/// What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
+/// where the library does not know what a newer header has there; later groups come at the end of the report.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_report {
+    /// Set by `contact_normal_report_init`.
+    pub struct_size: i64,
     /// Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
     pub ledger_rows: i64,
     /// In: room in `ledger`; default 0.
     pub ledger_capacity: i64,
-    /// In: the caller's array, or NULL (default).
+    /// In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
     pub ledger: *mut contact_normal_ledger_row,
-    /// Contact area, corrected for the elements along its outline; < 0: not known.
-    pub corrected_area: f64,
-    /// Estimated error of the corrected area.
-    pub error_corrected_area: f64,
-    /// Of the pressures: rms of the error over that of p.
-    pub error_pressure: f64,
-    /// CONTACT_NORMAL_UNTRUSTED_... bits.
-    pub untrusted: i32,
-    /// What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
-    pub limited_by: i32,
-    /// About the seconds of a solve with elements of half the size; < 0: not known.
-    pub halved_seconds: f64,
-    /// And the error of the force (or the approach) that it would leave.
-    pub halved_error_force: f64,
-    /// Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
-    pub edge_count: i64,
-    /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
-    /// an accuracy asks for.
-    pub tolerance: f64,
-    /// With friction, as are the following: the sum of q dx dy in x and y, on body 1.
-    pub tangential_force: [f64; 2],
-    /// The sum of (x qy - y qx) dx dy about the centre of spin.
-    pub tangential_moment: f64,
-    /// Creepages in x and y, given or found.
-    pub creepage: [f64; 2],
-    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
-    /// steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
-    /// round-off leaves); with a fresh product in double precision.
-    pub tangential_residual: f64,
-    /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
-    pub tangential_gap: f64,
-    /// Elements that stick.
-    pub stick_count: i64,
-    /// Elements that slip.
-    pub slip_count: i64,
-    /// Products of two components on all grids, in products on the finest.
-    pub tangential_products: f64,
-    /// Seconds of the tangential problem, which are part of `solve_seconds`.
-    pub tangential_seconds: f64,
-    /// If `friction->sensitivities` is 1, else 0: derivatives of `tangential_force` in x, in y and of `tangential_moment`, each by the
-    /// creepages in x and y and by the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow
-    /// the tractions, but those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
-    pub sensitivities: [f64; 9],
-    /// Estimated errors of `tangential_force` in x and y, absolute, or of `creepage` where the force is prescribed; < 0: not known.
-    /// They are estimated when `error_force` is, of shifts from rest, and for bodies that are alike of steady rolling from rest.
-    pub error_tangential: [f64; 2],
+    /// What was found of the normal problem.
+    pub normal: contact_normal_report_normal,
+    /// What was found of the tangential problem.
+    pub tangential: contact_normal_report_tangential,
+    /// How wrong it is.
+    pub accuracy: contact_normal_report_accuracy,
+    /// What it cost.
+    pub statistics: contact_normal_report_statistics,
 }
 
 versioned! {
-    contact_normal_report, 264,
-    error_force: -1.0, error_max_pressure: -1.0, error_contact_area: -1.0, error_pressure: -1.0,
-    corrected_area: -1.0, error_corrected_area: -1.0,
-    halved_seconds: -1.0, halved_error_force: -1.0,
-    error_tangential: [-1.0; 2],
+    contact_normal_report, contact_normal_report_init, 696,
+    normal: contact_normal_report_normal { corrected_area: -1.0, ..Default::default() },
+    accuracy: contact_normal_report_accuracy {
+        error_force: -1.0,
+        error_max_pressure: -1.0,
+        error_contact_area: -1.0,
+        error_corrected_area: -1.0,
+        error_pressure: -1.0,
+        error_tangential: [-1.0; 2],
+        halved_seconds: -1.0,
+        halved_error_force: -1.0,
+        ..Default::default()
+    },
 }
 
 impl contact_normal_report {
@@ -229,27 +290,48 @@ impl contact_normal_report {
     pub(super) fn of(report: &Report, ledger_rows: usize, given: &Self) -> Self {
         let mut to = Self { ledger_rows: ledger_rows as i64, ..Self::defaults() };
         (to.ledger, to.ledger_capacity) = (given.ledger, given.ledger_capacity);
-        copy!(report.count => to: cycles, active_set_steps, active_set_changes, matrix_products, work_units, update);
-        copy!(report.measures.certificate => to: violation, complementarity, min_pressure);
-        copy!(report.measures => to: edge_count);
-        copy!(report => to: setup_seconds, solve_seconds, bytes, tolerance);
-        set_result!(to, report.measures, report.error);
-        (to.halved_seconds, to.halved_error_force) = (report.halving.seconds, report.halving.force);
+        to.normal.set(report);
+        to.accuracy.set(report);
+        let statistics = &mut to.statistics;
+        copy!(report.count => statistics: cycles, active_set_steps, active_set_changes, matrix_products, work_units);
+        copy!(report => statistics: setup_seconds, solve_seconds, bytes);
         if let Some(found) = &report.friction {
-            (to.tangential_force, to.tangential_moment, to.creepage) = (found.force, found.moment, found.creepage);
-            (to.tangential_residual, to.tangential_gap) = (found.certificate.residual, found.certificate.gap);
-            copy!(found.certificate => to: stick_count, slip_count);
-            (to.tangential_products, to.tangential_seconds) = (found.products, found.seconds);
-            to.error_tangential = found.error;
-            let sensitivities = found.sensitivities.iter().flatten().flatten();
-            to.sensitivities.iter_mut().zip(sensitivities).for_each(|(to, from)| *to = *from);
+            (statistics.tangential_products, statistics.tangential_seconds) = (found.products, found.seconds);
+            to.accuracy.error_tangential = found.error;
+            to.tangential.set(found);
         }
-        to.limited_by = match report.limit {
+        to
+    }
+}
+
+impl contact_normal_report_normal {
+    fn set(&mut self, report: &Report) {
+        copy!(report.measures.certificate => self: violation, complementarity, min_pressure);
+        copy!(report.measures => self: edge_count);
+        copy!(report => self: tolerance);
+        copy!(report.count => self: update);
+        set_measures!(self, report.measures);
+    }
+}
+
+impl contact_normal_report_tangential {
+    fn set(&mut self, found: &friction::Report) {
+        copy!(found => self: force, moment, creepage);
+        copy!(found.certificate => self: residual, gap, stick_count, slip_count);
+        let sensitivities = found.sensitivities.iter().flatten().flatten();
+        self.sensitivities.iter_mut().zip(sensitivities).for_each(|(to, from)| *to = *from);
+    }
+}
+
+impl contact_normal_report_accuracy {
+    fn set(&mut self, report: &Report) {
+        set_errors!(self, report.error);
+        (self.halved_seconds, self.halved_error_force) = (report.halving.seconds, report.halving.force);
+        self.limited_by = match report.limit {
             Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
             Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
             Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
         };
-        to
     }
 }
 
@@ -283,18 +365,4 @@ impl From<&Progress> for contact_normal_progress {
         copy!(progress => to: mx, my, cycles, active_set_changes, seconds, work_units, update, residual);
         to
     }
-}
-
-/// Fills fields with NULL: nothing is wanted. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_fields_init(fields: *mut contact_normal_fields) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(fields) }
-}
-
-/// Fills a report with nothing, without a ledger. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_report_init(report: *mut contact_normal_report) {
-    // SAFETY: as above.
-    unsafe { structs::init(report) }
 }

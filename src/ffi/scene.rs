@@ -33,7 +33,7 @@ pub struct contact_normal_scene {
     pub dx: f64,
     /// Element size in y; default 0: to be set.
     pub dy: f64,
-    /// h, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
+    /// h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
     /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
     pub shear_modulus: [f64; 2],
@@ -43,7 +43,7 @@ pub struct contact_normal_scene {
     pub load: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Prescribed approach (penetration): a length; default 0. Not read when the force is prescribed.
+    /// Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
     pub approach: f64,
     /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
     pub force: f64,
@@ -59,20 +59,13 @@ pub struct contact_normal_scene {
     pub patches: *const contact_normal_patches,
     /// Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
     pub row_tables: *const contact_normal_row_tables,
-    /// Effect, or NULL (default): a coating on body 1, on body 2. The elastic constants are then those of the bodies below.
+    /// Effect, or NULL (default): a coating on body 1 (`coating[0]`), on body 2. The elastic constants are then those of the bodies below.
     pub coating: [*const contact_normal_coating; 2],
     /// Effect, or NULL (default): friction between the bodies.
     pub friction: *const contact_normal_friction,
 }
 
-versioned! { contact_normal_scene, 144 }
-
-/// Fills a scene with nothing: sizes, elastic constants and the undeformed distance have to be set. Since 0.1.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_scene_init(scene: *mut contact_normal_scene) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(scene) }
-}
+versioned! { contact_normal_scene, contact_normal_scene_init, 168 }
 
 /// The load that the constants and values of the boundary mean.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {

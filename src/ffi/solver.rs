@@ -70,8 +70,8 @@ impl Drop for InUse<'_> {
     }
 }
 
-/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the smoother, sweeps,
-/// relaxation, coarsest, precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
+/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
+/// precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
 /// valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
 /// Since 0.1.
 #[no_mangle]
@@ -168,10 +168,10 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
     })
 }
 
-/// Frees a solver. In a callback of a call that uses it nothing is freed: free it after that call. The library keeps up to 512 MiB of what
+/// Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. The library keeps up to 512 MiB of what
 /// solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
 #[no_mangle]
-pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) {
+pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) -> contact_normal_status {
     guard(|| {
         if solver.is_null() {
             memory::release();
@@ -182,5 +182,5 @@ pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_
         // SAFETY: made by `holding`, in no other use, and not used after this.
         drop(unsafe { Box::from_raw(solver) });
         Ok(CONTACT_NORMAL_OK)
-    });
+    })
 }

@@ -5,6 +5,7 @@ use super::guard::guard;
 use super::influence::table_size;
 use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use super::structs::{self, versioned};
 use crate::analytic::{self, Hertz};
 use crate::error::require;
 use crate::grid::Grid;
@@ -14,8 +15,10 @@ use crate::scene::{Bodies, Load};
 
 /// The exact Hertz solution.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct contact_normal_hertz_solution {
+    /// Set by `contact_normal_hertz_solution_init`.
+    pub struct_size: i64,
     /// Semi-axis of the contact ellipse in x.
     pub semi_axis_x: f64,
     /// Semi-axis in y.
@@ -29,6 +32,8 @@ pub struct contact_normal_hertz_solution {
     /// Area of the ellipse.
     pub area: f64,
 }
+
+versioned! { contact_normal_hertz_solution, contact_normal_hertz_solution_init, 56 }
 
 /// The bodies of two values each.
 unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
@@ -53,9 +58,8 @@ pub unsafe extern "C" fn contact_normal_hertz(
     solution: *mut contact_normal_hertz_solution,
 ) -> contact_normal_status {
     guard(|| {
-        if solution.is_null() {
-            return Err(Refusal::null("solution"));
-        }
+        // SAFETY: NULL or a struct that declares its size.
+        let mut value = unsafe { structs::read(solution.cast_const(), "solution")? };
         // SAFETY: NULL or two values each, by the conventions of the ABI.
         let compliance = unsafe { bodies(shear_modulus, poisson_ratio)? }.compliance();
         let (name, exact): (_, fn(f64, f64, f64, f64) -> _) = match load_of(load, amount, amount)? {
@@ -65,9 +69,10 @@ pub unsafe extern "C" fn contact_normal_hertz(
         require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;
         let Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force, area } =
             exact(curvature_x, curvature_y, amount, compliance)?;
-        let value = contact_normal_hertz_solution { semi_axis_x, semi_axis_y, max_pressure, approach, force, area };
-        // SAFETY: not null: room for the struct.
-        unsafe { solution.write(value) };
+        (value.semi_axis_x, value.semi_axis_y, value.area) = (semi_axis_x, semi_axis_y, area);
+        (value.max_pressure, value.approach, value.force) = (max_pressure, approach, force);
+        // SAFETY: it declares its size.
+        unsafe { structs::write(solution, &value)? };
         Ok(CONTACT_NORMAL_OK)
     })
 }

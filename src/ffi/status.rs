@@ -39,7 +39,7 @@ pub const CONTACT_NORMAL_OUT_OF_MEMORY: i32 = -8;
 pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 
 /// Version of the ABI: grows with every release that adds to it.
-pub const CONTACT_NORMAL_ABI_VERSION: i32 = 1;
+pub const CONTACT_NORMAL_ABI_VERSION: i32 = 2;
 
 /// A refusal at the boundary.
 #[derive(Clone, Debug)]

@@ -55,8 +55,8 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
     })
 }
 
-/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the outer corner of element (0, 0), so
-/// that element (ix, iy) has its centre at ((ix + 1/2) dx, (iy + 1/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
+/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
+/// element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
 /// yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
 /// `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
 /// Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
@@ -181,8 +181,9 @@ fn run(
     })?;
     for (found, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
         if let (Some(found), false) = (found, to.is_null()) {
-            // SAFETY: not null: room for one, by the conventions of the ABI.
-            unsafe { to.write(contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid)) };
+            let largest = contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid);
+            // SAFETY: not null: a struct that declares its size, which was checked.
+            unsafe { structs::write(to, &largest)? };
         }
     }
     if !all {

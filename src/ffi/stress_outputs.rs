@@ -8,11 +8,13 @@ use crate::stress::{Depth, Maximum, Wanted};
 
 /// The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct contact_normal_stress_maximum {
+    /// Set by `contact_normal_stress_maximum_init`.
+    pub struct_size: i64,
     /// The value.
     pub value: f64,
-    /// Its place, from the outer corner of element (0, 0): (ix + 1/2) dx.
+    /// Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
     pub x: f64,
     /// The same in y.
     pub y: f64,
@@ -27,6 +29,8 @@ pub struct contact_normal_stress_maximum {
     /// Always 0.
     pub reserved: i32,
 }
+
+versioned! { contact_normal_stress_maximum, contact_normal_stress_maximum_init, 56 }
 
 /// Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
 #[repr(C)]
@@ -50,23 +54,17 @@ pub struct contact_normal_stress_outputs {
     pub largest_shear: *mut contact_normal_stress_maximum,
 }
 
-versioned! { contact_normal_stress_outputs, 136 }
-
-/// Fills outputs with NULL: nothing is wanted. Since 0.2.
-#[no_mangle]
-pub unsafe extern "C" fn contact_normal_stress_outputs_init(outputs: *mut contact_normal_stress_outputs) {
-    // SAFETY: NULL or a whole struct, by the conventions of the ABI.
-    unsafe { structs::init(outputs) }
-}
+versioned! { contact_normal_stress_outputs, contact_normal_stress_outputs_init, 136 }
 
 impl contact_normal_stress_maximum {
     pub(super) fn new(found: &Maximum, z: f64, grid: &Grid) -> contact_normal_stress_maximum {
         let Maximum { value, depth, ix, iy } = *found;
-        let place = |k: usize, d: f64| (k as f64 + 0.5) * d;
+        let place = |k: usize, m: usize, d: f64| (k as f64 + 0.5 - 0.5 * m as f64) * d;
         contact_normal_stress_maximum {
+            struct_size: size_of::<contact_normal_stress_maximum>() as i64,
             value,
-            x: place(ix, grid.dx),
-            y: place(iy, grid.dy),
+            x: place(ix, grid.mx, grid.dx),
+            y: place(iy, grid.my, grid.dy),
             z,
             ix: ix as i32,
             iy: iy as i32,
@@ -105,8 +103,14 @@ impl contact_normal_stress_outputs {
             regions.output("principal", stress, count)?;
             regions.output("directions", direction, count.saturating_mul(3))?;
         }
-        regions.output("largest_von_mises", self.largest_von_mises, 1)?;
-        regions.output("largest_shear", self.largest_shear, 1)
+        let largest = [("largest_von_mises", self.largest_von_mises), ("largest_shear", self.largest_shear)];
+        for (name, at) in largest {
+            // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+            if let Some(given) = unsafe { structs::read_optional(at.cast_const(), name)? } {
+                regions.output_struct(at, &given)?;
+            }
+        }
+        Ok(())
     }
 
     /// Writes what is wanted of depth k.

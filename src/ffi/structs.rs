@@ -1,5 +1,5 @@
-//! Structs that grow: each begins with its size, set by its `_init`. Shorter ones (of an older header, from 0.1 on) and longer
-//! ones (of a newer header, if what we do not know is zero) are accepted.
+//! Structs that grow: each begins with the size that it has in the caller's header, which its `_init` sets. Shorter ones (of an older
+//! header, from 0.2 on) and longer ones (of a newer header, if what we do not know is zero) are accepted.
 
 use std::mem::size_of;
 
@@ -15,7 +15,8 @@ pub unsafe trait Versioned: Copy {
     const NAME: &'static str;
     /// Its size in the first version that had it: never changes again.
     const FIRST_SIZE: usize;
-    /// What its `_init` writes.
+    /// What its `_init` writes. Members beyond the first size are 0: so a newer program that leaves them alone does not ask an older
+    /// library for anything.
     fn defaults() -> Self;
 
     /// What it is called in messages.
@@ -25,9 +26,9 @@ pub unsafe trait Versioned: Copy {
 }
 
 /// Makes a struct [`Versioned`] that is what that asks for: `struct_size` first, integers, floats, raw pointers and optional function
-/// pointers only. Gives its size in the first version that had it, and the defaults that are not 0 or NULL.
+/// pointers only. Gives its size in the first version that had it, its `_init` for Rust, and the defaults that are not 0 or NULL.
 macro_rules! versioned {
-    ($name:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
+    ($name:ident, $init:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
         // SAFETY: by the struct, see above.
         unsafe impl $crate::ffi::structs::Versioned for $name {
             const NAME: &'static str = stringify!($name);
@@ -39,6 +40,18 @@ macro_rules! versioned {
                 $(defaults.$member = $value;)*
                 defaults
             }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                $crate::ffi::structs::Versioned::defaults()
+            }
+        }
+
+        #[doc = concat!("Fills a `", stringify!($name), "` with the defaults: the function of this name in the header, for Rust.")]
+        pub unsafe extern "C" fn $init(to: *mut $name) {
+            // SAFETY: NULL or a whole struct, by the conventions of the ABI.
+            unsafe { $crate::ffi::structs::init(to, size_of::<$name>() as i64) }
         }
     };
 }
@@ -67,7 +80,12 @@ pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> 
     for i in size_of::<T>()..size {
         // SAFETY: the caller declares `size` bytes.
         if unsafe { from.cast::<u8>().add(i).read() } != 0 {
-            return refuse("it sets members that this version of the library does not know");
+            let (byte, version) = (i / 8 * 8, env!("CARGO_PKG_VERSION"));
+            return Err(Refusal::struct_size(format!(
+                "{name} sets the member at byte {byte}, which version {version} of the library does not know: use a newer one \
+                 (struct_size is {declared}; or was {}_init not called?)",
+                T::NAME
+            )));
         }
     }
     Ok(size)
@@ -112,12 +130,197 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// Writes the defaults: the body of every `_init`. NULL is ignored.
-pub unsafe fn init<T: Versioned>(to: *mut T) {
+/// An array of structs of the caller's, which are written: it is as far from one to the next as the first one says. The others need no
+/// `_init`.
+pub struct Rows<T> {
+    first: *mut T,
+    stride: usize,
+}
+
+impl<T: Versioned> Rows<T> {
+    /// `first`: NULL, which is refused, or a struct that declares its size.
+    pub unsafe fn of(first: *mut T, name: &str) -> Result<Rows<T>, Refusal> {
+        // SAFETY: by the caller.
+        Ok(Rows { first, stride: unsafe { declared_size(first.cast_const(), name)? } })
+    }
+
+    /// Bytes of so many.
+    pub fn bytes(&self, count: usize) -> usize {
+        self.stride.saturating_mul(count)
+    }
+
+    /// Writes all of row `i`, with 0 into what we do not know of it.
+    pub unsafe fn write(&self, i: usize, value: &T) {
+        let (stride, known) = (self.stride, self.stride.min(size_of::<T>()));
+        // SAFETY (all): the caller's array has more than `i` rows of `stride` bytes, and a Versioned is bytes.
+        unsafe {
+            let to = self.first.cast::<u8>().add(i * stride);
+            to.write_bytes(0, stride);
+            to.copy_from_nonoverlapping((&raw const *value).cast::<u8>(), known);
+            to.cast::<i64>().write_unaligned(stride as i64);
+        }
+    }
+}
+
+/// Writes the defaults into a struct that has `size` bytes in the caller's header: no more than these, and 0 into what we do not know.
+/// NULL is ignored.
+pub unsafe fn init<T: Versioned>(to: *mut T, size: i64) {
     // Every struct has an `_init`, so every struct is checked here: it may grow, never shrink below its first size.
     const { assert!(size_of::<T>() >= T::FIRST_SIZE && T::FIRST_SIZE % 8 == 0 && size_of::<T>() <= LARGEST) };
-    if !to.is_null() {
-        // SAFETY: not null, and `_init` is documented to fill a whole struct of this version.
-        unsafe { to.write_unaligned(T::defaults()) };
+    let defaults = T::defaults();
+    // SAFETY: a Versioned is bytes; NULL or `size` bytes, by the caller.
+    unsafe {
+        let bytes = std::slice::from_raw_parts((&raw const defaults).cast::<u8>(), size_of::<T>());
+        init_bytes(to.cast(), bytes, size);
+    }
+}
+
+/// The same of a struct that is not known at all: its size, then 0.
+pub unsafe fn init_unknown(to: *mut u8, size: i64) {
+    // SAFETY: by the caller.
+    unsafe { init_bytes(to, &[], size) }
+}
+
+unsafe fn init_bytes(to: *mut u8, defaults: &[u8], size: i64) {
+    const SIZE: usize = size_of::<i64>();
+    // What is longer than any struct is refused by the calls that read it.
+    let room = usize::try_from(size).unwrap_or(0).min(LARGEST);
+    if to.is_null() || room < SIZE {
+        return;
+    }
+    let known = defaults.len().min(room);
+    // SAFETY: `room` bytes of the caller's.
+    unsafe {
+        to.write_bytes(0, room);
+        to.copy_from_nonoverlapping(defaults.as_ptr(), known);
+        to.cast::<i64>().write_unaligned(size);
+    }
+}
+
+#[cfg(test)]
+#[allow(dead_code)] // what the macro makes beside
+mod tests {
+    use super::*;
+
+    /// A struct in the first version that had it, and in a later one.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct contact_normal_first {
+        pub struct_size: i64,
+        pub tolerance: f64,
+    }
+
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct contact_normal_later {
+        pub struct_size: i64,
+        pub tolerance: f64,
+        pub limit: f64,
+        pub count: i64,
+    }
+
+    versioned! { contact_normal_first, first_init, 16, tolerance: 1e-6 }
+    versioned! { contact_normal_later, later_init, 16, tolerance: 1e-6 }
+
+    /// Memory of the caller's, with what stood there before.
+    #[repr(C, align(8))]
+    struct Room([u8; 64]);
+
+    fn room() -> Room {
+        Room([0xAB; 64])
+    }
+
+    impl Room {
+        fn at<T>(&mut self) -> *mut T {
+            (&raw mut self.0).cast()
+        }
+    }
+
+    #[test]
+    fn an_older_program_on_a_newer_library() {
+        let mut caller = room();
+        // SAFETY (all): the caller's struct has 16 bytes and declares so.
+        unsafe {
+            init(caller.at::<contact_normal_later>(), 16);
+            assert_eq!(caller.0[16..], [0xAB; 48], "nothing is written beyond the caller's struct");
+            assert_eq!(
+                caller.at::<contact_normal_first>().read(),
+                contact_normal_first { struct_size: 16, tolerance: 1e-6 }
+            );
+            let read = read(caller.at::<contact_normal_later>(), "options").expect("an older struct");
+            assert_eq!(read, contact_normal_later { struct_size: 16, tolerance: 1e-6, limit: 0.0, count: 0 });
+            let found = contact_normal_later { struct_size: 32, tolerance: 0.5, limit: 1.0, count: 2 };
+            write(caller.at::<contact_normal_later>(), &found).expect("an older struct");
+            assert_eq!(caller.0[16..], [0xAB; 48], "nothing is written beyond the caller's struct");
+            assert_eq!(
+                caller.at::<contact_normal_first>().read(),
+                contact_normal_first { struct_size: 16, tolerance: 0.5 }
+            );
+        }
+    }
+
+    #[test]
+    fn a_newer_program_on_an_older_library() {
+        let mut caller = room();
+        // SAFETY (all): the caller's struct has 32 bytes and declares so.
+        unsafe {
+            init(caller.at::<contact_normal_first>(), 32);
+            assert_eq!(caller.0[32..], [0xAB; 32]);
+            let newer = caller.at::<contact_normal_later>();
+            assert_eq!(newer.read(), contact_normal_later { struct_size: 32, tolerance: 1e-6, limit: 0.0, count: 0 });
+            let read_by_older = read(caller.at::<contact_normal_first>(), "options").expect("nothing new is set");
+            assert_eq!(read_by_older.tolerance, 1e-6);
+            (*newer).count = 1;
+            let refused = read(caller.at::<contact_normal_first>(), "options").expect_err("a new member is set");
+            assert!(refused.message.contains("options sets the member at byte 24"), "{}", refused.message);
+        }
+    }
+
+    #[test]
+    fn a_struct_that_an_older_library_does_not_know_is_zero() {
+        let mut caller = room();
+        // SAFETY: it has 24 bytes.
+        unsafe { init_unknown(caller.at(), 24) };
+        assert_eq!(caller.0[..8], 24i64.to_ne_bytes());
+        assert_eq!(caller.0[8..24], [0; 16]);
+        assert_eq!(caller.0[24..], [0xAB; 40]);
+    }
+
+    #[test]
+    fn rows_are_as_far_apart_as_the_first_says() {
+        let value = contact_normal_later { struct_size: 32, tolerance: 0.5, limit: 1.0, count: 2 };
+        // Older rows of 16 bytes, and rows of a newer header of 24.
+        for size in [16usize, 24] {
+            let mut caller = room();
+            // SAFETY (all): room for two rows of that size.
+            unsafe {
+                let first = caller.at::<contact_normal_first>();
+                init(first, size as i64);
+                let older = Rows::of(first, "rows").expect("a size");
+                older.write(1, &contact_normal_first { struct_size: 16, tolerance: 0.5 });
+                assert_eq!(older.bytes(2), 2 * size);
+                assert_eq!(
+                    first.byte_add(size).read(),
+                    contact_normal_first { struct_size: size as i64, tolerance: 0.5 }
+                );
+                let newer = Rows::of(caller.at::<contact_normal_later>(), "rows").expect("a size");
+                newer.write(0, &value);
+                assert_eq!(first.read(), contact_normal_first { struct_size: size as i64, tolerance: 0.5 });
+            }
+            assert_eq!(caller.0[2 * size..], room().0[2 * size..], "{size}");
+        }
+    }
+
+    #[test]
+    fn sizes_that_are_none_write_nothing() {
+        for size in [i64::MIN, -1, 0, 7] {
+            let mut caller = room();
+            // SAFETY (both): nothing is written.
+            unsafe {
+                init(caller.at::<contact_normal_later>(), size);
+                init(std::ptr::null_mut::<contact_normal_later>(), 32);
+            }
+            assert_eq!(caller.0, [0xAB; 64], "{size}");
+        }
     }
 }

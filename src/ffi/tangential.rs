@@ -13,7 +13,7 @@ use crate::solver::{solve_tangential, ProgressCallback};
 /// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
 /// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
 /// used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
-/// `adhesion` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
+/// `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve_tangential(
     scene: *const contact_normal_scene,

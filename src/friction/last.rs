@@ -14,24 +14,24 @@ pub struct Last {
 
 impl Drop for Last {
     fn drop(&mut self) {
-        let Solution { traction, slip, adhesion } = &mut self.solution;
+        let Solution { traction, slip, stick_slip } = &mut self.solution;
         keep([traction, slip]);
-        keep([adhesion]);
+        keep([stick_slip]);
     }
 }
 
 impl Solver {
     /// A copy of the last result, if there is one.
     pub fn last(&self) -> Result<Option<Last>> {
-        let Some(Solution { traction, slip, adhesion }) = self.solution() else { return Ok(None) };
+        let Some(Solution { traction, slip, stick_slip }) = self.solution() else { return Ok(None) };
         let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
             let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
             copy.copy_from_slice(field);
             Ok(copy)
         };
-        let mut sides = blank(adhesion.len(), 0, "the tractions before")?;
-        sides.copy_from_slice(adhesion);
-        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, adhesion: sides };
+        let mut sides = blank(stick_slip.len(), 0, "the tractions before")?;
+        sides.copy_from_slice(stick_slip);
+        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, stick_slip: sides };
         Ok(Some(Last { solution, offset: self.offset }))
     }
 

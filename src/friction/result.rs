@@ -17,7 +17,7 @@ impl Solver {
         window: Option<Window>,
         report: &mut Report,
     ) {
-        let Solution { traction, slip, adhesion } = &mut self.solution;
+        let Solution { traction, slip, stick_slip } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
@@ -39,10 +39,10 @@ impl Solver {
                     };
                 }
             });
-            threads.for_each_plain_row(adhesion, grid.mx, |iy, adhesion| {
-                adhesion.fill(EXTERIOR);
+            threads.for_each_plain_row(stick_slip, grid.mx, |iy, stick_slip| {
+                stick_slip.fill(EXTERIOR);
                 for (k, ix) in touching(iy) {
-                    adhesion[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
+                    stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
                 }
             });
             // Without friction all slips.
@@ -52,7 +52,7 @@ impl Solver {
         } else {
             traction.fill([0.0; 2]);
             slip.fill([0.0; 2]);
-            adhesion.fill(EXTERIOR);
+            stick_slip.fill(EXTERIOR);
         }
         for (k, prescribed) in friction.prescribed.iter().enumerate() {
             report.creepage[k] = match prescribed {

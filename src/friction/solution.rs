@@ -6,7 +6,7 @@ use super::Vector;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// What an element does: see [`Solution::adhesion`].
+/// What an element does: see [`Solution::stick_slip`].
 pub const EXTERIOR: i32 = 0;
 /// It sticks.
 pub const STICK: i32 = 1;
@@ -21,7 +21,7 @@ pub struct Solution {
     /// s of the step, body 1 over body 2, a length: 0 outside C.
     pub slip: Vec<Vector>,
     /// Of each element: exterior 0, stick 1, slip 2.
-    pub adhesion: Vec<i32>,
+    pub stick_slip: Vec<i32>,
 }
 
 /// What a solve found and what it cost.

@@ -61,9 +61,9 @@ struct Near {
 
 impl Drop for Solver {
     fn drop(&mut self) {
-        let Solution { traction, slip, adhesion } = &mut self.solution;
+        let Solution { traction, slip, stick_slip } = &mut self.solution;
         keep([traction, slip, &mut self.before]);
-        keep([adhesion]);
+        keep([stick_slip]);
     }
 }
 

@@ -143,7 +143,7 @@ impl Solved<'_> {
         let Coefficient::PerElement(mu) = friction.coefficient else { return 0.0 };
         let grid = &state.grid;
         let weight = |i: usize, j: usize| {
-            let slips = solution.adhesion[i] == SLIP || solution.adhesion[j] == SLIP;
+            let slips = solution.stick_slip[i] == SLIP || solution.stick_slip[j] == SLIP;
             if slips {
                 0.5 * (state.p[i].max(0.0) + state.p[j].max(0.0))
             } else {

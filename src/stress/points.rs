@@ -7,8 +7,8 @@ use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// The stresses at points `(x, y, z)`: x and y are counted from the outer corner of element (0, 0), so that element `(ix, iy)` has its
-/// centre at `((ix + 1/2) dx, (iy + 1/2) dy)`; z is the depth. `out` has one tensor per point.
+/// The stresses at points `(x, y, z)`: x and y are counted from the middle of the grid, so that element `(ix, iy)` has its centre at
+/// `((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy)`; z is the depth. `out` has one tensor per point.
 ///
 /// # Errors
 /// `Unsupported`: a period; `InvalidArgument`: a negative depth, a point on the edge of an element at the surface, to within rounding of its
@@ -39,7 +39,8 @@ fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Resul
     }
     require(z >= 0.0, &format!("z of point {i}"), z, "a depth must not be negative")?;
     let Grid { mx, my, dx, dy } = body.grid;
-    let (in_x, in_y) = (Line::of(x, dx, mx), Line::of(y, dy, my));
+    let [from_x, from_y, _] = from_corner(&body.grid, [x, y, z]);
+    let (in_x, in_y) = (Line::of(from_x, dx, mx), Line::of(from_y, dy, my));
     let is_at_surface = body.in_units(z) == 0.0 || z <= in_x.rounding.min(in_y.rounding);
     if is_at_surface && in_x.is_inside && in_y.is_inside && (in_x.is_on_edge || in_y.is_on_edge) {
         return invalid(format!(
@@ -76,8 +77,14 @@ impl Line {
     }
 }
 
-fn at_point(body: &Body, loads: &Loads<'_>, [x, y, z]: [f64; 3]) -> Tensor {
+/// The same place counted from the outer corner of element (0, 0).
+fn from_corner(grid: &Grid, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x + 0.5 * grid.mx as f64 * grid.dx, y + 0.5 * grid.my as f64 * grid.dy, z]
+}
+
+fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let (grid, (dx, dy)) = (&body.grid, body.element());
+    let [x, y, z] = from_corner(grid, point);
     let (loaded, list) = (loads.loaded(), loads.list());
     let scale = loads.scale();
     // Of patches on a common edge that of the element beyond.

@@ -22,9 +22,9 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
         (&["layer", "without"], INVALID, |c| c.use_layer().compliance = 1e-6),
         (&["period"], INVALID, |c| c.use_period(1, 0)),
         (&["patches", "without"], INVALID, |c| { c.use_patches(HALF); }),
-        (&["smoother"], INVALID, |c| c.options.known.smoother = CONTACT_NORMAL_SMOOTHER_JACOBI),
+        (&["smoother"], INVALID, |c| c.use_cycle().smoother = CONTACT_NORMAL_SMOOTHER_JACOBI),
         (&["threads is 2", "set up for 1"], INVALID, |c| c.options.known.threads = 2),
-        (&["coarsest is 3", "set up for 4"], INVALID, |c| c.options.known.coarsest = 3),
+        (&["coarsest is 3", "set up for 4"], INVALID, |c| c.use_cycle().coarsest = 3),
     ];
     let handle = Call::new().new_handle();
     for through in [Through::SolverSolve, Through::SolverSolveBatch] {
@@ -33,8 +33,8 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
     }
     // SAFETY: made above; NULL is ignored.
     unsafe {
-        contact_normal_solver_free(handle);
-        contact_normal_solver_free(null_mut());
+        assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
+        assert_eq!(contact_normal_solver_free(null_mut()), CONTACT_NORMAL_OK);
         let call = Call::new();
         let status = contact_normal_solver_new(&call.scene.known, null(), null_mut());
         assert_eq!((status, last_error().contains("solver")), (NULL, true));
@@ -93,7 +93,7 @@ fn an_accuracy_that_is_not_reached_says_the_best() {
     let accuracy = &call.accuracy.known;
     assert_eq!((status, accuracy.mx, accuracy.my, accuracy.dx), (CONTACT_NORMAL_STAGNATED, 6, 5, 0.5), "{message}");
     assert!(["target", "round-off", "best reached", "6 x 5"].iter().all(|word| message.contains(word)), "{message}");
-    assert!(call.report.known.force > 0.0 && accuracy.seconds > 0.0);
+    assert!(call.report.known.normal.force > 0.0 && accuracy.seconds > 0.0);
 
     // Cancelled before there was a grid: nothing, and it says so.
     let mut call = Call::new();

@@ -38,9 +38,9 @@ fn a_stagnation_says_what_limits() {
 #[test]
 fn a_diverging_smoother_is_not_blamed_on_round_off() {
     let mut call = Call::new();
-    (call.options.known.method, call.options.known.smoother) =
-        (CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_SMOOTHER_JACOBI);
-    (call.options.known.relaxation, call.options.known.coarsest) = (1.99, 1);
+    call.options.known.method = CONTACT_NORMAL_METHOD_MULTIGRID;
+    let cycle = call.use_cycle();
+    (cycle.smoother, cycle.relaxation, cycle.coarsest) = (CONTACT_NORMAL_SMOOTHER_JACOBI, 1.99, 1);
     let (status, message) = call.run(Through::Solve, null_mut());
     assert_eq!(status, CONTACT_NORMAL_STAGNATED, "{message}");
     assert!(message.contains("p = 0") && !message.contains("round-off"), "{message}");
@@ -67,7 +67,11 @@ fn a_fixed_contact_area_may_be_pulled() {
         let (status, message) = call.run(through, handle);
         assert_eq!(status, CONTACT_NORMAL_OK, "{through:?}: {message}");
         if through != Through::SolverNew {
-            assert!((call.report.known.force + 5.0).abs() <= 1e-9, "{through:?}: {}", call.report.known.force);
+            assert!(
+                (call.report.known.normal.force + 5.0).abs() <= 1e-9,
+                "{through:?}: {}",
+                call.report.known.normal.force
+            );
         }
     }
     // SAFETY: made above.

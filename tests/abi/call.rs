@@ -56,6 +56,9 @@ pub struct Call {
     pub patches: Box<Grown<contact_normal_patches>>,
     pub row_tables: Box<Grown<contact_normal_row_tables>>,
     pub friction: Box<Grown<contact_normal_friction>>,
+    /// Tables of friction.
+    pub tangential: Box<[contact_normal_influence; 3]>,
+    pub cycle: Box<Grown<contact_normal_cycle>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
     pub report: Box<Grown<contact_normal_report>>,
@@ -102,6 +105,8 @@ impl Call {
             patches: Grown::new(initialised(contact_normal_patches_init)),
             row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
             friction: Grown::new(initialised(contact_normal_friction_init)),
+            tangential: Box::new([contact_normal_influence::default(); 3]),
+            cycle: Grown::new(initialised(contact_normal_cycle_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
             report: Grown::new(initialised(contact_normal_report_init)),
@@ -144,7 +149,7 @@ impl Call {
         fields.displacement = call.others[N..].as_mut_ptr();
         let report = &mut call.report.known;
         (report.ledger, report.ledger_capacity) = (call.ledger.as_mut_ptr(), call.ledger.len() as i64);
-        (report.force, report.cycles) = (SENTINEL, -77);
+        (report.normal.force, report.statistics.cycles) = (SENTINEL, -77);
         (call.accuracy.known.target, call.accuracy.known.reached) = (0.05, SENTINEL);
         call
     }
@@ -161,6 +166,12 @@ impl Call {
         &mut self.row_tables.known
     }
 
+    /// Names the cycle in the options, and the cycle to change.
+    pub fn use_cycle(&mut self) -> &mut contact_normal_cycle {
+        self.options.known.cycle = &raw const self.cycle.known;
+        &mut self.cycle.known
+    }
+
     /// Names friction in the scene, and the friction to change: 0.3, a shift.
     pub fn use_friction(&mut self) -> &mut contact_normal_friction {
         self.scene.known.friction = &raw const self.friction.known;
@@ -173,9 +184,12 @@ impl Call {
         self.tables.clear();
         self.tables.resize(4 * CX * CY, 0.0);
         let (table, zeros) = (self.table.as_ptr(), self.tables.as_ptr());
+        for (own, coefficients) in self.tangential.iter_mut().zip([table, table, zeros]) {
+            (own.cx, own.cy, own.coefficients) = (CX as i32, CY as i32, coefficients);
+        }
+        let influence = [0, 1, 2].map(|k: usize| &raw const self.tangential[k]);
         let friction = self.use_friction();
-        friction.influence = [table, table, zeros];
-        (friction.influence_cx, friction.influence_cy) = (CX as i32, CY as i32);
+        friction.influence = influence;
         friction
     }
 
@@ -298,7 +312,7 @@ impl Call {
     pub fn assert_all_written(&self) {
         assert!(self.pressure.iter().chain(&self.others).all(|&value| value != SENTINEL));
         assert!(self.contact.iter().all(|&value| value == 0 || value == 1));
-        assert!(self.report.known.force != SENTINEL && self.report.known.cycles >= 0);
+        assert!(self.report.known.normal.force != SENTINEL && self.report.known.statistics.cycles >= 0);
         assert!(self.ledger[0].mx > 0);
     }
 }

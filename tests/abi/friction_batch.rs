@@ -28,7 +28,7 @@ struct Call {
     counts: [Vec<i64>; 2],
     status: Vec<i32>,
     fields: [Vec<f64>; 2],
-    adhesion: Vec<i32>,
+    stick_slip: Vec<i32>,
 }
 
 impl Call {
@@ -50,7 +50,7 @@ impl Call {
             counts: std::array::from_fn(|_| vec![-1; COUNT]),
             status: vec![UNTOUCHED; COUNT],
             fields: std::array::from_fn(|_| vec![SENTINEL; 2 * N * COUNT]),
-            adhesion: vec![UNTOUCHED; N * COUNT],
+            stick_slip: vec![UNTOUCHED; N * COUNT],
         });
         let inner = &mut *call;
         let (scene, results) = (&mut inner.scene, &mut inner.results);
@@ -64,7 +64,7 @@ impl Call {
         (results.moment, results.residual, results.gap, results.products) = (moment, residual, gap, products);
         [results.stick_count, results.slip_count] = inner.counts.each_mut().map(|v| v.as_mut_ptr());
         [results.traction, results.slip] = inner.fields.each_mut().map(|v| v.as_mut_ptr());
-        (results.status, results.adhesion) = (inner.status.as_mut_ptr(), inner.adhesion.as_mut_ptr());
+        (results.status, results.stick_slip) = (inner.status.as_mut_ptr(), inner.stick_slip.as_mut_ptr());
         call
     }
 
@@ -96,8 +96,8 @@ impl Call {
         let values = self.numbers.iter().map(|numbers| &numbers[i]).chain(&self.force[i]).chain(&self.creepage[i]);
         let floats: Vec<bool> = fields.chain(values).map(|value| *value != SENTINEL).collect();
         let counts = self.counts.iter().map(|counts| counts[i] >= 0);
-        let adhesion = self.adhesion[N * i..N * (i + 1)].iter().map(|adhesion| *adhesion != UNTOUCHED);
-        let all: Vec<bool> = floats.into_iter().chain(counts).chain(adhesion).collect();
+        let stick_slip = self.stick_slip[N * i..N * (i + 1)].iter().map(|stick_slip| *stick_slip != UNTOUCHED);
+        let all: Vec<bool> = floats.into_iter().chain(counts).chain(stick_slip).collect();
         assert!(all.iter().all(|written| *written == all[0]), "entry {i} is written in part");
         all[0]
     }
@@ -122,16 +122,16 @@ fn all_results_are_written_and_agree() {
         }
         assert!((call.numbers[0][i] - moment).abs() <= 1e-12);
         assert!(call.numbers[1][i] <= 1e-6 && call.numbers[3][i] > 0.0);
-        let adhesion = &call.adhesion[N * i..N * (i + 1)];
-        let count = |of: i32| adhesion.iter().filter(|adhesion| **adhesion == of).count() as i64;
+        let stick_slip = &call.stick_slip[N * i..N * (i + 1)];
+        let count = |of: i32| stick_slip.iter().filter(|stick_slip| **stick_slip == of).count() as i64;
         let found = [call.counts[0][i], call.counts[1][i]];
-        assert_eq!(found, [count(CONTACT_NORMAL_ADHESION_STICK), count(CONTACT_NORMAL_ADHESION_SLIP)]);
-        for e in (0..N).filter(|e| adhesion[*e] == CONTACT_NORMAL_ADHESION_SLIP) {
+        assert_eq!(found, [count(CONTACT_NORMAL_STICK_SLIP_STICK), count(CONTACT_NORMAL_STICK_SLIP_SLIP)]);
+        for e in (0..N).filter(|e| stick_slip[*e] == CONTACT_NORMAL_STICK_SLIP_SLIP) {
             let (q, s) = (&call.fields[0][2 * N * i..], &call.fields[1][2 * N * i..]);
             assert!(q[e] * s[e] + q[N + e] * s[N + e] <= 0.0, "slip is opposite to traction");
         }
     }
-    assert!((call.report.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
+    assert!((call.report.normal.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
     let given = call.force.clone();
     // The same without fields, and for the pressures of the normal problem.
     call.results = contact_normal_friction_results {
@@ -142,7 +142,7 @@ fn all_results_are_written_and_agree() {
     assert_eq!(call.force, given);
     let (n, entries) = (COUNT as i32, call.entries.as_ptr().cast());
     assert_eq!(call.run_with(null(), n, entries), (CONTACT_NORMAL_OK, String::new()));
-    assert!((call.report.force - 20.0).abs() <= 1e-4 && call.force != given);
+    assert!((call.report.normal.force - 20.0).abs() <= 1e-4 && call.force != given);
     assert_eq!(call.run_with(null(), 0, null()), (CONTACT_NORMAL_OK, String::new()));
 }
 

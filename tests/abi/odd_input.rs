@@ -15,7 +15,7 @@ fn elements_at_the_limit_are_in_contact_with_2() {
     for (p, contact) in call.pressure.iter().zip(&call.contact) {
         assert!((*contact == 2) == (*p == 1000.0) && (*contact == 0) == (*p == 0.0), "{p} {contact}");
     }
-    assert_eq!(call.report.known.max_pressure, 1000.0);
+    assert_eq!(call.report.known.normal.max_pressure, 1000.0);
 }
 
 /// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
@@ -104,8 +104,15 @@ fn no_contact_is_no_error() {
             assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
             assert!(call.pressure.iter().all(|&p| p == 0.0) && call.contact.iter().all(|&c| c == 0), "{name}");
             let report = &call.report.known;
-            assert_eq!((report.force, report.contact_count, report.contact_area, report.residual), (0.0, 0, 0.0, 0.0));
-            assert!(report.approach.is_finite() && report.max_pressure == 0.0, "{name}: {}", report.approach);
+            assert_eq!(
+                (report.normal.force, report.normal.contact_count, report.normal.contact_area, report.normal.residual),
+                (0.0, 0, 0.0, 0.0)
+            );
+            assert!(
+                report.normal.approach.is_finite() && report.normal.max_pressure == 0.0,
+                "{name}: {}",
+                report.normal.approach
+            );
         }
     }
 }

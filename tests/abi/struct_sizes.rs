@@ -16,6 +16,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "row_tables" => _ = call.use_row_tables(),
         "friction" => _ = call.use_friction(),
         "influence" => _ = call.use_table(),
+        "cycle" => _ = call.use_cycle(),
         _ => {}
     }
     let declared = match name {
@@ -28,6 +29,7 @@ fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
         "row_tables" => &mut call.row_tables.known.struct_size,
         "friction" => &mut call.friction.known.struct_size,
         "options" => &mut call.options.known.struct_size,
+        "cycle" => &mut call.cycle.known.struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "accuracy" => &mut call.accuracy.known.struct_size,
         _ => &mut call.report.known.struct_size,
@@ -47,13 +49,14 @@ fn excess<'a>(call: &'a mut Call, name: &str) -> &'a mut [u8; 64] {
         "row_tables" => &mut call.row_tables.excess,
         "friction" => &mut call.friction.excess,
         "options" => &mut call.options.excess,
+        "cycle" => &mut call.cycle.excess,
         "fields" => &mut call.fields.excess,
         "accuracy" => &mut call.accuracy.excess,
         _ => &mut call.report.excess,
     }
 }
 
-const STRUCTS: [&str; 12] = [
+const STRUCTS: [&str; 13] = [
     "scene",
     "influence",
     "layer",
@@ -63,6 +66,7 @@ const STRUCTS: [&str; 12] = [
     "row_tables",
     "friction",
     "options",
+    "cycle",
     "fields",
     "report",
     "accuracy",

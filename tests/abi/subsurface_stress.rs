@@ -122,7 +122,7 @@ fn all_outputs_are_written_and_agree() {
         let largest = field.iter().copied().fold(0.0, f64::max);
         assert_eq!(found.value, largest);
         assert_eq!(field[(found.depth as usize) * N + (found.iy as usize) * MX + found.ix as usize], largest);
-        let place = (f64::from(found.ix) + 0.5, 0.5 * (f64::from(found.iy) + 0.5), DEPTHS[found.depth as usize]);
+        let place = (f64::from(found.ix) - 1.5, 0.5 * (f64::from(found.iy) - 1.0), DEPTHS[found.depth as usize]);
         assert_eq!((found.x, found.y, found.z), place);
     }
 }
@@ -283,7 +283,7 @@ fn a_cancelled_call_has_written_the_depths_before() {
 fn points_at_the_centres_have_the_stresses_of_the_grid() {
     let mut call = Call::new();
     assert_eq!(call.run().0, CONTACT_NORMAL_OK);
-    let centre = |i: usize| [(i % MX) as f64 + 0.5, 0.5 * ((i / MX) as f64 + 0.5)];
+    let centre = |i: usize| [(i % MX) as f64 - 1.5, 0.5 * ((i / MX) as f64 - 1.0)];
     let points: Vec<[f64; 3]> =
         DEPTHS.iter().flat_map(|z| (0..N).map(move |i| [centre(i)[0], centre(i)[1], *z])).collect();
     let mut stress = vec![[SENTINEL; 6]; points.len()];
@@ -311,11 +311,11 @@ fn points_at_the_centres_have_the_stresses_of_the_grid() {
         }
     }
     let mut on_edge = points.clone();
-    on_edge[4] = [1.0, 0.25, 0.0];
+    on_edge[4] = [-1.0, -0.5, 0.0];
     let mut untouched = vec![[SENTINEL; 6]; points.len()];
     let refused = at(on_edge.as_ptr(), untouched.as_mut_ptr());
     assert!(
-        refused.0 == CONTACT_NORMAL_INVALID_ARGUMENT && refused.1.contains("point 4 is (1, 0.25, 0)"),
+        refused.0 == CONTACT_NORMAL_INVALID_ARGUMENT && refused.1.contains("point 4 is (-1, -0.5, 0)"),
         "{refused:?}"
     );
     assert!(untouched.iter().flatten().all(|s| *s == SENTINEL));
@@ -350,7 +350,7 @@ fn patches_of_the_scene_scale_the_loads() {
                 call.pressure.as_ptr(),
                 call.traction.as_ptr(),
                 null(),
-                [1.3, 0.8, 0.6].as_ptr(),
+                [-0.7, 0.05, 0.6].as_ptr(),
                 1,
                 null(),
                 stress.as_mut_ptr(),

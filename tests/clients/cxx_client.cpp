@@ -75,7 +75,7 @@ static void a_progress_callback_cancels() {
     problem.options.user = &calls;
     expect(problem.solve() == CONTACT_NORMAL_CANCELLED, "the status is CANCELLED");
     expect(calls.on_finest == 2, "the callback is not called after it cancelled");
-    expect(problem.report.cycles == 2, "the report counts two cycles");
+    expect(problem.report.statistics.cycles == 2, "the report counts two cycles");
     double force = 0.0;
     for (double p : problem.p) {
         expect(std::isfinite(p), "the best iterate is finite");
@@ -102,6 +102,7 @@ static void the_ledger_has_a_row_per_grid() {
     Problem problem(64);
     problem.options.method = CONTACT_NORMAL_METHOD_FULL_MULTIGRID;
     std::vector<contact_normal_ledger_row> rows(16);
+    contact_normal_ledger_row_init(rows.data());
     problem.report.ledger = rows.data();
     problem.report.ledger_capacity = 16;
     expect(problem.solve() == CONTACT_NORMAL_OK, "the status is OK");
@@ -112,12 +113,13 @@ static void the_ledger_has_a_row_per_grid() {
         expect(i == 0 || rows[i].seconds >= rows[i - 1].seconds, "time does not run back");
         expect(i == 0 || rows[i].work_units >= rows[i - 1].work_units, "nor does work");
     }
-    expect(rows[4].force == problem.report.force, "the last row holds the result's force");
-    expect(rows[4].max_pressure == problem.report.max_pressure, "and its largest pressure");
+    expect(rows[4].force == problem.report.normal.force, "the last row holds the result's force");
+    expect(rows[4].max_pressure == problem.report.normal.max_pressure, "and its largest pressure");
 
     // Too little room: the rows of the finest grids, and the number there would have been.
     std::vector<contact_normal_ledger_row> few(3);
     few[2].mx = -1;
+    contact_normal_ledger_row_init(few.data());
     problem.report.ledger = few.data();
     problem.report.ledger_capacity = 2;
     expect(problem.solve() == CONTACT_NORMAL_OK, "the status is OK with little room");
@@ -130,11 +132,11 @@ static void a_handle_has_an_owner() {
     Problem problem(32);
     contact_normal_solver *made = nullptr;
     expect(contact_normal_solver_new(&problem.scene, nullptr, &made) == CONTACT_NORMAL_OK, "solver_new is OK");
-    std::unique_ptr<contact_normal_solver, void (*)(contact_normal_solver *)> solver(made, contact_normal_solver_free);
+    std::unique_ptr<contact_normal_solver, contact_normal_status (*)(contact_normal_solver *)> solver(made, contact_normal_solver_free);
     expect(contact_normal_solver_solve(solver.get(), &problem.scene, nullptr, &problem.fields, &problem.report)
                == CONTACT_NORMAL_OK,
            "solver_solve is OK");
-    expect(problem.report.contact_count > 0, "there is contact");
+    expect(problem.report.normal.contact_count > 0, "there is contact");
 }
 
 int main() {

@@ -42,6 +42,7 @@ program fortran_module
   type(contact_normal_scene) :: scene
   type(contact_normal_influence), target :: influence
   type(contact_normal_options) :: options
+  type(contact_normal_cycle), target :: cycle
   type(contact_normal_fields) :: fields
   type(contact_normal_report) :: report
   type(contact_normal_ledger_row), target :: ledger(8)
@@ -90,7 +91,7 @@ program fortran_module
   call hold(contact_normal_solve(scene, options, fields, report) == CONTACT_NORMAL_OK, "a solve with all of them")
   call hold(all(abs(p - half_space) <= 0), "the same pressures")
   call hold(all(abs(reshape(h, [M*M]) - scene%approach + reshape(u, [M*M]) - e) <= 1e-15_dp), "e = h - approach + u")
-  call hold(report%contact_count == count(contact > 0), "the count of elements in contact")
+  call hold(report%normal%contact_count == count(contact > 0), "the count of elements in contact")
   call hold(report%ledger_rows >= 2 .and. ledger(report%ledger_rows)%mx == M .and. ledger(1)%mx < M, "the ledger")
 
   ! An accuracy, from the array; then from a surface that cancels at once.
@@ -135,7 +136,7 @@ program fortran_module
   do i = 1, 3
     call hold(contact_normal_solver_solve(solver, scene, options, fields, report) == CONTACT_NORMAL_OK, "its solve")
   end do
-  call hold(report%cycles <= 2, "cycles from its own solution")
+  call hold(report%statistics%cycles <= 2, "cycles from its own solution")
   call contact_normal_solver_free(solver)
   call contact_normal_solver_free(solver)
   call hold(contact_normal_solver_solve(solver, scene, options, fields) == CONTACT_NORMAL_NULL_POINTER, "a freed one")
@@ -162,7 +163,7 @@ program fortran_module
     if (i == 3) cycle
     call hold(contact_normal_solver_solve(solver, scenes(i), options, fields, report) == CONTACT_NORMAL_OK, "one by one")
     call hold(all(abs(p - pressures(:, :, i)) <= 0), "the same pressures as one by one")
-    call hold(reports(i)%contact_count == report%contact_count, "the same contact")
+    call hold(reports(i)%normal%contact_count == report%normal%contact_count, "the same contact")
   end do
   scenes(3)%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
   call hold(contact_normal_solver_solve_batch(solver, scenes, options) == CONTACT_NORMAL_OK, "a batch for nothing but the status")
@@ -184,8 +185,7 @@ program fortran_module
     cf(i, :) = cf(i, :)*(1 + 0.03_dp*i/M)
   end do
   call hold(contact_normal_set_log(count_messages, CONTACT_NORMAL_LOG_INFO) == CONTACT_NORMAL_OK, "a log")
-  options%smoother = CONTACT_NORMAL_SMOOTHER_JACOBI
-  options%relaxation = 1.9_dp
+  call contact_normal_set_cycle(options, cycle, smoother=CONTACT_NORMAL_SMOOTHER_JACOBI, relaxation=1.9_dp)
   call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "NORM takes over")
   call hold(messages > 0, "a message")
   call hold(contact_normal_set_log(level=CONTACT_NORMAL_LOG_OFF) == CONTACT_NORMAL_OK, "no log any more")
@@ -230,14 +230,14 @@ contains
     call contact_normal_report_init(one)
     call hold(contact_normal_friction_batch(ball, n=n, entries=entries, results=results, report=normal) == &
       CONTACT_NORMAL_OK, "a table")
-    call hold(all(status == CONTACT_NORMAL_OK) .and. abs(normal%force - 1000) < 1e-2_dp, "its statuses and its normal force")
+    call hold(all(status == CONTACT_NORMAL_OK) .and. abs(normal%normal%force - 1000) < 1e-2_dp, "its statuses and its normal force")
     do k = 1, n
       friction%creepage = entries(1:2, k)
       friction%spin = entries(3, k)
       call hold(contact_normal_solve(ball, report=one) == CONTACT_NORMAL_OK, "an entry alone")
       ! A residual of 1e-6 leaves some 1e-7 of mu N.
-      call hold(all(abs(force(:, k) - one%tangential_force) <= 1e-5_dp*300), "the forces of an entry")
-      call hold(abs(moment(k) - one%tangential_moment) <= 1e-5_dp*300, "the moment of an entry")
+      call hold(all(abs(force(:, k) - one%tangential%force) <= 1e-5_dp*300), "the forces of an entry")
+      call hold(abs(moment(k) - one%tangential%moment) <= 1e-5_dp*300, "the moment of an entry")
       call hold(abs(sum(traction(:, :, 1, k))*0.01_dp - force(1, k)) <= 1e-9_dp*300, "the tractions of an entry")
     end do
     friction%prescribed(1) = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE

@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use crate::description::Description;
+use crate::generated::c_inits;
 use contact_normal::ffi::CONTACT_NORMAL_ABI_VERSION;
 
 #[test]
@@ -12,6 +14,7 @@ fn the_committed_header_is_the_generated_one() {
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in [
         "status",
+        "init",
         "scene",
         "influence",
         "coating",
@@ -35,7 +38,7 @@ fn the_committed_header_is_the_generated_one() {
     }
     let mut header = Vec::new();
     builder.generate().expect("bindings").write(&mut header);
-    let header = String::from_utf8(header).expect("text");
+    let header = with_inits(&String::from_utf8(header).expect("text"));
     let path = root.join("include/contact_normal.h");
     if std::env::var_os("CONTACT_NORMAL_WRITE_HEADER").is_some() {
         std::fs::write(&path, &header).expect("a writable include/");
@@ -47,6 +50,12 @@ fn the_committed_header_is_the_generated_one() {
     );
 }
 
+/// Before the end of the include guard.
+fn with_inits(header: &str) -> String {
+    let end = header.rfind("\n#endif").expect("the include guard");
+    format!("{}{}{}", &header[..end], c_inits(&Description::of(header)), &header[end..])
+}
+
 /// tests/clients/installed_package.rs compares those of the library and of the installed package.
 #[test]
 fn the_header_and_the_modules_have_the_versions_of_the_library() {
@@ -55,7 +64,7 @@ fn the_header_and_the_modules_have_the_versions_of_the_library() {
     for (file, stands) in [
         ("include/contact_normal.h", format!("\n * contact-normal {}: ", env!("CARGO_PKG_VERSION"))),
         ("include/contact_normal.h", format!("\n#define CONTACT_NORMAL_ABI_VERSION {abi}\n")),
-        ("include/contact_normal.f90", format!(":: CONTACT_NORMAL_ABI_VERSION = {abi}\n")),
+        ("include/contact_normal_types.inc", format!(":: CONTACT_NORMAL_ABI_VERSION = {abi}\n")),
         ("python/contact_normal/_constants.py", format!("\nABI_VERSION = {abi}\n")),
     ] {
         assert!(read(file).contains(&stands), "{file} has no {stands:?}");

@@ -16,6 +16,7 @@ int main(void)
 {
     const double shear_modulus[2] = {82000.0, 82000.0}, poisson_ratio[2] = {0.28, 0.28};
     contact_normal_hertz_solution exact;
+    contact_normal_hertz_solution_init(&exact);
     contact_normal_status status = contact_normal_hertz(0.0016681, 0.0030671, shear_modulus, poisson_ratio,
                                                         CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.1091, &exact);
     if (status != CONTACT_NORMAL_OK) {
@@ -52,14 +53,24 @@ fn the_installed_package_is_what_pkg_config_says() {
     let version = env!("CARGO_PKG_VERSION");
     assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
     let links = [
-        ("libcontact_normal.so", "libcontact_normal.so.0".to_owned()),
-        ("libcontact_normal.so.0", format!("libcontact_normal.so.{version}")),
+        ("libcontact_normal.so", "libcontact_normal.so.2".to_owned()),
+        ("libcontact_normal.so.2", format!("libcontact_normal.so.{version}")),
     ];
     for (link, target) in links {
         let to = std::fs::read_link(prefix.join("lib").join(link)).expect("a link");
         assert_eq!(to, Path::new(&target), "{link}");
     }
-    for name in [".h", ".hpp", ".f90", "_exports.inc", "_procedures.inc", "_norm_solve.inc", "_tang_solve.inc"] {
+    for name in [
+        ".h",
+        ".hpp",
+        ".f90",
+        "_types.inc",
+        "_exports.inc",
+        "_inits.inc",
+        "_procedures.inc",
+        "_norm_solve.inc",
+        "_tang_solve.inc",
+    ] {
         let file = &format!("include/contact_normal{name}");
         let [ours, installed] = [root(), &prefix].map(|from| std::fs::read(from.join(file)).expect("a file"));
         assert!(ours == installed, "{file}");
@@ -83,7 +94,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     let expected = format!("{version} {CONTACT_NORMAL_ABI_VERSION} {CONTACT_NORMAL_ABI_VERSION} 81987\n");
     let shared = compile("shared", pkg_config(&prefix, &["--cflags", "--libs"]));
     let dynamic = run(Command::new("readelf").arg("-d").arg(&shared));
-    assert!(dynamic.contains("Shared library: [libcontact_normal.so.0]"), "{dynamic}");
+    assert!(dynamic.contains("Shared library: [libcontact_normal.so.2]"), "{dynamic}");
     assert_eq!(run(Command::new(&shared).env("LD_LIBRARY_PATH", prefix.join("lib"))), expected);
 
     // Without debug information, which a debugger finds by the link.

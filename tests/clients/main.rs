@@ -1,13 +1,18 @@
 //! The library as C, C++, Fortran and Python programs use it: header, symbols, the installed package, clients, hosts.
 
 mod c;
+mod description;
 mod exported_symbols;
 mod fortran;
+mod generated;
 mod header;
 mod host_environment;
 mod installed_package;
+mod layouts;
 mod papers;
 mod python;
-mod python_layout;
+mod python_names;
 mod python_versions;
+mod rust_layout;
+mod stored_headers;
 mod support;

@@ -40,7 +40,7 @@ pub fn scratch(test: &str) -> PathBuf {
     // `cargo test` builds the shared library beside the test programs.
     let built = std::env::current_exe().expect("this test's path").with_file_name("libcontact_normal.so");
     assert!(built.exists(), "{} is missing", built.display());
-    for name in ["libcontact_normal.so", "libcontact_normal.so.0"] {
+    for name in ["libcontact_normal.so", "libcontact_normal.so.2"] {
         std::os::unix::fs::symlink(&built, folder.join(name)).expect("a link to the library");
     }
     folder

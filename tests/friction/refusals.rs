@@ -31,7 +31,7 @@ fn shown(solver: &Solver) -> Shown {
     let state = solver.state();
     let of_friction = |found: &Solution| {
         let bits = |field: &[[f64; 2]]| field.iter().map(|v| v.map(f64::to_bits)).collect();
-        (bits(&found.traction), bits(&found.slip), found.adhesion.clone())
+        (bits(&found.traction), bits(&found.slip), found.stick_slip.clone())
     };
     let numbers = state.h.iter().chain(&state.p).chain(&state.u).chain([&state.approach]);
     Shown {

@@ -82,7 +82,7 @@ pub fn residual(
         }
         let s = [w[0] + u[i][0] - u_before[i][0], w[1] + u[i][1] - u_before[i][1]];
         let slips = length(q[i]) >= bound * (1.0 - 1e-7);
-        assert_eq!(solution.adhesion[i], if slips { SLIP } else { STICK });
+        assert_eq!(solution.stick_slip[i], if slips { SLIP } else { STICK });
         let mut rest = s;
         if slips {
             let outward = [q[i][0] / length(q[i]), q[i][1] / length(q[i])];

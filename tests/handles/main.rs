@@ -152,7 +152,7 @@ fn a_cancelled_solve_leaves_a_complete_result() {
             let n = MX * MY;
             assert_eq!((&numbers[..n], &contact), (&call.pressure[..], &call.contact), "{name}");
             // e = h - approach + u, of one iterate and not of two scenes.
-            let approach = call.report.known.approach;
+            let approach = call.report.known.normal.approach;
             for i in 0..n {
                 let expected = call.h[i] - approach + numbers[2 * n + i];
                 let size = call.h[i].abs() + approach.abs() + numbers[2 * n + i].abs();

@@ -221,9 +221,15 @@ fn a_problem_that_fails_harms_no_other() {
             };
             assert_eq!(batch.statuses[i], expected, "problem {i}");
             if expected == CONTACT_NORMAL_OK {
-                assert!(batch.p[i] == good.p[i] && batch.reports[i].force == good.reports[i].force, "problem {i}");
+                assert!(
+                    batch.p[i] == good.p[i] && batch.reports[i].normal.force == good.reports[i].normal.force,
+                    "problem {i}"
+                );
             } else {
-                assert!(batch.p[i].iter().all(|&p| p == UNTOUCHED) && batch.reports[i].force == 0.0, "problem {i}");
+                assert!(
+                    batch.p[i].iter().all(|&p| p == UNTOUCHED) && batch.reports[i].normal.force == 0.0,
+                    "problem {i}"
+                );
             }
         }
     }

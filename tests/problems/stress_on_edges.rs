@@ -10,6 +10,8 @@ const M: usize = 40;
 fn stress((dx, dy): (f64, f64), point: [f64; 3]) -> Result<Tensor, Error> {
     let body = Body { grid: Grid::new(M, M / 2, dx, dy).unwrap(), poisson_ratio: 0.3, periodic: false };
     let q: Vec<f64> = (0..body.grid.len()).map(|i| 1.0 + (i % 7) as f64).collect();
+    // Edges are counted from the outer corner of element (0, 0), points from the middle of the grid.
+    let point = [point[0] - 0.5 * M as f64 * dx, point[1] - 0.25 * M as f64 * dy, point[2]];
     let mut out = [[0.0; 6]];
     let loads = Loads { traction_x: Some(&q), ..Loads::pressure(&q) };
     stress_at_points(&body, &loads, &[point], &Threads::One, &mut out).map(|()| out[0])

@@ -32,6 +32,6 @@ int main(void)
         fprintf(stderr, "%s\n", contact_normal_last_error());
         return 1;
     }
-    printf("force %.0f N\n", report.force);
+    printf("force %.0f N\n", report.normal.force);
     return 0;
 }

@@ -16,5 +16,5 @@ int main()
     contact_normal::scene scene(grid, {82000.0, 0.28});
     const contact_normal::result found = contact_normal::solve(scene.undeformed_distance(h).approach(0.1091));
     if (!found) return 1;
-    std::printf("force %.0f N\n", found.report.force);
+    std::printf("force %.0f N\n", found.report.normal.force);
 }

@@ -43,7 +43,7 @@ fn a_scale_multiplies_every_coefficient() {
         solved(&mut scaled);
         solved(&mut multiplied);
         assert_eq!(scaled.pressure, multiplied.pressure, "row_tables times {scale}");
-        assert!(scaled.report.known.force > 0.0);
+        assert!(scaled.report.known.normal.force > 0.0);
     }
 }
 

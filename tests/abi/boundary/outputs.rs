@@ -18,8 +18,11 @@ fn without_fields_the_report_is_the_same() {
         let before = call.pressure.clone();
         assert_eq!(call.run(through, handle.0), (CONTACT_NORMAL_OK, String::new()), "{through:?}");
         let (found, wanted) = (&call.report.known, &expected.report.known);
-        assert_eq!((found.force, found.residual, found.cycles), (wanted.force, wanted.residual, wanted.cycles));
-        assert!(found.force > 0.0 && call.pressure == before);
+        assert_eq!(
+            (found.normal.force, found.normal.residual, found.statistics.cycles),
+            (wanted.normal.force, wanted.normal.residual, wanted.statistics.cycles)
+        );
+        assert!(found.normal.force > 0.0 && call.pressure == before);
     }
     // What must be read has to be there.
     for (name, change) in [
@@ -56,13 +59,18 @@ fn the_report_has_the_tolerance_that_was_met() {
     };
     for method in 0..=4 {
         let exact = run(method, 0.0);
-        assert_eq!(exact.tolerance, 1e-9, "method {method}");
-        assert!(exact.residual <= 1e-9);
+        assert_eq!(exact.normal.tolerance, 1e-9, "method {method}");
+        assert!(exact.normal.residual <= 1e-9);
         let early = run(method, 0.5);
-        assert!(early.residual <= early.tolerance, "method {method}: {:e} {:e}", early.residual, early.tolerance);
+        assert!(
+            early.normal.residual <= early.normal.tolerance,
+            "method {method}: {:e} {:e}",
+            early.normal.residual,
+            early.normal.tolerance
+        );
         // The methods that start on coarser grids know an error to stop at.
         let knows = ![CONTACT_NORMAL_METHOD_NORM, CONTACT_NORMAL_METHOD_MULTIGRID].contains(&method);
-        assert_eq!(early.tolerance > 1e-9, knows, "method {method}: {:e}", early.tolerance);
+        assert_eq!(early.normal.tolerance > 1e-9, knows, "method {method}: {:e}", early.normal.tolerance);
     }
 
     let (mut accuracy, mut report) =
@@ -70,5 +78,5 @@ fn the_report_has_the_tolerance_that_was_met() {
     accuracy.target = 0.01;
     // SAFETY: as above.
     let status = unsafe { contact_normal_solve_to_accuracy(&scene, null(), &mut accuracy, null_mut(), &mut report) };
-    assert_eq!((status, report.tolerance), (CONTACT_NORMAL_OK, 1e-6), "{}", last_error());
+    assert_eq!((status, report.normal.tolerance), (CONTACT_NORMAL_OK, 1e-6), "{}", last_error());
 }

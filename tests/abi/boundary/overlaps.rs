@@ -24,8 +24,9 @@ const ROWS: &[Row] = &[
         c.fields.known.displacement = null_mut();
     }),
     (&["contact", "pressure"], |c| c.fields.known.contact = c.fields.known.pressure.cast::<i32>().wrapping_add(2 * N - 1)),
-    (&["ledger", "pressure"], |c| c.report.known.ledger = c.fields.known.pressure.cast()),
-    (&["ledger", "report"], |c| c.report.known.ledger = (&raw mut c.report.known).cast()),
+    (&["ledger", "pressure"], |c| c.fields.known.pressure = c.report.known.ledger.cast()),
+    // In its last row.
+    (&["ledger", "contact"], |c| c.fields.known.contact = c.report.known.ledger.wrapping_add(4).cast::<i32>().wrapping_sub(1)),
     (&["report", "pressure"], |c| c.fields.known.pressure = (&raw mut c.report.known).cast()),
     (&["pressure", "undeformed_distance"], |c| c.fields.known.pressure = c.h.as_mut_ptr()),
     (&["deformed_distance", "undeformed_distance"], |c| c.fields.known.deformed_distance = c.h.as_mut_ptr()),
@@ -101,9 +102,19 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
 
 #[test]
 fn the_other_calls_refuse_overlaps_too() {
+    // An accuracy within the first row of the ledger.
     let mut call = Call::new();
-    call.report.known.ledger = (&raw mut call.accuracy.known).cast();
-    assert_refused(call.run(Through::ToAccuracy, null_mut()), INVALID, &["ledger", "accuracy", "overlap"]);
+    let mut both = [0u64; 64];
+    let row = both.as_mut_ptr().cast::<contact_normal_ledger_row>();
+    (call.report.known.ledger, call.report.known.ledger_capacity) = (row, 1);
+    // SAFETY: room for both, and the row's size comes before the accuracy.
+    let status = unsafe {
+        contact_normal_ledger_row_init(row);
+        let accuracy = both.as_mut_ptr().add(9).cast();
+        contact_normal_accuracy_init(accuracy);
+        contact_normal_solve_to_accuracy(&call.scene.known, null(), accuracy, null_mut(), &mut call.report.known)
+    };
+    assert_refused((status, last_error()), INVALID, &["ledger", "accuracy", "overlap"]);
     let mut call = Call::new();
     // SAFETY: the pointer is refused before anything is written.
     let status = unsafe {

@@ -1,23 +1,24 @@
-//! The sizes that programs of version 0.1 pass.
+//! The sizes that programs of version 0.2 pass.
 
 use std::ptr::null_mut;
 
 use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
-/// Each struct of 0.1 has this size, for ever.
-const SIZES: [(&str, i64); 12] = [
-    ("scene", 144),
+/// Each struct of 0.2 has this size, for ever.
+const SIZES: [(&str, i64); 13] = [
+    ("scene", 168),
     ("influence", 32),
     ("layer", 24),
     ("pressure_limit", 24),
     ("period", 16),
     ("patches", 32),
     ("row_tables", 32),
-    ("friction", 152),
-    ("options", 96),
-    ("fields", 40),
-    ("report", 264),
+    ("friction", 200),
+    ("options", 80),
+    ("cycle", 32),
+    ("fields", 80),
+    ("report", 696),
     ("accuracy", 112),
 ];
 
@@ -36,6 +37,7 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
         "row_tables" => &mut call.use_row_tables().struct_size,
         "friction" => &mut call.use_friction().struct_size,
         "options" => &mut call.options.known.struct_size,
+        "cycle" => &mut call.use_cycle().struct_size,
         "fields" => &mut call.fields.known.struct_size,
         "report" => &mut call.report.known.struct_size,
         _ => &mut call.accuracy.known.struct_size,
@@ -43,7 +45,7 @@ fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
 }
 
 #[test]
-fn a_struct_of_version_0_1_is_accepted_and_a_shorter_one_is_not() {
+fn a_struct_of_version_0_2_is_accepted_and_a_shorter_one_is_not() {
     for (name, size) in SIZES {
         let through = if name == "accuracy" { Through::ToAccuracy } else { Through::Solve };
         for (size, status) in

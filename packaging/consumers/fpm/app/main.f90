@@ -28,5 +28,5 @@ program force
   scene%approach = 0.1091_c_double
   status = contact_normal_solve(scene, report=report)
   if (status /= CONTACT_NORMAL_OK) error stop "contact_normal_solve"
-  print '(a, i0, a)', "force ", nint(report%force), " N"
+  print '(a, i0, a)', "force ", nint(report%normal%force), " N"
 end program force

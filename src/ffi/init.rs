@@ -1,0 +1,140 @@
+//! `contact_normal_init`: the one export behind the `_init` of every struct.
+
+use libc::c_void;
+
+use super::accuracy::contact_normal_accuracy;
+use super::coating::contact_normal_coating;
+use super::effects::{
+    contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
+};
+use super::friction::contact_normal_friction;
+use super::friction_batch::contact_normal_friction_results;
+use super::guard::guard;
+use super::influence::{contact_normal_influence, contact_normal_row_tables};
+use super::options::{contact_normal_cycle, contact_normal_options};
+use super::price_list::contact_normal_price;
+use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
+use super::scene::contact_normal_scene;
+use super::special::contact_normal_hertz_solution;
+use super::status::CONTACT_NORMAL_OK;
+use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
+use super::structs;
+
+/// `kind`: `contact_normal_scene`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_SCENE: i32 = 1;
+/// `kind`: `contact_normal_options`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_OPTIONS: i32 = 2;
+/// `kind`: `contact_normal_fields`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_FIELDS: i32 = 3;
+/// `kind`: `contact_normal_report`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_REPORT: i32 = 4;
+/// `kind`: `contact_normal_accuracy`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_ACCURACY: i32 = 5;
+/// `kind`: `contact_normal_influence`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_INFLUENCE: i32 = 6;
+/// `kind`: `contact_normal_row_tables`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_ROW_TABLES: i32 = 7;
+/// `kind`: `contact_normal_layer`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_LAYER: i32 = 8;
+/// `kind`: `contact_normal_pressure_limit`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_PRESSURE_LIMIT: i32 = 9;
+/// `kind`: `contact_normal_period`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_PERIOD: i32 = 10;
+/// `kind`: `contact_normal_patches`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_PATCHES: i32 = 11;
+/// `kind`: `contact_normal_coating`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_COATING: i32 = 12;
+/// `kind`: `contact_normal_friction`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_FRICTION: i32 = 13;
+/// `kind`: `contact_normal_friction_results`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_FRICTION_RESULTS: i32 = 14;
+/// `kind`: `contact_normal_stress_outputs`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_STRESS_OUTPUTS: i32 = 15;
+/// `kind`: `contact_normal_stress_maximum`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_STRESS_MAXIMUM: i32 = 16;
+/// `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+pub const CONTACT_NORMAL_KIND_LEDGER_ROW: i32 = 17;
+/// `kind`: `contact_normal_price`, of the first row of an array. Since 0.2.
+pub const CONTACT_NORMAL_KIND_PRICE: i32 = 18;
+/// `kind`: `contact_normal_hertz_solution`. Since 0.1.
+pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
+/// `kind`: `contact_normal_cycle`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_CYCLE: i32 = 20;
+
+/// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
+/// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
+/// size of their own struct. No more than `size` bytes are written, and what this library does not know of them is 0. `to` NULL is ignored.
+/// Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i64) {
+    guard(|| {
+        // SAFETY (all): NULL or `size` bytes, by the conventions of the ABI.
+        unsafe {
+            match kind {
+                CONTACT_NORMAL_KIND_SCENE => structs::init::<contact_normal_scene>(to.cast(), size),
+                CONTACT_NORMAL_KIND_OPTIONS => structs::init::<contact_normal_options>(to.cast(), size),
+                CONTACT_NORMAL_KIND_FIELDS => structs::init::<contact_normal_fields>(to.cast(), size),
+                CONTACT_NORMAL_KIND_REPORT => structs::init::<contact_normal_report>(to.cast(), size),
+                CONTACT_NORMAL_KIND_ACCURACY => structs::init::<contact_normal_accuracy>(to.cast(), size),
+                CONTACT_NORMAL_KIND_INFLUENCE => structs::init::<contact_normal_influence>(to.cast(), size),
+                CONTACT_NORMAL_KIND_ROW_TABLES => structs::init::<contact_normal_row_tables>(to.cast(), size),
+                CONTACT_NORMAL_KIND_LAYER => structs::init::<contact_normal_layer>(to.cast(), size),
+                CONTACT_NORMAL_KIND_PRESSURE_LIMIT => structs::init::<contact_normal_pressure_limit>(to.cast(), size),
+                CONTACT_NORMAL_KIND_PERIOD => structs::init::<contact_normal_period>(to.cast(), size),
+                CONTACT_NORMAL_KIND_PATCHES => structs::init::<contact_normal_patches>(to.cast(), size),
+                CONTACT_NORMAL_KIND_COATING => structs::init::<contact_normal_coating>(to.cast(), size),
+                CONTACT_NORMAL_KIND_FRICTION => structs::init::<contact_normal_friction>(to.cast(), size),
+                CONTACT_NORMAL_KIND_FRICTION_RESULTS => {
+                    structs::init::<contact_normal_friction_results>(to.cast(), size)
+                }
+                CONTACT_NORMAL_KIND_STRESS_OUTPUTS => structs::init::<contact_normal_stress_outputs>(to.cast(), size),
+                CONTACT_NORMAL_KIND_STRESS_MAXIMUM => structs::init::<contact_normal_stress_maximum>(to.cast(), size),
+                CONTACT_NORMAL_KIND_LEDGER_ROW => structs::init::<contact_normal_ledger_row>(to.cast(), size),
+                CONTACT_NORMAL_KIND_PRICE => structs::init::<contact_normal_price>(to.cast(), size),
+                CONTACT_NORMAL_KIND_HERTZ_SOLUTION => structs::init::<contact_normal_hertz_solution>(to.cast(), size),
+                CONTACT_NORMAL_KIND_CYCLE => structs::init::<contact_normal_cycle>(to.cast(), size),
+                // Of a newer header: its struct asks for nothing until a member is set, and then the scene refuses it.
+                _ => structs::init_unknown(to.cast(), size),
+            }
+        }
+        Ok(CONTACT_NORMAL_OK)
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ffi::structs::Versioned;
+
+    /// A newer program that leaves a member alone does not ask an older library for anything.
+    fn has_grown_by_zeros<T: Versioned>() {
+        let defaults = T::defaults();
+        // SAFETY: a Versioned is bytes.
+        let bytes = unsafe { std::slice::from_raw_parts((&raw const defaults).cast::<u8>(), size_of::<T>()) };
+        assert!(bytes[T::FIRST_SIZE..].iter().all(|byte| *byte == 0), "{}: a default that is not 0", T::NAME);
+    }
+
+    #[test]
+    fn members_that_came_after_the_first_version_have_the_default_0() {
+        has_grown_by_zeros::<contact_normal_scene>();
+        has_grown_by_zeros::<contact_normal_options>();
+        has_grown_by_zeros::<contact_normal_fields>();
+        has_grown_by_zeros::<contact_normal_report>();
+        has_grown_by_zeros::<contact_normal_accuracy>();
+        has_grown_by_zeros::<contact_normal_influence>();
+        has_grown_by_zeros::<contact_normal_row_tables>();
+        has_grown_by_zeros::<contact_normal_layer>();
+        has_grown_by_zeros::<contact_normal_pressure_limit>();
+        has_grown_by_zeros::<contact_normal_period>();
+        has_grown_by_zeros::<contact_normal_patches>();
+        has_grown_by_zeros::<contact_normal_coating>();
+        has_grown_by_zeros::<contact_normal_friction>();
+        has_grown_by_zeros::<contact_normal_friction_results>();
+        has_grown_by_zeros::<contact_normal_stress_outputs>();
+        has_grown_by_zeros::<contact_normal_stress_maximum>();
+        has_grown_by_zeros::<contact_normal_ledger_row>();
+        has_grown_by_zeros::<contact_normal_price>();
+        has_grown_by_zeros::<contact_normal_hertz_solution>();
+        has_grown_by_zeros::<contact_normal_cycle>();
+    }
+}

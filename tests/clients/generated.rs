@@ -1,0 +1,208 @@
+//! What is made from the description of the ABI: the functions `_init` of the header, the constants, types and `_init` of the Fortran
+//! module, the structs of the Python package, and the layout of the structs for the tests. Each file is compared with what is made;
+//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes them anew, after the header.
+
+use std::fmt::Write;
+
+use crate::description::{Callback, Description, Kind, Struct};
+use crate::support::root;
+
+/// The functions `_init` of C and C++, which stand at the end of the header: each tells the library the size that its struct has there.
+pub fn c_inits(described: &Description) -> String {
+    let mut text = String::new();
+    for (kind, constant) in described.kinds() {
+        let (name, short, since) = (&kind.name, kind.short_name(), constant.since());
+        write!(
+            text,
+            "\n/*\n Fills a {name} with its defaults, as the comments of its members say them. Since {since}.\n */\n\
+             static inline void {name}_init({name} *{short})\n{{\n  \
+             contact_normal_init(CONTACT_NORMAL_{}, {short}, (int64_t)sizeof({name}));\n}}\n",
+            constant.name
+        )
+        .expect("text");
+    }
+    text
+}
+
+const FORTRAN_HEAD: &str = "\
+! Constants and types of the module; a part of contact_normal.f90, which includes it. Made from contact_normal.h, which says
+! what each means; do not edit.
+";
+
+fn fortran_types(described: &Description) -> String {
+    let mut text = FORTRAN_HEAD.to_owned();
+    for constant in &described.constants {
+        writeln!(
+            text,
+            "  integer(c_int32_t), parameter, public :: CONTACT_NORMAL_{} = {}",
+            constant.name, constant.value
+        )
+        .expect("text");
+    }
+    for each in &described.structs {
+        writeln!(text, "\n  type, bind(C), public :: {}", each.name).expect("text");
+        for member in &each.members {
+            // A struct_size of 0 until _init: such a structure is refused, not misread.
+            let (kind, zero) = match &member.kind {
+                Kind::Int32 => ("integer(c_int32_t)".to_owned(), " = 0"),
+                Kind::Int64 => ("integer(c_int64_t)".to_owned(), " = 0"),
+                Kind::Double => ("real(c_double)".to_owned(), " = 0"),
+                Kind::Struct(name) => (format!("type({name})"), ""),
+                Kind::Callback(_) => ("type(c_funptr)".to_owned(), " = c_null_funptr"),
+                Kind::Pointer(_) => ("type(c_ptr)".to_owned(), " = c_null_ptr"),
+            };
+            let count = member.count.map_or_else(String::new, |count| format!("({count})"));
+            writeln!(text, "    {kind} :: {}{count}{zero}", member.name).expect("text");
+        }
+        text += "  end type\n";
+    }
+    text
+}
+
+fn fortran_inits(described: &Description) -> String {
+    let mut text = "\
+! The _init of each structure; a part of contact_normal.f90, which includes it. Made from contact_normal.h; do not edit.
+"
+    .to_owned();
+    for (kind, constant) in described.kinds() {
+        let (name, short, since) = (&kind.name, kind.short_name(), constant.since());
+        write!(
+            text,
+            "\n  ! Fills a {name} with its defaults. Since {since}.\n  \
+             subroutine {name}_init({short})\n    \
+             type({name}), intent(out), target :: {short}\n    \
+             call c_init(CONTACT_NORMAL_{}, c_loc({short}), int(c_sizeof({short}), c_int64_t))\n  \
+             end subroutine\n",
+            constant.name
+        )
+        .expect("text");
+    }
+    text
+}
+
+/// The names of the `_init`, for the part of the module before `contains`.
+fn fortran_public(described: &Description) -> String {
+    let mut text = String::from("\n");
+    for (kind, _) in described.kinds() {
+        writeln!(text, "  public :: {}_init", kind.name).expect("text");
+    }
+    text
+}
+
+/// contact_normal_pressure_limit: PressureLimit.
+fn python_name(name: &str) -> String {
+    let words = name.trim_start_matches("contact_normal_").split('_');
+    words.map(|word| word[..1].to_uppercase() + &word[1..]).collect()
+}
+
+fn python_kind(kind: &Kind) -> String {
+    match kind {
+        Kind::Int32 => "c_int32".into(),
+        Kind::Int64 => "c_int64".into(),
+        Kind::Double => "c_double".into(),
+        Kind::Struct(name) | Kind::Callback(name) => python_name(name),
+        Kind::Pointer(Some(to)) => format!("POINTER({})", python_kind(to)),
+        Kind::Pointer(None) => "c_void_p".into(),
+    }
+}
+
+fn python_struct(text: &mut String, each: &Struct) {
+    let name = python_name(&each.name);
+    write!(text, "\n\nclass {name}(ctypes.Structure):\n    \"\"\"{}.\"\"\"\n\n    _fields_ = [\n", each.name)
+        .expect("text");
+    for member in &each.members {
+        let count = member.count.map_or_else(String::new, |count| format!(" * {count}"));
+        writeln!(text, "        (\"{}\", {}{count}),", member.name, python_kind(&member.kind)).expect("text");
+    }
+    *text += "    ]\n";
+}
+
+fn python_callback(text: &mut String, each: &Callback) {
+    let argument = |(name, kind): &(String, Kind)| match name.as_str() {
+        // The only text.
+        "message" => "c_char_p".into(),
+        _ => python_kind(kind),
+    };
+    let arguments: Vec<String> = each.arguments.iter().map(argument).collect();
+    let result = each.result.as_ref().map_or("None".into(), python_kind);
+    write!(text, "\n\n{} = CFUNCTYPE({result}, {})\n", python_name(&each.name), arguments.join(", ")).expect("text");
+}
+
+fn python_structs(described: &Description) -> String {
+    let mut text = "\
+\"\"\"The structs and callbacks of include/contact_normal.h for ctypes. Made from that; do not edit.\"\"\"
+
+import ctypes
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
+"
+    .to_owned();
+    let mut callbacks: Vec<&Callback> = described.callbacks.iter().collect();
+    for each in &described.structs {
+        // A callback before the first struct that has it.
+        let has = |callback: &&Callback| {
+            each.members.iter().any(|member| member.kind == Kind::Callback(callback.name.clone()))
+        };
+        callbacks.iter().filter(|callback| has(callback)).for_each(|callback| python_callback(&mut text, callback));
+        callbacks.retain(|callback| !has(callback));
+        python_struct(&mut text, each);
+    }
+    callbacks.iter().for_each(|callback| python_callback(&mut text, callback));
+    text += "\n\ndef names(kind: type[ctypes.Structure]) -> list[str]:\n    \"\"\"The members of a struct.\"\"\"\n    \
+             return [field[0] for field in kind._fields_]\n";
+    text += "\n\n# The structs that have an _init, and the kind of each.\nKINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {\n";
+    for (kind, constant) in described.kinds() {
+        writeln!(text, "    \"{}\": ({}, {}),", kind.short_name(), constant.value, python_name(&kind.name))
+            .expect("text");
+    }
+    text + "}\n"
+}
+
+fn rust_layout(described: &Description) -> String {
+    let mut text = "\
+//! The sizes of the structs, and the offsets of their members, as Rust has them. Made from include/contact_normal.h; do not edit.
+
+use std::mem::offset_of;
+
+use contact_normal::ffi::*;
+
+/// \"struct\" and its size, then \"struct.member\" and its offset.
+#[rustfmt::skip]
+pub fn layout() -> Vec<(&'static str, usize)> {
+    vec![
+"
+    .to_owned();
+    for each in &described.structs {
+        let name = &each.name;
+        writeln!(text, "        (\"{name}\", size_of::<{name}>()),").expect("text");
+        for member in each.members.iter().map(|member| &member.name) {
+            writeln!(text, "        (\"{name}.{member}\", offset_of!({name}, {member})),").expect("text");
+        }
+    }
+    text + "    ]\n}\n"
+}
+
+/// The header of this clone.
+pub fn header() -> String {
+    std::fs::read_to_string(root().join("include/contact_normal.h")).expect("include/contact_normal.h")
+}
+
+#[test]
+fn the_committed_files_are_the_generated_ones() {
+    let described = Description::of(&header());
+    for (file, made) in [
+        ("include/contact_normal_types.inc", fortran_types(&described) + &fortran_public(&described)),
+        ("include/contact_normal_inits.inc", fortran_inits(&described)),
+        ("python/contact_normal/_structs.py", python_structs(&described)),
+        ("tests/clients/rust_layout.rs", rust_layout(&described)),
+    ] {
+        let path = root().join(file);
+        if std::env::var_os("CONTACT_NORMAL_WRITE_HEADER").is_some() {
+            std::fs::write(&path, &made).expect("a writable folder");
+        }
+        let committed = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(
+            committed == made,
+            "{file} is out of date: run CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated"
+        );
+    }
+}
