@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, integer, options
+from ._arguments import AccuracyOptions, Both, integer, options
 from ._callbacks import Surface
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
 from ._library import check, initialised, library
@@ -78,7 +78,7 @@ def cost_of_accuracy(
     force: float | None = None,
     shear_modulus: Both,
     poisson_ratio: Both,
-    **given: Unpack[SolveOptions],
+    **given: Unpack[AccuracyOptions],
 ) -> list[Price]:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import doubles, integers, pointer
-from ._constants import INITIAL_GUESS_GIVEN, INITIAL_GUESS_NONE, PRESCRIBED_APPROACH
+from ._constants import (
+    INITIAL_GUESS_GIVEN,
+    INITIAL_GUESS_NONE,
+    PRESCRIBED_APPROACH,
+    WARNING_BORDER,
+    WARNING_ERROR_UNKNOWN,
+    WARNING_ONE_ELEMENT,
+    WARNING_SPIKE,
+)
 from ._library import initialised, library
 from ._structs import LedgerRow, names
 
@@ -22,6 +30,12 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._stress import SubsurfaceStress
 
+_WARNINGS = {
+    "BORDER": WARNING_BORDER,
+    "ONE_ELEMENT": WARNING_ONE_ELEMENT,
+    "SPIKE": WARNING_SPIKE,
+    "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
+}
 # The groups of a report.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics")
 # Members of the tangential group that have the name of one of the normal problem.
@@ -137,6 +151,11 @@ class Result:
         estimated = "force" if self._scene.struct.load == PRESCRIBED_APPROACH else "approach"
         return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), estimated)
 
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN"."""
+        return tuple(name for name, bit in _WARNINGS.items() if self._report.warnings & bit)
+
     @property
     def approach(self) -> float:
         """Approach of the bodies."""
@@ -150,7 +169,8 @@ class Result:
     def __repr__(self) -> str:
         my, mx = self.pressure.shape
         status = library.contact_normal_status_text(self.status).decode()
-        return f"<Result: {status}; {mx} x {my} elements, force {self.force:.6g}, approach {self.approach:.6g}>"
+        warned = f", warnings: {', '.join(self.warnings)}" if self.warnings else ""
+        return f"<Result: {status}; {mx} x {my} elements, force {self.force:.6g}, approach {self.approach:.6g}{warned}>"
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the pressures and the outline of the contact area, seen from above.
@@ -242,7 +262,7 @@ def _value(value: Any) -> Any:
 
 def reported(report: Any) -> dict[str, Any]:
     """The numbers of all groups of a report: "force" is normal.force, "tangential_force" is tangential.force."""
-    found: dict[str, Any] = {"ledger_rows": report.ledger_rows}
+    found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
     for group in _GROUPS:
         members = getattr(report, group)
         for name in names(type(members)):

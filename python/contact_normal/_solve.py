@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, integer, options
+from ._arguments import AccuracyOptions, Both, SolveOptions, integer, options
 from ._callbacks import Progress, Surface, Watched
 from ._library import check, initialised, last_error, library
 from ._result import Outputs, Result
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def run(call: Callable[[Any, Any], int], scene: Scene, outputs: Outputs, watched: Watched) -> Result:
     """The result of `call(fields, report)`."""
     status = call(ctypes.byref(outputs.fields), ctypes.byref(outputs.report))
-    message = last_error() if status else ""
+    message = last_error() if status or outputs.report.warnings else ""
     watched.finish()
     check(status)
     return Result(status, message, outputs, outputs.report, scene)
@@ -162,7 +162,7 @@ def solve_to_accuracy(
     shear_modulus: Both,
     poisson_ratio: Both,
     progress: Callable[[Progress], Any] | bool | None = None,
-    **given: Unpack[SolveOptions],
+    **given: Unpack[AccuracyOptions],
 ) -> AccurateResult:
     """Solves on finer and finer grids until the estimated relative error of the force is at most `target`.
 
@@ -229,7 +229,7 @@ def solve_to_accuracy(
             ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy), ctypes.byref(handle),
             ctypes.byref(ledger.report),
         )
-        message = last_error() if status else ""
+        message = last_error() if status or ledger.report.warnings else ""
         watched.finish()
         if surface:
             surface.finish()
