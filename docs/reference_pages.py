@@ -15,8 +15,8 @@ def write(root: Path, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     page = c_page((include / "contact_normal.h").read_text(), Examples(root, "c_examples", "*.c"))
     (folder / "c.md").write_text(page)
-    parts = ("contact_normal.f90", "contact_normal_exports.inc", "contact_normal_norm_solve.inc")
-    page = fortran_page([(include / part).read_text() for part in parts], Examples(root, "fortran_examples", "*.f90"))
+    parts = [include / "contact_normal.f90", *sorted(include.glob("*.inc"))]
+    page = fortran_page([part.read_text() for part in parts], Examples(root, "fortran_examples", "*.f90"))
     (folder / "fortran.md").write_text(page)
     (folder / "python_members.txt").write_text(python_members())
 
@@ -96,8 +96,8 @@ def fortran_page(parts: list[str], examples: Examples) -> str:
     named: dict[str, tuple[str, str]] = {}
     for comment, code, _rest in found:
         name = re.search(r"(?:subroutine|function) (\w+)", code).group(1)
-        # norm_solve is there twice: the module's has the longer comment.
-        if name.startswith(("contact_normal_", "norm_solve")) and len(comment) > len(named.get(name, ("", ""))[0]):
+        # norm_solve and tang_solve are there twice: the module's have the longer comments.
+        if name.startswith(("contact_normal_", "norm_solve", "tang_solve")) and len(comment) > len(named.get(name, ("", ""))[0]):
             named[name] = (comment, code)
     out += ["## Procedures", ""]
     for name, (comment, code) in named.items():
@@ -105,8 +105,10 @@ def fortran_page(parts: list[str], examples: Examples) -> str:
         aligned = re.search(r"^ {2,}\S", told, re.MULTILINE)
         text = f"```text\n{told}\n```" if aligned else paragraphs(told)
         out += [f"### {name}", "", "```fortran", re.sub(r"\s+", " ", code), "```", "", text, "", *examples.of(name)]
-    if len(named) < 20 or "norm_solve" not in named:
-        raise ValueError(f"the module was not understood: {sorted(named)}")
+    listed = re.findall(r"^ *public :: (.*)$", re.sub(r" *&\n *", " ", module), re.MULTILINE)
+    public = {name for names in listed for name in re.findall(r"\w+", names)}
+    if public != set(named):
+        raise ValueError(f"the module was not understood: {sorted(public ^ set(named))}")
     return "\n".join(out) + "\n"
 
 

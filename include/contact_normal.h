@@ -77,6 +77,21 @@
 #define CONTACT_NORMAL_INTERNAL -99
 
 /*
+ The version of the header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
+ */
+#define CONTACT_NORMAL_VERSION_MAJOR 0
+
+/*
+ The second number of the version.
+ */
+#define CONTACT_NORMAL_VERSION_MINOR 2
+
+/*
+ The third number of the version.
+ */
+#define CONTACT_NORMAL_VERSION_PATCH 0
+
+/*
  Version of the ABI: grows with every release that adds to it.
  */
 #define CONTACT_NORMAL_ABI_VERSION 2
@@ -180,6 +195,11 @@
  `kind`: `contact_normal_cycle`. Since 0.2.
  */
 #define CONTACT_NORMAL_KIND_CYCLE 20
+
+/*
+ `kind`: `contact_normal_solver_info`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_SOLVER_INFO 21
 
 /*
  `load`: the approach of the bodies is given.
@@ -331,6 +351,26 @@
  `precision`: single precision in the inner work, where it helps; never in the result.
  */
 #define CONTACT_NORMAL_PRECISION_MIXED 2
+
+/*
+ `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
+ */
+#define CONTACT_NORMAL_WARNING_BORDER 1
+
+/*
+ `warnings`: one element in contact of many: the grid is too coarse, or the units of lengths and pressures do not go together.
+ */
+#define CONTACT_NORMAL_WARNING_ONE_ELEMENT 2
+
+/*
+ `warnings`: one element of several carries more than half of the force: the grid is too coarse there, or a value of h is wrong.
+ */
+#define CONTACT_NORMAL_WARNING_SPIKE 4
+
+/*
+ `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
+ */
+#define CONTACT_NORMAL_WARNING_ERROR_UNKNOWN 8
 
 /*
  `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
@@ -916,6 +956,15 @@ typedef struct contact_normal_options {
    The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
    */
   const struct contact_normal_cycle *cycle;
+  /*
+   Seconds of a call at most, looked at after each cycle: then ITERATION_LIMIT, and outputs hold the best iterate. In a batch those of
+   the whole call. Default 0: no limit.
+   */
+  double max_seconds;
+  /*
+   An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
+   */
+  const int32_t *stop;
 } contact_normal_options;
 
 /*
@@ -1277,6 +1326,14 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_ledger_row *ledger;
   /*
+   What to look at, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+   */
+  int32_t warnings;
+  /*
+   Always 0.
+   */
+  int32_t reserved;
+  /*
    What was found of the normal problem.
    */
   struct contact_normal_report_normal normal;
@@ -1293,6 +1350,44 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_statistics statistics;
 } contact_normal_report;
+
+/*
+ What a solver is: see `contact_normal_solver_query`.
+ */
+typedef struct contact_normal_solver_info {
+  /*
+   Set by `contact_normal_solver_info_init`.
+   */
+  int64_t struct_size;
+  /*
+   Elements in x of its grid.
+   */
+  int32_t mx;
+  /*
+   Elements in y.
+   */
+  int32_t my;
+  /*
+   Element size in x.
+   */
+  double dx;
+  /*
+   Element size in y.
+   */
+  double dy;
+  /*
+   Threads that it was set up with; 0: all cores.
+   */
+  int32_t threads;
+  /*
+   1: it holds a result, for `contact_normal_solver_fields`; 0: it does not.
+   */
+  int32_t has_result;
+  /*
+   Bytes that it holds.
+   */
+  int64_t bytes;
+} contact_normal_solver_info;
 
 /*
  Where the results of n entries are written; NULL (the default of each): not wanted.
@@ -1619,7 +1714,7 @@ extern "C" {
 const char *contact_normal_status_text(contact_normal_status status);
 
 /*
- The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
+ The message of the last call on this thread that did not return OK, or returned OK with `report->warnings`, or "". It names the argument, its value and the rule.
  Never NULL; valid until the next call of this library on this thread. Since 0.1.
  */
 const char *contact_normal_last_error(void);
@@ -1704,8 +1799,14 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
                                                    struct contact_normal_fields *fields);
 
 /*
- Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. The library keeps up to 512 MiB of what
- solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
+ Says what a solver is: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+ */
+contact_normal_status contact_normal_solver_query(const struct contact_normal_solver *solver,
+                                                  struct contact_normal_solver_info *info);
+
+/*
+ Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. NULL is ignored. The library keeps
+ memory of what is freed for later solvers: see `contact_normal_release`. Since 0.1.
  */
 contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
 
@@ -1874,6 +1975,30 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
                                              int32_t level,
                                              void *user);
 
+/*
+ Gives back to the system what the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
+ Later calls make them anew. Since 0.2.
+ */
+contact_normal_status contact_normal_release(void);
+
+/*
+ How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 512 MiB. What is more is given back at
+ once. For processes that share a node: `contact_normal_keep(0)`, or as much as each may have. Since 0.2.
+ */
+contact_normal_status contact_normal_keep(int64_t bytes);
+
+/*
+ Writes how many `bytes` and how many `threads` are kept now (NULL: not wanted). Since 0.2.
+ */
+contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
+
+/*
+ 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
+ calls do ("batch", "accuracy", "price_list", "stress", "friction_batch", "solve_tangential", "sensitivities", "warnings", "keep",
+ "release"). Names of later versions are unknown here: 0. Since 0.2.
+ */
+int32_t contact_normal_has(const char *name);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -2036,6 +2161,14 @@ static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solut
 static inline void contact_normal_cycle_init(contact_normal_cycle *cycle)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_CYCLE, cycle, (int64_t)sizeof(contact_normal_cycle));
+}
+
+/*
+ Fills a contact_normal_solver_info with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_solver_info_init(contact_normal_solver_info *solver_info)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_SOLVER_INFO, solver_info, (int64_t)sizeof(contact_normal_solver_info));
 }
 
 #endif  /* CONTACT_NORMAL_H */

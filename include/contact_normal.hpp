@@ -305,7 +305,7 @@ using progress = std::function<bool(const contact_normal_progress &)>;
 /// What a solve found. The arrays have my * mx values, x fastest.
 struct result {
     contact_normal_status status = CONTACT_NORMAL_OK;
-    std::string message; // why, if the status is not OK
+    std::string message; // why, if the status is not OK, and what report.warnings mean
     std::vector<double> pressure, deformed_distance, displacement;
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
     std::array<std::vector<double>, 2> traction, slip; // in x and y; zeros without friction
@@ -366,7 +366,8 @@ contact_normal_status run(std::size_t size, result &found, options how, const co
     contact_normal_ledger_row_init(found.ledger.data());
     found.report.ledger = found.ledger.data(), found.report.ledger_capacity = ledger_room;
     found.status = call(&how, &fields, &found.report);
-    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    const bool is_silent = found.status == CONTACT_NORMAL_OK && found.report.warnings == 0;
+    found.message = is_silent ? "" : contact_normal_last_error();
     found.ledger.resize(found.status < 0 ? 0 : static_cast<std::size_t>(found.report.ledger_rows));
     found.report.ledger = nullptr, found.report.ledger_capacity = 0;
     if (watch.thrown) std::rethrow_exception(watch.thrown);

@@ -52,7 +52,7 @@ fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, al
     let status = limited_memory::with(p.len(), allowed, solve);
     // What is kept would serve the next solve in the place of allocations.
     // SAFETY: NULL.
-    unsafe { contact_normal_solver_free(null_mut()) };
+    contact_normal_release();
     assert!(status >= 0 || p == before, "outputs were written");
     status
 }
@@ -176,7 +176,7 @@ fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
     // Plans of transforms are the thread's: they are there the second time.
     for _ in 0..2 {
         // SAFETY (all): structs with their arrays, a handle of ours, and NULL.
-        unsafe { contact_normal_solver_free(null_mut()) };
+        contact_normal_release();
         let before = limited_memory::held();
         let mut handle = null_mut();
         let mut report: contact_normal_report = initialised(contact_normal_report_init);
@@ -185,7 +185,7 @@ fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
             contact_normal_solver_solve(handle, scene, &options, null_mut(), &mut report)
         };
         assert_eq!(status, CONTACT_NORMAL_OK, "{what}");
-        unsafe { contact_normal_solver_free(null_mut()) };
+        contact_normal_release();
         bytes = [report.statistics.bytes as f64, (limited_memory::held() - before) as f64];
         unsafe { contact_normal_solver_free(handle) };
     }

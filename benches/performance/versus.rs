@@ -70,26 +70,57 @@ impl Library {
     }
 
     /// # Safety
-    /// `F` is the type of the function of that name.
-    unsafe fn function<F: Copy>(&self, name: &str) -> F {
+    /// `F` is the type of the function of that name, if there is one.
+    unsafe fn find<F: Copy>(&self, name: &str) -> Option<F> {
         let symbol = CString::new(name).expect("a name");
         // SAFETY: the library is open.
         let address = unsafe { libc::dlsym(self.0, symbol.as_ptr()) };
-        assert!(!address.is_null(), "{name} is not exported");
         // SAFETY: by the caller: a pointer to a function, as large as any.
-        unsafe { std::mem::transmute_copy(&address) }
+        (!address.is_null()).then(|| unsafe { std::mem::transmute_copy(&address) })
     }
 
-    /// A struct as this library begins it: an older one fills less of it, and accepts the rest if that is zero.
+    /// A struct as this library begins it: that of ABI 2 is told its kind and its size, one of ABI 1 has a function for each struct, fills
+    /// less of it, and accepts the rest if that is zero.
     ///
     /// # Safety
-    /// `init` is the name of the `_init` of `T`.
-    unsafe fn initialised<T>(&self, init: &str) -> T {
+    /// `T` is the struct `contact_normal_<name>` of this kind, as the library has it.
+    unsafe fn initialised<T>(&self, name: &str, kind: i32) -> T {
         // SAFETY: all bytes are valid in structs of the ABI.
         let mut value: T = unsafe { std::mem::zeroed() };
-        // SAFETY: by the caller.
-        unsafe { self.function::<unsafe extern "C" fn(*mut T)>(init)(&mut value) };
+        let to = &raw mut value;
+        // SAFETY (both): the types of the headers.
+        unsafe {
+            match self.find::<unsafe extern "C" fn(i32, *mut c_void, i64)>("contact_normal_init") {
+                Some(init) => init(kind, to.cast(), size_of::<T>() as i64),
+                None => {
+                    let init = format!("contact_normal_{name}_init");
+                    self.find::<unsafe extern "C" fn(*mut T)>(&init).expect("an _init")(to);
+                }
+            }
+        }
         value
+    }
+
+    /// The defaults but for the number of threads, as bytes: the options of ABI 1 are laid out otherwise.
+    ///
+    /// # Safety
+    /// The library is one of this project.
+    unsafe fn options(&self, threads: i32) -> Vec<u64> {
+        // SAFETY: any symbol will do, it is not called.
+        let is_abi_2 = unsafe { self.find::<unsafe extern "C" fn()>("contact_normal_init") }.is_some();
+        // In words of 8 bytes: in ABI 1 `max_cycles` and `threads` share word 8.
+        if is_abi_2 {
+            // SAFETY: the struct of this header.
+            let mut options: contact_normal_options =
+                unsafe { self.initialised("options", CONTACT_NORMAL_KIND_OPTIONS) };
+            options.threads = threads;
+            // SAFETY: integers, numbers and pointers, in whole words.
+            return unsafe { std::mem::transmute::<contact_normal_options, [u64; 12]>(options) }.to_vec();
+        }
+        // SAFETY: 12 words, as in ABI 1.
+        let mut options: [u64; 12] = unsafe { self.initialised("options", CONTACT_NORMAL_KIND_OPTIONS) };
+        options[8] = (options[8] & 0xFFFF_FFFF) | (threads as u64) << 32;
+        options.to_vec()
     }
 }
 
@@ -105,24 +136,23 @@ pub fn call(library: &str, name: &str, m: usize, load: &str, threads: usize) {
         *mut contact_normal_report,
     ) -> contact_normal_status;
     // SAFETY (all): the types of the header.
-    let (mut scene, mut options, mut fields, solve) = unsafe {
+    let (mut scene, options, mut fields, solve) = unsafe {
         (
-            library.initialised::<contact_normal_scene>("contact_normal_scene_init"),
-            library.initialised::<contact_normal_options>("contact_normal_options_init"),
-            library.initialised::<contact_normal_fields>("contact_normal_fields_init"),
-            library.function::<Solve>("contact_normal_solve"),
+            library.initialised::<contact_normal_scene>("scene", CONTACT_NORMAL_KIND_SCENE),
+            library.options(threads as i32),
+            library.initialised::<contact_normal_fields>("fields", CONTACT_NORMAL_KIND_FIELDS),
+            library.find::<Solve>("contact_normal_solve").expect("contact_normal_solve"),
         )
     };
     (scene.mx, scene.my, scene.dx, scene.dy) = (m as i32, m as i32, case.grid.dx, case.grid.dy);
     (scene.undeformed_distance, scene.approach, scene.force) = (case.h.as_ptr(), approach, force);
     (scene.shear_modulus, scene.poisson_ratio) = (case.bodies.shear_modulus, case.bodies.poisson_ratio);
     scene.load = i32::from(load == "force");
-    options.threads = threads as i32;
     let mut p = vec![0.0; m * m];
     fields.pressure = p.as_mut_ptr();
     let mut once = || {
         // SAFETY: structs with their arrays.
-        let status = unsafe { solve(&scene, &options, &mut fields, null_mut()) };
+        let status = unsafe { solve(&scene, options.as_ptr().cast(), &mut fields, null_mut()) };
         assert_eq!(status, CONTACT_NORMAL_OK, "{name} {m}");
     };
     once();

@@ -23,7 +23,26 @@ if TYPE_CHECKING:
 Both = Union[float, "npt.ArrayLike"]
 
 
-class SolveOptions(TypedDict, total=False):
+class AccuracyOptions(TypedDict, total=False):
+    """The options of calls that have a limit of time of their own; see `SolveOptions`."""
+
+    method: str | int
+    smoother: str | int
+    pre_sweeps: int
+    post_sweeps: int
+    relaxation: float
+    coarsest: int
+    active_set: str | int
+    initial_guess: str | int
+    criterion: str | int
+    tolerance: float
+    error_ratio: float
+    max_cycles: int
+    threads: int
+    precision: str | int
+
+
+class SolveOptions(AccuracyOptions, total=False):
     """The options of a solve: the members of `contact_normal_options` and `contact_normal_cycle`. A name stands for its constant: `method="NORM"`.
 
     Attributes
@@ -50,26 +69,15 @@ class SolveOptions(TypedDict, total=False):
         If > 0, the solve may stop once the residual is below this part of the estimated discretisation error; default 0.
     max_cycles : int
         Cycles, or iterations, on the finest grid at most; default 1000.
+    max_seconds : float
+        If > 0, the call ends after so many seconds, with the best so far; default 0: no limit.
     threads : int
         Default 1; 0: all cores.
     precision : str or int
         "AUTO" (default), "DOUBLE" or "MIXED".
     """
 
-    method: str | int
-    smoother: str | int
-    pre_sweeps: int
-    post_sweeps: int
-    relaxation: float
-    coarsest: int
-    active_set: str | int
-    initial_guess: str | int
-    criterion: str | int
-    tolerance: float
-    error_ratio: float
-    max_cycles: int
-    threads: int
-    precision: str | int
+    max_seconds: float
 
 
 def integer(name: str, value: Any, bits: int = 32) -> int:

@@ -222,7 +222,7 @@ def made(work: Callable[[], T], short: bool = False) -> T:
 def called(
     function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False
 ) -> tuple[int, str]:
-    """The status of a function of the library, and its message, which belongs to the thread that calls.
+    """The status of a function of the library, and its message, which belongs to the thread that calls: with OK and no warnings, of an earlier call.
 
     With a handle, its address is the first argument. `keep` lives at least until the function returns.
     """
@@ -237,7 +237,7 @@ _NO_HANDLE = nullcontext(())
 def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, _keep: Any) -> tuple[int, str]:
     with _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
-        return status, last_error() if status else ""
+        return status, last_error()
 
 
 def parts(count: int, first: int) -> Iterator[slice]:

@@ -152,11 +152,12 @@ def friction_batch(
     results, report = found._results(), initialised("report")
     untouched = -(2**31)
     found.status[:] = untouched
-    status, found.message = watched.call(
+    status, message = watched.call(
         library.contact_normal_friction_batch, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
         ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), keep=(scene, pressures, table, found),
     )
     if not len(table) or untouched in found.status:
-        check(status, found.message)
+        check(status, message)
+    found.message = message if status else ""
     found.report = reported(report)
     return found

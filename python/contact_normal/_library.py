@@ -25,6 +25,7 @@ from ._structs import (
     Price,
     Report,
     Scene,
+    SolverInfo,
     StressOutputs,
 )
 
@@ -34,6 +35,10 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "last_error": (c_char_p, []),
     "version": (c_char_p, []),
     "abi_version": (c_int32, []),
+    "has": (c_int32, [c_char_p]),
+    "release": (c_int32, []),
+    "keep": (c_int32, [c_int64]),
+    "kept": (c_int32, [POINTER(c_int64), POINTER(c_int32)]),
     "init": (None, [c_int32, c_void_p, c_int64]),
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solve_tangential": (
@@ -52,6 +57,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     ),
     "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
+    "solver_query": (c_int32, [c_void_p, POINTER(SolverInfo)]),
     "solver_free": (c_int32, [c_void_p]),
     "solve_to_accuracy": (
         c_int32,

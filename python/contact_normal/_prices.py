@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ._arguments import Both, SolveOptions, doubles, options
+from ._arguments import AccuracyOptions, Both, doubles, options
 from ._calls import called
 from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
 from ._library import check, initialised, library
@@ -79,7 +79,7 @@ def cost_of_accuracy(
     poisson_ratio: Both | None = None,
     young_modulus: Both | None = None,
     e_star: float | None = None,
-    **given: Unpack[SolveOptions],
+    **given: Unpack[AccuracyOptions],
 ) -> list[Price]:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 

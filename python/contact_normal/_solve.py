@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ._arguments import Both, SolveOptions, number, options
+from ._arguments import AccuracyOptions, Both, SolveOptions, number, options
 from ._callbacks import Progress, Watched
 from ._calls import called
 from ._handle import Handle
@@ -183,7 +183,7 @@ def solve_to_accuracy(
     e_star: float | None = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
-    **given: Unpack[SolveOptions],
+    **given: Unpack[AccuracyOptions],
 ) -> AccurateResult:
     """Solves on finer and finer grids until the estimated relative error of the force is at most `target`.
 

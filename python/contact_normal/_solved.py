@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._constants import WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_SPIKE
 from ._library import library
 from ._structs import names
 from ._units import Units, checked, with_unit
@@ -24,13 +25,19 @@ if TYPE_CHECKING:
 
 # The groups of a report.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics")
+_WARNINGS = {
+    "BORDER": WARNING_BORDER,
+    "ONE_ELEMENT": WARNING_ONE_ELEMENT,
+    "SPIKE": WARNING_SPIKE,
+    "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
+}
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
 
 
 def reported(report: Any) -> dict[str, Any]:
     """The numbers of all groups of a report, tuples of those of its arrays: "force" is normal.force, "tangential_force" is tangential.force."""
-    found: dict[str, Any] = {"ledger_rows": report.ledger_rows}
+    found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
     for group in _GROUPS:
         members = getattr(report, group)
         for name in names(type(members)):
@@ -45,6 +52,8 @@ class Solved:
     """What a solve found, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
+        # A library that solved has a message of this solve where it stopped early or warns; else one of an earlier call.
+        message = message if status or report.warnings else ""
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
@@ -149,12 +158,18 @@ class Solved:
             told.append(with_unit(f"tangential_force ({x:.5g}, {y:.5g})", "force", self.units))
         return told
 
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN"."""
+        return tuple(name for name, bit in _WARNINGS.items() if self._report.warnings & bit)
+
     def __repr__(self) -> str:
         my, mx = self.pressure.shape
         status = library.contact_normal_status_text(self.status).decode()
         told = "" if self.status < 0 else ", " + ", ".join(self._numbers())
+        warned = f", warnings: {', '.join(self.warnings)}" if self.warnings else ""
         message = f"; {self.message}" if self.message else ""
-        return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{message}>"
+        return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{warned}{message}>"
 
     def plot_traction(self, axes: Axes | None = None) -> Axes:
         """Draws the tractions as arrows over the stick and slip areas, seen from above.

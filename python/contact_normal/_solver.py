@@ -210,7 +210,7 @@ class Solver:
         )
         if untouched in statuses:
             check(status, message)
-        messages = _messages(statuses, message)
+        messages = _messages(statuses, message if status else "")
         return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
     def set_influence(self, influence: Any) -> None:

@@ -184,6 +184,8 @@ class Options(ctypes.Structure):
         ("progress", ProgressCallback),
         ("user", c_void_p),
         ("cycle", POINTER(Cycle)),
+        ("max_seconds", c_double),
+        ("stop", POINTER(c_int32)),
     ]
 
 
@@ -310,10 +312,27 @@ class Report(ctypes.Structure):
         ("ledger_rows", c_int64),
         ("ledger_capacity", c_int64),
         ("ledger", POINTER(LedgerRow)),
+        ("warnings", c_int32),
+        ("reserved", c_int32),
         ("normal", ReportNormal),
         ("tangential", ReportTangential),
         ("accuracy", ReportAccuracy),
         ("statistics", ReportStatistics),
+    ]
+
+
+class SolverInfo(ctypes.Structure):
+    """contact_normal_solver_info."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("threads", c_int32),
+        ("has_result", c_int32),
+        ("bytes", c_int64),
     ]
 
 
@@ -457,4 +476,5 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "price": (18, Price),
     "hertz_solution": (19, HertzSolution),
     "cycle": (20, Cycle),
+    "solver_info": (21, SolverInfo),
 }

@@ -3,10 +3,11 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, Regions};
+use super::fields::contact_normal_fields;
 use super::guard::guard;
-use super::options::{self, contact_normal_options};
+use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
-use super::report::{contact_normal_fields, contact_normal_report};
+use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::solve::{run, Conclusion};
 use super::solver::{contact_normal_solver, Held, InUse};
@@ -14,8 +15,9 @@ use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::structs::{self, Versioned};
+use super::watcher::{concluded, Watcher};
 use crate::memory::collected;
-use crate::solver::{Options, Solver};
+use crate::solver::Solver;
 
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
 /// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
@@ -70,7 +72,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         let not_ok = Mutex::new(NotOk::default());
         solver.distribute(count, |i, worker| {
             // SAFETY: each problem is solved by one thread.
-            let outcome = unsafe { batch.solve(i, worker, &options.options) };
+            let outcome = unsafe { batch.solve(i, worker, &options) };
             not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
         })?;
         not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("problem").conclude()
@@ -158,13 +160,16 @@ impl Batch {
     }
 
     /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.
-    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Options) -> Conclusion {
+    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Translated) -> Conclusion {
         let mut solved = || -> Result<Conclusion, Refusal> {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             Solver::check_problem(&scene)?;
-            run(worker, (&scene, None), options, None, outputs, &mut Buffers::default())
+            let mut watcher = Watcher::without_callback(options);
+            let found =
+                run(worker, (&scene, None), &options.options, watcher.as_mut(), outputs, &mut Buffers::default())?;
+            Ok(concluded(watcher.as_ref(), found))
         };
         let outcome = solved().unwrap_or_else(Conclusion::from);
         if !self.statuses.is_null() {
@@ -196,6 +201,6 @@ impl NotOk {
     pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let lines: Vec<String> = self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
-        Conclusion { status, message: lines.join("\n") }
+        Conclusion { status, message: lines.join("\n"), warnings: 0 }
     }
 }

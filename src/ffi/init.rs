@@ -7,14 +7,17 @@ use super::coating::contact_normal_coating;
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
+use super::fields::contact_normal_fields;
 use super::friction::contact_normal_friction;
 use super::friction_batch::contact_normal_friction_results;
 use super::guard::guard;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
+use super::ledger::contact_normal_ledger_row;
 use super::options::{contact_normal_cycle, contact_normal_options};
 use super::price_list::contact_normal_price;
-use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
+use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
+use super::solver::contact_normal_solver_info;
 use super::special::contact_normal_hertz_solution;
 use super::status::CONTACT_NORMAL_OK;
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
@@ -60,6 +63,8 @@ pub const CONTACT_NORMAL_KIND_PRICE: i32 = 18;
 pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
 /// `kind`: `contact_normal_cycle`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_CYCLE: i32 = 20;
+/// `kind`: `contact_normal_solver_info`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_SOLVER_INFO: i32 = 21;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -93,6 +98,7 @@ pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i
                 CONTACT_NORMAL_KIND_PRICE => structs::init::<contact_normal_price>(to.cast(), size),
                 CONTACT_NORMAL_KIND_HERTZ_SOLUTION => structs::init::<contact_normal_hertz_solution>(to.cast(), size),
                 CONTACT_NORMAL_KIND_CYCLE => structs::init::<contact_normal_cycle>(to.cast(), size),
+                CONTACT_NORMAL_KIND_SOLVER_INFO => structs::init::<contact_normal_solver_info>(to.cast(), size),
                 // Of a newer header: its struct asks for nothing until a member is set, and then the scene refuses it.
                 _ => structs::init_unknown(to.cast(), size),
             }
@@ -136,5 +142,6 @@ mod tests {
         has_grown_by_zeros::<contact_normal_price>();
         has_grown_by_zeros::<contact_normal_hertz_solution>();
         has_grown_by_zeros::<contact_normal_cycle>();
+        has_grown_by_zeros::<contact_normal_solver_info>();
     }
 }

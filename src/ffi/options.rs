@@ -1,11 +1,14 @@
 //! `contact_normal_options`.
 
+use std::time::Instant;
+
 use libc::c_void;
 
 use super::arguments::{count, not_negative, reserved, Regions};
-use super::report::contact_normal_progress;
+use super::progress::contact_normal_progress;
 use super::status::Refusal;
 use super::structs::{self, versioned, Versioned};
+use crate::error::require;
 use crate::methods::multigrid::{CycleShape, SmootherKind};
 use crate::solver::{ActiveSet, Criterion, InitialGuess, Method, Options, Precision};
 
@@ -94,6 +97,11 @@ pub struct contact_normal_options {
     pub user: *mut c_void,
     /// The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
     pub cycle: *const contact_normal_cycle,
+    /// Seconds of a call at most, looked at after each cycle: then ITERATION_LIMIT, and outputs hold the best iterate. In a batch those of
+    /// the whole call. Default 0: no limit.
+    pub max_seconds: f64,
+    /// An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
+    pub stop: *const i32,
 }
 
 /// The cycle of the paper's methods.
@@ -122,7 +130,7 @@ versioned! {
 }
 
 versioned! {
-    contact_normal_options, contact_normal_options_init, 80,
+    contact_normal_options, contact_normal_options_init, 96,
     tolerance: Options::default().tolerance,
     max_cycles: Options::default().max_cycles as i32,
     threads: Options::default().threads as i32,
@@ -133,7 +141,12 @@ pub(super) struct Translated {
     pub given: contact_normal_options,
     cycle: Option<contact_normal_cycle>,
     pub options: Options,
+    /// When the call began.
+    pub began: Instant,
 }
+
+// SAFETY: the pointers are the caller's. Threads of ours use none but `stop`, which is read as an atomic.
+unsafe impl Sync for Translated {}
 
 impl Translated {
     /// Adds the struct, which stands at `at`, NULL or not, and its cycle.
@@ -145,11 +158,14 @@ impl Translated {
 
 /// Translates options; NULL: the defaults.
 pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result<Translated, Refusal> {
+    let began = Instant::now();
     // SAFETY: NULL or a struct that declares its size.
     let given = unsafe { structs::read_optional(options, "options")? }.unwrap_or_else(contact_normal_options::defaults);
     // SAFETY: likewise.
     let cycle = unsafe { structs::read_optional(given.cycle, "options->cycle")? };
     reserved("options->reserved", given.reserved)?;
+    let is_limit = given.max_seconds >= 0.0 && given.max_seconds.is_finite();
+    require(is_limit, "max_seconds", given.max_seconds, "it must be positive, or 0 for no limit")?;
     let options = Options {
         method: method(given.method)?,
         cycle: cycle.map_or(Ok(CycleShape::default()), shape)?,
@@ -183,7 +199,7 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
         estimates: false,
     };
     options.check()?;
-    Ok(Translated { given, cycle, options })
+    Ok(Translated { given, cycle, options, began })
 }
 
 fn shape(given: contact_normal_cycle) -> Result<CycleShape, Refusal> {

@@ -1,11 +1,16 @@
 //! What the caller wants written: fields, a report, a ledger; and what is read of them, the initial guess.
 
 use super::arguments::Regions;
-use super::report::{contact_normal_fields, contact_normal_ledger_row, contact_normal_report};
+use super::fields::contact_normal_fields;
+use super::ledger::contact_normal_ledger_row;
+use super::report::contact_normal_report;
 use super::status::Refusal;
 use super::structs::{self, Rows, Versioned};
+use super::warnings;
+use crate::contact::State;
 use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
+use crate::scene::Scene;
 use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
 
 /// The caller's output structs, after a check.
@@ -179,8 +184,13 @@ impl Outputs {
         }
     }
 
+    /// What the caller should know of a result; nothing where no report is wanted.
+    pub fn warnings(&self, scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
+        self.given_report.map_or(0, |_| warnings::of(scene, options, report, state))
+    }
+
     /// Writes the caller's report and ledger.
-    pub fn write_report(&self, report: &Report, rows: &[LedgerRow]) -> Result<(), Refusal> {
+    pub fn write_report(&self, report: &Report, rows: &[LedgerRow], warnings: i32) -> Result<(), Refusal> {
         let Some(given) = &self.given_report else { return Ok(()) };
         // Where there is not room for all, those of the finest grids.
         let skipped = rows.len().saturating_sub(self.ledger_capacity());
@@ -188,7 +198,7 @@ impl Outputs {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             rows[skipped..].iter().enumerate().for_each(|(i, row)| unsafe { ledger.write(i, &row.into()) });
         }
-        let report = contact_normal_report::of(report, rows.len(), given);
+        let report = contact_normal_report { warnings, ..contact_normal_report::of(report, rows.len(), given) };
         // SAFETY: not null: a struct that declares its size.
         unsafe { structs::write(self.report, &report) }
     }

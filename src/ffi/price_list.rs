@@ -157,6 +157,6 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
             // SAFETY: the caller has n rows.
             unsafe { written.write(i, &price.into()) };
         }
-        Conclusion { status: stop.into(), message: "the surface callback cancelled".into() }.conclude()
+        Conclusion { status: stop.into(), message: "the surface callback cancelled".into(), warnings: 0 }.conclude()
     })
 }

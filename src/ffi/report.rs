@@ -1,40 +1,9 @@
-//! `contact_normal_fields`, `contact_normal_report` and its ledger, `contact_normal_progress`.
+//! `contact_normal_report`: what a solve found, how wrong it is, and what it cost.
 
+use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};
 use super::structs::{versioned, Versioned};
 use crate::friction;
-use crate::solver::{LedgerRow, Limit, Progress, Report};
-
-/// Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
-/// array may overlap with another one, nor with anything that is read.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct contact_normal_fields {
-    /// Set by `contact_normal_fields_init`.
-    pub struct_size: i64,
-    /// p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area.
-    pub pressure: *mut f64,
-    /// e = h - approach + A p; +infinity where there is no surface.
-    pub deformed_distance: *mut f64,
-    /// u = A p.
-    pub displacement: *mut f64,
-    /// 0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
-    pub contact: *mut i32,
-    /// With friction: tractions q on body 1, in x and y; 0 where there is no contact, and without friction.
-    pub traction: [*mut f64; 2],
-    /// With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
-    pub slip: [*mut f64; 2],
-    /// With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
-    pub stick_slip: *mut i32,
-}
-
-versioned! { contact_normal_fields, contact_normal_fields_init, 80 }
-
-/// `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
-pub const CONTACT_NORMAL_UNTRUSTED_FORCE: i32 = 1;
-/// `untrusted`: that of the largest pressure (singular at an edge, or on a surface that the grid does not resolve).
-pub const CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE: i32 = 2;
-/// `untrusted`: that of the pressures.
-pub const CONTACT_NORMAL_UNTRUSTED_PRESSURE: i32 = 4;
+use crate::solver::{Limit, Report};
 
 /// `limited_by`: not known.
 pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
@@ -42,88 +11,6 @@ pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
 pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
 /// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
-
-/// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
-/// known, and if the bit is set in `untrusted`, not to be known from these grids.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct contact_normal_ledger_row {
-    /// Set by `contact_normal_ledger_row_init`, which the first row of an array needs, and by the solve.
-    pub struct_size: i64,
-    /// Elements in x of the grid.
-    pub mx: i32,
-    /// Elements in y.
-    pub my: i32,
-    /// Cycles on it.
-    pub cycles: i64,
-    /// Seconds since the solve began.
-    pub seconds: f64,
-    /// Work units since then: products, each weighted by its elements over those of the finest grid.
-    pub work_units: f64,
-    /// Relative residual over C.
-    pub residual: f64,
-    /// Approach.
-    pub approach: f64,
-    /// Force.
-    pub force: f64,
-    /// Largest pressure.
-    pub max_pressure: f64,
-    /// Contact area: that of the elements in contact.
-    pub contact_area: f64,
-    /// Contact area, corrected for the elements along its outline.
-    pub corrected_area: f64,
-    /// Estimated error of the force (of the approach, when the force is prescribed).
-    pub error_force: f64,
-    /// Of the largest pressure.
-    pub error_max_pressure: f64,
-    /// Of the contact area.
-    pub error_contact_area: f64,
-    /// Of the corrected area.
-    pub error_corrected_area: f64,
-    /// Of the pressures: rms of the error over that of p.
-    pub error_pressure: f64,
-    /// Elements in contact.
-    pub contact_count: i64,
-    /// CONTACT_NORMAL_UNTRUSTED_... bits.
-    pub untrusted: i32,
-    /// Always 0.
-    pub reserved: i32,
-}
-
-versioned! { contact_normal_ledger_row, contact_normal_ledger_row_init, 144 }
-
-/// Copies members of the same name, converted as C has them.
-macro_rules! copy {
-    ($from:expr => $to:ident: $($member:ident),+) => { $($to.$member = $from.$member as _;)+ };
-}
-
-/// Sets what rows of the ledger and reports both have of the result.
-macro_rules! set_measures {
-    ($to:ident, $measures:expr) => {
-        copy!($measures.certificate => $to: residual);
-        copy!($measures => $to: approach, force, max_pressure, contact_area, corrected_area, contact_count);
-    };
-}
-
-/// And of its errors.
-macro_rules! set_errors {
-    ($to:ident, $error:expr) => {
-        copy!($error => $to: untrusted);
-        ($to.error_force, $to.error_max_pressure) = ($error.force, $error.max_pressure);
-        ($to.error_contact_area, $to.error_corrected_area) = ($error.contact_area, $error.corrected_area);
-        $to.error_pressure = $error.pressure;
-    };
-}
-
-impl From<&LedgerRow> for contact_normal_ledger_row {
-    fn from(row: &LedgerRow) -> Self {
-        let mut to = Self::defaults();
-        copy!(row => to: mx, my, cycles, seconds, work_units);
-        set_measures!(to, row.measures);
-        set_errors!(to, row.error);
-        to
-    }
-}
 
 /// What was found of the normal problem: a group of `contact_normal_report`.
 #[repr(C)]
@@ -259,6 +146,10 @@ pub struct contact_normal_report {
     pub ledger_capacity: i64,
     /// In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
     pub ledger: *mut contact_normal_ledger_row,
+    /// What to look at, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+    pub warnings: i32,
+    /// Always 0.
+    pub reserved: i32,
     /// What was found of the normal problem.
     pub normal: contact_normal_report_normal,
     /// What was found of the tangential problem.
@@ -270,7 +161,7 @@ pub struct contact_normal_report {
 }
 
 versioned! {
-    contact_normal_report, contact_normal_report_init, 696,
+    contact_normal_report, contact_normal_report_init, 704,
     normal: contact_normal_report_normal { corrected_area: -1.0, ..Default::default() },
     accuracy: contact_normal_report_accuracy {
         error_force: -1.0,
@@ -332,37 +223,5 @@ impl contact_normal_report_accuracy {
             Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
             Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
         };
-    }
-}
-
-/// What the progress callback is told after each cycle.
-#[repr(C)]
-#[derive(Clone, Copy, Default)]
-pub struct contact_normal_progress {
-    /// Size of this struct in the library.
-    pub struct_size: i64,
-    /// Elements in x of the grid that the cycle was on.
-    pub mx: i32,
-    /// Elements in y.
-    pub my: i32,
-    /// Cycles on that grid so far.
-    pub cycles: i64,
-    /// Elements that changed sides in the last cycle.
-    pub active_set_changes: i64,
-    /// Seconds since the solve began.
-    pub seconds: f64,
-    /// Work units since then.
-    pub work_units: f64,
-    /// rms over C of the last change of p.
-    pub update: f64,
-    /// Relative residual over C, as far as it is known.
-    pub residual: f64,
-}
-
-impl From<&Progress> for contact_normal_progress {
-    fn from(progress: &Progress) -> Self {
-        let mut to = Self { struct_size: size_of::<Self>() as i64, ..Self::default() };
-        copy!(progress => to: mx, my, cycles, active_set_changes, seconds, work_units, update, residual);
-        to
     }
 }

@@ -1,13 +1,15 @@
 //! `contact_normal_solve`, and what it shares with the solver handle.
 
 use super::arguments::Regions;
-use super::floating_point::in_host_environment;
+use super::fields::contact_normal_fields;
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
-use super::report::{contact_normal_fields, contact_normal_progress, contact_normal_report};
+use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
-use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_OK};
+use super::status::{contact_normal_status, set_last_error, set_last_text, Refusal, CONTACT_NORMAL_OK};
+use super::warnings;
+use super::watcher::{concluded, why, Watcher};
 use crate::contact::State;
 use crate::scene::Scene;
 use crate::solver::{Method, Options, Outcome, Progress, ProgressCallback, Report, Solver};
@@ -67,14 +69,17 @@ impl Request<'_> {
 }
 
 /// How a solve ended, and its message; none after OK.
+#[derive(Default)]
 pub(super) struct Conclusion {
     pub status: contact_normal_status,
     pub message: String,
+    /// CONTACT_NORMAL_WARNING_... bits.
+    pub warnings: i32,
 }
 
 impl From<Refusal> for Conclusion {
     fn from(refusal: Refusal) -> Conclusion {
-        Conclusion { status: refusal.status, message: refusal.message }
+        Conclusion { status: refusal.status, message: refusal.message, warnings: 0 }
     }
 }
 
@@ -82,7 +87,7 @@ impl Conclusion {
     /// Of an outcome; what is not solved has a message.
     pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
         let message = if outcome == Outcome::Converged { String::new() } else { message() };
-        Conclusion { status: outcome.into(), message }
+        Conclusion { status: outcome.into(), message, warnings: 0 }
     }
 
     /// The end of an export: the message becomes that of this thread.
@@ -90,22 +95,15 @@ impl Conclusion {
         if self.status < CONTACT_NORMAL_OK {
             return Err(Refusal::new(self.status, self.message));
         }
-        if self.status > CONTACT_NORMAL_OK {
-            set_last_error(&self.message);
+        let warned = warnings::text(self.warnings);
+        match (self.status > CONTACT_NORMAL_OK, warned.is_empty()) {
+            (true, true) => set_last_error(&self.message),
+            (true, false) => set_last_error(&format!("{}; {}", self.message, warned.to_string_lossy())),
+            (false, false) => set_last_text(warned),
+            (false, true) => {}
         }
         Ok(self.status)
     }
-}
-
-/// What tells the caller's progress callback, and whether to cancel; none where there is none.
-pub(super) fn watcher(options: &Translated) -> Option<impl FnMut(&Progress) -> bool> {
-    let (callback, user) = (options.given.progress?, options.given.user);
-    Some(move |progress: &Progress| {
-        let progress = contact_normal_progress::from(progress);
-        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
-        // handle that solves refuses to be used.
-        in_host_environment(|| unsafe { callback(&progress, user) != 0 })
-    })
 }
 
 /// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches. A scene that is checked has its
@@ -117,9 +115,9 @@ pub(super) fn run_watched(
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<contact_normal_status, Refusal> {
-    let mut callback = watcher(options);
-    let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
-    run(solver, scene, &options.options, progress, outputs, buffers)?.conclude()
+    let mut watcher = Watcher::of(options);
+    let found = run(solver, scene, &options.options, watcher.as_mut(), outputs, buffers)?;
+    concluded(watcher.as_ref(), found).conclude()
 }
 
 /// Solves with a solver that is set up, and writes the outputs.
@@ -127,11 +125,13 @@ pub(super) fn run(
     solver: &mut Solver,
     (scene, lowest): (&Scene<'_>, Option<f64>),
     options: &Options,
-    progress: Option<ProgressCallback<'_>>,
+    watcher: Option<&mut Watcher>,
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<Conclusion, Refusal> {
     let n = scene.grid.len();
+    let mut told = watcher.map(|watcher| |progress: &Progress| watcher.told(progress));
+    let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
@@ -139,19 +139,11 @@ pub(super) fn run(
         Some(lowest) => solver.solve_checked((scene, lowest), options, guess, progress)?,
         None => solver.solve(scene, options, guess, progress)?,
     };
+    let warnings = outputs.warnings(scene, options, &report, solver.state());
     outputs.write_fields(solver);
-    outputs.write_report(&report, solver.ledger())?;
-    Ok(Conclusion::of(stop, || explain(stop, &report, options.method, Some(solver.state()))))
-}
-
-/// Why a loop ended, in words.
-pub(super) fn why(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Converged => "solved",
-        Outcome::IterationLimit => "max_cycles was reached",
-        Outcome::Cancelled => "the progress callback cancelled",
-        Outcome::Stagnated => "no further progress",
-    }
+    outputs.write_report(&report, solver.ledger(), warnings)?;
+    let message = || explain(stop, &report, options.method, Some(solver.state()));
+    Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
 }
 
 pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {

@@ -5,16 +5,16 @@ use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arguments::Regions;
+use super::fields::contact_normal_fields;
 use super::guard::guard;
 use super::influence::contact_normal_influence;
 use super::options::contact_normal_options;
 use super::outputs::{Buffers, Outputs};
-use super::report::{contact_normal_fields, contact_normal_report};
+use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
 use super::solve::{run_watched, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
-use super::structs;
-use crate::memory;
+use super::structs::{self, versioned, Versioned};
 use crate::solver::Solver;
 
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
@@ -168,13 +168,66 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
     })
 }
 
-/// Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. The library keeps up to 512 MiB of what
-/// solvers held, for the next of them; with NULL it gives that back to the system. Since 0.1.
+/// What a solver is: see `contact_normal_solver_query`.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_solver_info {
+    /// Set by `contact_normal_solver_info_init`.
+    pub struct_size: i64,
+    /// Elements in x of its grid.
+    pub mx: i32,
+    /// Elements in y.
+    pub my: i32,
+    /// Element size in x.
+    pub dx: f64,
+    /// Element size in y.
+    pub dy: f64,
+    /// Threads that it was set up with; 0: all cores.
+    pub threads: i32,
+    /// 1: it holds a result, for `contact_normal_solver_fields`; 0: it does not.
+    pub has_result: i32,
+    /// Bytes that it holds.
+    pub bytes: i64,
+}
+
+versioned! { contact_normal_solver_info, contact_normal_solver_info_init, 48 }
+
+/// Says what a solver is: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_solver_query(
+    solver: *const contact_normal_solver,
+    info: *mut contact_normal_solver_info,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY: NULL or a handle of ours.
+        let mut in_use = unsafe { InUse::begin(solver)? };
+        let Held { solver, .. } = in_use.held();
+        let grid = *solver.grid();
+        let found = contact_normal_solver_info {
+            mx: grid.mx as i32,
+            my: grid.my as i32,
+            dx: grid.dx,
+            dy: grid.dy,
+            threads: solver.threads() as i32,
+            has_result: i32::from(solver.has_solved()),
+            bytes: solver.bytes() as i64,
+            ..contact_normal_solver_info::defaults()
+        };
+        if info.is_null() {
+            return Err(Refusal::null("info"));
+        }
+        // SAFETY: not NULL: a struct that declares its size.
+        unsafe { structs::write(info, &found)? };
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. NULL is ignored. The library keeps
+/// memory of what is freed for later solvers: see `contact_normal_release`. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) -> contact_normal_status {
     guard(|| {
         if solver.is_null() {
-            memory::release();
             return Ok(CONTACT_NORMAL_OK);
         }
         // SAFETY: not null: a handle of ours. It stays in use, so that nothing else begins with it.

@@ -1,5 +1,6 @@
 //! Statuses, their texts, the last error message, versions.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 
@@ -37,6 +38,13 @@ pub const CONTACT_NORMAL_NOT_POSITIVE_DEFINITE: i32 = -7;
 pub const CONTACT_NORMAL_OUT_OF_MEMORY: i32 = -8;
 /// A bug of ours, caught at the boundary.
 pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
+
+/// The version of the header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
+pub const CONTACT_NORMAL_VERSION_MAJOR: i32 = 0;
+/// The second number of the version.
+pub const CONTACT_NORMAL_VERSION_MINOR: i32 = 2;
+/// The third number of the version.
+pub const CONTACT_NORMAL_VERSION_PATCH: i32 = 0;
 
 /// Version of the ABI: grows with every release that adds to it.
 pub const CONTACT_NORMAL_ABI_VERSION: i32 = 2;
@@ -92,12 +100,21 @@ impl From<Outcome> for i32 {
 }
 
 thread_local! {
-    static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
+    static LAST_ERROR: RefCell<Cow<'static, CStr>> = const { RefCell::new(Cow::Borrowed(c"")) };
 }
 
 pub(super) fn set_last_error(message: &str) {
     let text: Vec<u8> = message.bytes().filter(|&b| b != 0).collect();
     let message = CString::new(text).unwrap_or_default();
+    keep_message(Cow::Owned(message));
+}
+
+/// The same with a text that needs no memory.
+pub(super) fn set_last_text(message: &'static CStr) {
+    keep_message(Cow::Borrowed(message));
+}
+
+fn keep_message(message: Cow<'static, CStr>) {
     // A thread that is ending may have no such memory any more: then there is no message.
     let _ = LAST_ERROR.try_with(|last| last.replace(message));
 }
@@ -127,7 +144,7 @@ pub extern "C" fn contact_normal_status_text(status: contact_normal_status) -> *
     text_of(status).as_ptr()
 }
 
-/// The message of the last call on this thread that did not return OK, or "". It names the argument, its value and the rule.
+/// The message of the last call on this thread that did not return OK, or returned OK with `report->warnings`, or "". It names the argument, its value and the rule.
 /// Never NULL; valid until the next call of this library on this thread. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_last_error() -> *const c_char {

@@ -4,17 +4,17 @@ use super::arguments::{not_negative, optional, required, Regions};
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
-use super::solve::watcher;
+use super::solve::Conclusion;
 use super::status::{
-    contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
-    CONTACT_NORMAL_UNSUPPORTED,
+    contact_normal_status, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
+use super::watcher::{concluded, why, Watcher};
 use crate::effects;
 use crate::grid::Grid;
 use crate::memory::zeros;
-use crate::progress::ProgressCallback;
+use crate::progress::{Outcome, Progress, ProgressCallback};
 use crate::scene::Period;
 use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
@@ -170,8 +170,9 @@ fn run(
     outputs: &contact_normal_stress_outputs,
 ) -> Result<contact_normal_status, Refusal> {
     let threads = Threads::new(options.options.threads)?;
-    let mut callback = watcher(options);
-    let progress = callback.as_mut().map(|callback| callback as ProgressCallback<'_>);
+    let mut watcher = Watcher::of(options);
+    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
+    let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
     let (mut mises, mut shear) = (None, None);
     let all = stress::subsurface_stress(body, loads, depths, &outputs.wanted(), &threads, progress, |k, depth| {
         Maximum::join(&mut mises, &depth.von_mises, k, &body.grid);
@@ -187,8 +188,9 @@ fn run(
         }
     }
     if !all {
-        set_last_error("the progress callback cancelled; the depths done so far are written");
-        return Ok(CONTACT_NORMAL_CANCELLED);
+        let message = format!("{}; the depths done so far are written", why(Outcome::Cancelled));
+        let found = Conclusion { status: CONTACT_NORMAL_CANCELLED, message, warnings: 0 };
+        return concluded(watcher.as_ref(), found).conclude();
     }
     Ok(CONTACT_NORMAL_OK)
 }

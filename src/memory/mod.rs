@@ -15,6 +15,7 @@ use std::any::{Any, TypeId};
 use std::collections::VecDeque;
 use std::mem::{replace, take};
 use std::ops::Deref;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
 use crate::error::{Error, Result};
@@ -23,6 +24,8 @@ use pages::{ask_for_huge_pages, give_pages_back, lengthen};
 
 /// Bytes that are kept in the process, at most: more than a solve on 2048 x 2048 elements takes.
 const MOST_KEPT: usize = 512 << 20;
+/// As many as the caller allows.
+static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 /// Smaller blocks the allocator keeps by itself.
 const LEAST_KEPT: usize = 1 << 13;
 /// Who asks for more at once has no use for what is kept.
@@ -197,16 +200,24 @@ pub(crate) fn keep<A: Copy + Send + 'static, const K: usize>(arrays: [&mut Vec<A
 
 fn keep_one<A: Copy + Send + 'static>(values: Vec<A>) {
     let bytes = values.capacity() * size_of::<A>();
-    if !(LEAST_KEPT..=MOST_KEPT).contains(&bytes) {
+    let most = ALLOWED.load(Ordering::Relaxed);
+    if bytes < LEAST_KEPT || bytes > most {
         return;
     }
     let Ok(mut shelf) = SHELF.try_lock() else { return };
     shelf.bytes += bytes;
     let (kind, room) = (TypeId::of::<Vec<A>>(), values.capacity());
     shelf.blocks.push_back(Kept { bytes, kind, room, values: Box::new(values) });
-    while shelf.bytes > MOST_KEPT {
-        let Some(oldest) = shelf.blocks.pop_front() else { return };
-        shelf.bytes -= oldest.bytes;
+    shelf.shrink_to(most);
+}
+
+impl Shelf {
+    /// Drops what was kept first.
+    fn shrink_to(&mut self, most: usize) {
+        while self.bytes > most {
+            let Some(oldest) = self.blocks.pop_front() else { return };
+            self.bytes -= oldest.bytes;
+        }
     }
 }
 
@@ -239,6 +250,19 @@ pub(crate) fn release() {
     if let Ok(mut shelf) = SHELF.try_lock() {
         (shelf.blocks, shelf.bytes) = (VecDeque::new(), 0);
     }
+}
+
+/// Keeps no more than so many bytes from here on.
+pub(crate) fn keep_at_most(bytes: usize) {
+    ALLOWED.store(bytes, Ordering::Relaxed);
+    if let Ok(mut shelf) = SHELF.try_lock() {
+        shelf.shrink_to(bytes);
+    }
+}
+
+/// Bytes that are kept.
+pub(crate) fn kept() -> usize {
+    SHELF.try_lock().map_or(0, |shelf| shelf.bytes)
 }
 
 /// Values that are computed, of any type: their memory is not kept.

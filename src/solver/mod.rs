@@ -294,7 +294,13 @@ impl Solver {
         Ok(())
     }
 
-    fn bytes(&self) -> usize {
+    /// Threads that it was set up with; 0: all cores.
+    pub fn threads(&self) -> usize {
+        self.set_up.options.threads
+    }
+
+    /// Bytes of operators, workspace and results.
+    pub fn bytes(&self) -> usize {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();

@@ -216,3 +216,13 @@ impl Threads {
         }
     }
 }
+
+/// Ends the threads that are kept, and that no solver holds.
+pub(crate) fn release() {
+    Pool::release();
+}
+
+/// Threads that are kept, beside those of the callers.
+pub(crate) fn kept() -> usize {
+    Pool::kept()
+}

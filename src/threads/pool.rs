@@ -6,6 +6,7 @@
 //! *Between two passes* workers look for work for a while before they sleep: a solve has hundreds of passes of some 10 to 1000 us, with work of
 //! one thread between them, and waking a thread that sleeps takes some 50. They do not yield their core meanwhile (docs/notes/2026-11-performance-targets.md).
 
+use std::mem::take;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -55,6 +56,24 @@ impl Pool {
         let pool = Pool { process, count, workers: Arc::new(workers), awake: Arc::default() };
         pools.push(pool.clone());
         Ok(pool)
+    }
+
+    /// Ends the threads that no solver holds; those of others end with them.
+    pub fn release() {
+        let process = std::process::id();
+        for pool in take(&mut *POOLS.lock().unwrap_or_else(PoisonError::into_inner)) {
+            // Those of a parent process have no workers here, and dropping one would wait for them.
+            if pool.process != process {
+                std::mem::forget(pool.workers);
+            }
+        }
+    }
+
+    /// Threads that are kept in this process, beside those of the callers.
+    pub fn kept() -> usize {
+        let process = std::process::id();
+        let pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+        pools.iter().filter(|pool| pool.process == process).map(|pool| pool.count - 1).sum()
     }
 
     /// This pool, or after a fork another one; none: it could not be made.

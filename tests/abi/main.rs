@@ -11,3 +11,5 @@ mod odd_input;
 mod rows;
 mod struct_sizes;
 mod subsurface_stress;
+mod warnings;
+mod watching;

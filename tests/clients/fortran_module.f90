@@ -49,6 +49,9 @@ program fortran_module
   type(contact_normal_solver) :: solver
   type(contact_normal_accuracy) :: accuracy
   type(contact_normal_price) :: prices(2)
+  type(contact_normal_solver_info) :: info
+  integer(c_int64_t) :: kept
+  integer(c_int32_t) :: status
   type(contact_normal_fields) :: none_wanted
   real(dp), target :: h(M, M), p(M, M), u(M, M), e(M*M), cf(-M:M - 1, -M:M - 1)
   real(dp) :: half_space(M, M)
@@ -103,7 +106,15 @@ program fortran_module
   call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_STRUCT_SIZE, "fields without _init")
   call contact_normal_fields_init(none_wanted)
   call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_OK, "no fields wanted")
-  call contact_normal_solver_free(solver)
+  call hold(contact_normal_solver_query(solver, info) == CONTACT_NORMAL_OK, "what the solver is")
+  call hold(info%mx == accuracy%mx .and. info%has_result == 1 .and. info%bytes > 0, "its grid and its result")
+  call contact_normal_solver_free(solver, status)
+  call hold(status == CONTACT_NORMAL_OK, "it is freed")
+  call hold(contact_normal_release() == CONTACT_NORMAL_OK, "a release")
+  call hold(contact_normal_kept(bytes=kept) == CONTACT_NORMAL_OK, "how much is kept")
+  call hold(kept == 0, "nothing is kept")
+  call hold(contact_normal_has("friction"), "what the library has")
+  call hold(.not. contact_normal_has("magnetism"), "what it has not")
   ! What accuracies cost: the second is dearer; the largest pressure is one of its own.
   call hold(contact_normal_cost_of_accuracy(scene, [1e-2_dp, 1e-3_dp], prices) == CONTACT_NORMAL_OK, "a price list")
   call hold(all(prices%obstacle == CONTACT_NORMAL_OBSTACLE_NONE .and. prices%seconds > 0 .and. prices%mx > 0), "its rows")

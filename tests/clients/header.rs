@@ -21,6 +21,10 @@ fn the_committed_header_is_the_generated_one() {
         "effects",
         "friction",
         "options",
+        "warnings",
+        "fields",
+        "ledger",
+        "progress",
         "report",
         "solve",
         "solver",
@@ -33,6 +37,8 @@ fn the_committed_header_is_the_generated_one() {
         "stress_outputs",
         "stress",
         "log",
+        "kept",
+        "has",
     ] {
         builder = builder.with_src(root.join(format!("src/ffi/{file}.rs")));
     }
@@ -61,6 +67,11 @@ fn with_inits(header: &str) -> String {
 fn the_header_and_the_modules_have_the_versions_of_the_library() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");
     let abi = CONTACT_NORMAL_ABI_VERSION;
+    let version: Vec<&str> = env!("CARGO_PKG_VERSION").split('.').collect();
+    for (name, number) in ["MAJOR", "MINOR", "PATCH"].into_iter().zip(version) {
+        let stands = format!("\n#define CONTACT_NORMAL_VERSION_{name} {number}\n");
+        assert!(read("include/contact_normal.h").contains(&stands), "{stands:?}");
+    }
     for (file, stands) in [
         ("include/contact_normal.h", format!("\n * contact-normal {}: ", env!("CARGO_PKG_VERSION"))),
         ("include/contact_normal.h", format!("\n#define CONTACT_NORMAL_ABI_VERSION {abi}\n")),

@@ -163,7 +163,7 @@ static int silent(void)
     problem = scene();
     problem.struct_size = 1;
     if (solve(&problem, 1, p) != CONTACT_NORMAL_STRUCT_SIZE) return fail("a struct size");
-    contact_normal_solver_free(NULL);
+    contact_normal_release();
     return EXIT_SUCCESS;
 }
 

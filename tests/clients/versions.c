@@ -71,6 +71,7 @@ int main(void)
     GUARDED(stress_maximum, largest);
     GUARDED(hertz_solution, hertz);
     GUARDED(cycle, shape);
+    GUARDED(solver_info, info);
 
     flat(M, M, 0.5, 0.5, h, NULL);
     scene.it.mx = scene.it.my = M;
@@ -127,7 +128,8 @@ int main(void)
     check(contact_normal_solver_solve(solver, &scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solver_solve");
     check(contact_normal_solver_set_influence(solver, &influence.it) == CONTACT_NORMAL_OK, "solver_set_influence");
     check(contact_normal_solver_fields(solver, &fields.it) == CONTACT_NORMAL_OK, "solver_fields");
-    contact_normal_solver_free(solver);
+    check(contact_normal_solver_query(solver, &info.it) == CONTACT_NORMAL_OK && info.it.mx == M && info.it.has_result == 1, "solver_query");
+    check(contact_normal_solver_free(solver) == CONTACT_NORMAL_OK, "solver_free");
     scene.it.influence = NULL;
     for (int j = 0; j < M; j++) {
         for (int k = 0; k < M; k++) {
@@ -208,7 +210,8 @@ int main(void)
               is_untouched(accuracy.guard) && is_untouched(influence.guard) && is_untouched(rows.guard) && is_untouched(layer.guard) &&
               is_untouched(limit.guard) && is_untouched(period.guard) && is_untouched(patches.guard) && is_untouched(coating.guard) &&
               is_untouched(friction.guard) && is_untouched(results.guard) && is_untouched(stresses.guard) && is_untouched(largest.guard) &&
-              is_untouched(hertz.guard) && is_untouched(shape.guard),
+              is_untouched(hertz.guard) && is_untouched(shape.guard) &&
+              is_untouched(info.guard),
           "what lies beyond the structs");
     if (failures == 0) puts("all as expected");
     return failures != 0;

@@ -130,7 +130,7 @@ fn held(handle: &Handle) -> Option<Vec<f64>> {
 /// What is kept of solves before would serve in the place of allocations: gives it back.
 pub fn release() {
     // SAFETY: NULL is nothing to free.
-    unsafe { contact_normal_solver_free(null_mut()) };
+    contact_normal_release();
 }
 
 /// One failure after the other until a solve by `method` has all that it needs; whatever was solved before by `first`.

@@ -15,10 +15,10 @@ const SIZES: [(&str, i64); 13] = [
     ("patches", 32),
     ("row_tables", 32),
     ("friction", 200),
-    ("options", 80),
+    ("options", 96),
     ("cycle", 32),
     ("fields", 80),
-    ("report", 696),
+    ("report", 704),
     ("accuracy", 112),
 ];
 

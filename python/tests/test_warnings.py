@@ -1,0 +1,39 @@
+"""What a result warns of, and limits of time."""
+
+import unittest
+
+import numpy as np
+
+import contact_normal as cn
+
+STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
+X = (np.arange(32) - 15.5) * 0.1
+BALL = 0.02 * (X[None, :] ** 2 + X[:, None] ** 2)
+
+
+class Warnings(unittest.TestCase):
+    def test_a_contact_that_is_resolved_has_none(self) -> None:
+        result = cn.solve(BALL, 0.1, 0.1, force=100.0, **STEEL)
+        self.assertEqual((result.warnings, result.message), ((), ""))
+        self.assertNotIn("warnings", repr(result))
+
+    def test_one_element_in_contact(self) -> None:
+        h = BALL.copy()
+        h[16, 16] -= 1e-3
+        result = cn.solve(h, 0.1, 0.1, force=1e-3, **STEEL)
+        self.assertEqual((result.status, result.warnings), (cn.OK, ("ONE_ELEMENT", "ERROR_UNKNOWN")))
+        self.assertIn("one element is in contact", result.message)
+        self.assertIn("ONE_ELEMENT", repr(result))
+        self.assertEqual(result.report["warnings"], cn.WARNING_ONE_ELEMENT | cn.WARNING_ERROR_UNKNOWN)
+
+    def test_contact_at_the_border(self) -> None:
+        self.assertIn("BORDER", cn.solve(BALL, 0.1, 0.1, force=1e6, **STEEL).warnings)
+
+    def test_a_limit_of_time(self) -> None:
+        result = cn.solve(BALL, 0.1, 0.1, force=100.0, max_seconds=1e-9, tolerance=1e-14, method="NORM", **STEEL)
+        self.assertEqual(result.status, cn.ITERATION_LIMIT)
+        self.assertIn("max_seconds was reached", result.message)
+
+
+if __name__ == "__main__":
+    unittest.main()

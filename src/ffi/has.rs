@@ -1,0 +1,44 @@
+//! `contact_normal_has`: what this library can, by name.
+
+use std::ffi::CStr;
+
+use libc::c_char;
+
+/// Effects of a scene, members of the options and the fields, and what functions do.
+const NAMES: [&str; 22] = [
+    "accuracy",
+    "batch",
+    "coating",
+    "cycle",
+    "friction",
+    "friction_batch",
+    "influence",
+    "keep",
+    "layer",
+    "max_seconds",
+    "patches",
+    "period",
+    "pressure_limit",
+    "price_list",
+    "release",
+    "row_tables",
+    "sensitivities",
+    "solve_tangential",
+    "stick_slip",
+    "stop",
+    "stress",
+    "warnings",
+];
+
+/// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
+/// calls do ("batch", "accuracy", "price_list", "stress", "friction_batch", "solve_tangential", "sensitivities", "warnings", "keep",
+/// "release"). Names of later versions are unknown here: 0. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {
+    if name.is_null() {
+        return 0;
+    }
+    // SAFETY: not NULL: a text that ends with 0, by the conventions of the ABI.
+    let name = unsafe { CStr::from_ptr(name) };
+    i32::from(NAMES.iter().any(|known| known.as_bytes() == name.to_bytes()))
+}

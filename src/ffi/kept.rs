@@ -1,0 +1,44 @@
+//! What the library keeps for later calls, memory and threads: how much, how much at most, and its release.
+
+use super::guard::guard;
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use crate::{memory, threads};
+
+/// Gives back to the system what the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
+/// Later calls make them anew. Since 0.2.
+#[no_mangle]
+pub extern "C" fn contact_normal_release() -> contact_normal_status {
+    guard(|| {
+        memory::release();
+        threads::release();
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 512 MiB. What is more is given back at
+/// once. For processes that share a node: `contact_normal_keep(0)`, or as much as each may have. Since 0.2.
+#[no_mangle]
+pub extern "C" fn contact_normal_keep(bytes: i64) -> contact_normal_status {
+    guard(|| {
+        let refuse = |_| Refusal::invalid(format!("bytes is {bytes}; it must not be negative"));
+        memory::keep_at_most(usize::try_from(bytes).map_err(refuse)?);
+        Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// Writes how many `bytes` and how many `threads` are kept now (NULL: not wanted). Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_kept(bytes: *mut i64, threads: *mut i32) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (both): NULL or room for one value, by the conventions of the ABI.
+        unsafe {
+            if let Some(bytes) = bytes.as_mut() {
+                *bytes = i64::try_from(memory::kept()).unwrap_or(i64::MAX);
+            }
+            if let Some(threads) = threads.as_mut() {
+                *threads = i32::try_from(threads::kept()).unwrap_or(i32::MAX);
+            }
+        }
+        Ok(CONTACT_NORMAL_OK)
+    })
+}

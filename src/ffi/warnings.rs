@@ -1,0 +1,70 @@
+//! What the caller should know of a result, whatever its status: `report->warnings`.
+
+use std::ffi::{CStr, CString};
+use std::sync::OnceLock;
+
+use crate::contact::State;
+use crate::scene::{Period, Scene};
+use crate::solver::{ActiveSet, Options, Report};
+
+/// `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
+pub const CONTACT_NORMAL_WARNING_BORDER: i32 = 1;
+/// `warnings`: one element in contact of many: the grid is too coarse, or the units of lengths and pressures do not go together.
+pub const CONTACT_NORMAL_WARNING_ONE_ELEMENT: i32 = 2;
+/// `warnings`: one element of several carries more than half of the force: the grid is too coarse there, or a value of h is wrong.
+pub const CONTACT_NORMAL_WARNING_SPIKE: i32 = 4;
+/// `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
+pub const CONTACT_NORMAL_WARNING_ERROR_UNKNOWN: i32 = 8;
+
+/// Each with what a message says of it.
+const TEXTS: [(i32, &str); 4] = [
+    (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
+    (
+        CONTACT_NORMAL_WARNING_ONE_ELEMENT,
+        "one element is in contact: smaller elements, or the units of lengths and pressures",
+    ),
+    (
+        CONTACT_NORMAL_WARNING_SPIKE,
+        "one element carries more than half of the force: smaller elements, or a wrong value of h",
+    ),
+    (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, "the error is not known"),
+];
+
+/// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.
+pub(super) fn text(warnings: i32) -> &'static CStr {
+    static ALL: OnceLock<[CString; 1 << TEXTS.len()]> = OnceLock::new();
+    let said = |warnings: usize| {
+        let said: Vec<&str> =
+            TEXTS.iter().filter(|(bit, _)| warnings as i32 & bit != 0).map(|(_, text)| *text).collect();
+        CString::new(said.join("; ")).unwrap_or_default()
+    };
+    &ALL.get_or_init(|| std::array::from_fn(said))[warnings as usize % (1 << TEXTS.len())]
+}
+
+/// The warnings of a result.
+pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
+    let (measures, grid) = (&report.measures, &scene.grid);
+    if measures.contact_count == 0 || grid.len() == 1 {
+        return 0;
+    }
+    // A contact area that is given has neither a border that it may grow beyond nor an estimate.
+    let is_free = options.active_set == ActiveSet::Free;
+    let is_spike = measures.max_pressure * grid.element_area() > 0.5 * measures.force;
+    let found = [
+        (CONTACT_NORMAL_WARNING_BORDER, is_free && measures.edge_count > 0 && is_at_border(scene, state)),
+        (CONTACT_NORMAL_WARNING_ONE_ELEMENT, measures.contact_count == 1),
+        (CONTACT_NORMAL_WARNING_SPIKE, measures.contact_count > 1 && is_spike),
+        (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, is_free && options.estimates && report.error.force < 0.0),
+    ];
+    found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum()
+}
+
+/// Whether an element in contact lies on a row or column that has no neighbour beyond. Of a grid of one row or column, a line contact,
+/// that direction does not count.
+fn is_at_border(scene: &Scene<'_>, state: &State) -> bool {
+    let Period { x, y } = scene.period.unwrap_or(Period { x: false, y: false });
+    let (mx, my) = (scene.grid.mx, scene.grid.my);
+    let in_row = |iy: usize| (0..mx).any(|ix| state.contact[iy * mx + ix]);
+    let in_column = |ix: usize| (0..my).any(|iy| state.contact[iy * mx + ix]);
+    (!y && my > 1 && (in_row(0) || in_row(my - 1))) || (!x && mx > 1 && (in_column(0) || in_column(mx - 1)))
+}

@@ -1,0 +1,108 @@
+//! What is asked after each cycle: the caller's progress callback, a limit of time, and a stop from another thread.
+
+use std::sync::atomic::{AtomicI32, Ordering};
+use std::time::{Duration, Instant};
+
+use super::floating_point::in_host_environment;
+use super::options::{contact_normal_options, Translated};
+use super::progress::contact_normal_progress;
+use super::solve::Conclusion;
+use super::status::{CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_ITERATION_LIMIT};
+use crate::solver::{Outcome, Progress};
+
+/// Why a solve was ended from outside.
+#[derive(Clone, Copy, PartialEq)]
+enum Reason {
+    Callback,
+    Stop,
+    Late,
+}
+
+/// Asked after each cycle whether to end the solve.
+pub(super) struct Watcher {
+    given: contact_normal_options,
+    end: Option<Instant>,
+    reason: Option<Reason>,
+}
+
+impl Watcher {
+    /// None where there is nothing to ask.
+    pub fn of(options: &Translated) -> Option<Watcher> {
+        let given = options.given;
+        let seconds = Duration::try_from_secs_f64(given.max_seconds).ok().filter(|limit| !limit.is_zero());
+        let end = seconds.and_then(|limit| options.began.checked_add(limit));
+        let watches = given.progress.is_some() || !given.stop.is_null() || end.is_some();
+        watches.then_some(Watcher { given, end, reason: None })
+    }
+
+    /// For a thread of ours: no callback is called there.
+    pub fn without_callback(options: &Translated) -> Option<Watcher> {
+        let mut watcher = Watcher::of(options)?;
+        watcher.given.progress = None;
+        (!watcher.given.stop.is_null() || watcher.end.is_some()).then_some(watcher)
+    }
+
+    /// Whether to cancel.
+    pub fn told(&mut self, progress: &Progress) -> bool {
+        let stop = self.given.stop.cast_mut();
+        // SAFETY: not NULL: an integer of the caller's that another thread may set; only read here, and as an atomic.
+        let is_stopped = !stop.is_null() && unsafe { AtomicI32::from_ptr(stop) }.load(Ordering::Relaxed) != 0;
+        self.reason = if is_stopped {
+            Some(Reason::Stop)
+        } else if self.end.is_some_and(|end| Instant::now() >= end) {
+            Some(Reason::Late)
+        } else {
+            self.calls_back(progress).then_some(Reason::Callback)
+        };
+        self.reason.is_some()
+    }
+
+    fn calls_back(&self, progress: &Progress) -> bool {
+        let Some(callback) = self.given.progress else { return false };
+        let progress = contact_normal_progress::from(progress);
+        // SAFETY: the caller's function, called on the caller's thread with the caller's pointer; no lock is held, and the
+        // handle that solves refuses to be used.
+        in_host_environment(|| unsafe { callback(&progress, self.given.user) != 0 })
+    }
+
+    /// Why a solve that ended so was cancelled, in words.
+    fn why(&self) -> &'static str {
+        match self.reason {
+            Some(Reason::Late) => "max_seconds was reached",
+            Some(Reason::Stop) => "options->stop asked for it",
+            _ => CANCELLED,
+        }
+    }
+
+    /// The conclusion of a solve that this watched.
+    pub fn conclusion(&self, mut of: Conclusion) -> Conclusion {
+        if of.status == CONTACT_NORMAL_CANCELLED {
+            of.message = of.message.replace(CANCELLED, self.why());
+            if self.reason == Some(Reason::Late) {
+                of.status = CONTACT_NORMAL_ITERATION_LIMIT;
+            }
+        }
+        of
+    }
+}
+
+/// What messages say of a solve that was cancelled, where nothing else did it.
+const CANCELLED: &str = "the progress callback cancelled";
+
+/// Why a loop ended, in words.
+pub(super) fn why(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Converged => "solved",
+        Outcome::IterationLimit => "max_cycles was reached",
+        Outcome::Cancelled => CANCELLED,
+        Outcome::Stagnated => "no further progress",
+    }
+}
+
+/// The conclusion of a solve, by what watched it, if anything did.
+pub(super) fn concluded(watcher: Option<&Watcher>, of: Conclusion) -> Conclusion {
+    match watcher {
+        Some(watcher) => watcher.conclusion(of),
+        None => of,
+    }
+}

@@ -1,0 +1,94 @@
+//! What a report warns of, even where the status is OK.
+
+use std::ptr::null;
+
+use crate::call::last_error;
+use contact_normal::ffi::*;
+
+const M: usize = 32;
+const D: f64 = 0.1;
+
+/// A ball, and a spike of this height in its middle.
+fn ball(spike: f64) -> Vec<f64> {
+    let at = |k: usize| (k as f64 - 15.5) * D;
+    let mut h: Vec<f64> = (0..M * M).map(|i| 0.02 * (at(i % M).powi(2) + at(i / M).powi(2))).collect();
+    h[M / 2 * M + M / 2] -= spike;
+    h
+}
+
+/// A solve by force: the report and the message; the status is OK. `change` names effects and options.
+fn solved(
+    h: &[f64],
+    force: f64,
+    change: impl Fn(&mut contact_normal_scene, &mut contact_normal_options),
+) -> (contact_normal_report, String) {
+    let mut scene = contact_normal_scene {
+        undeformed_distance: h.as_ptr(),
+        load: CONTACT_NORMAL_PRESCRIBED_FORCE,
+        force,
+        ..Default::default()
+    };
+    (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, (h.len() / M) as i32, D, D);
+    (scene.shear_modulus, scene.poisson_ratio) = ([82000.0; 2], [0.28; 2]);
+    let (mut options, mut report) = (contact_normal_options::default(), contact_normal_report::default());
+    change(&mut scene, &mut options);
+    // SAFETY: structs with their arrays.
+    let status = unsafe { contact_normal_solve(&scene, &options, std::ptr::null_mut(), &mut report) };
+    assert_eq!(status, CONTACT_NORMAL_OK, "{}", last_error());
+    (report, if report.warnings == 0 { String::new() } else { last_error() })
+}
+
+fn plain(_: &mut contact_normal_scene, _: &mut contact_normal_options) {}
+
+#[test]
+fn a_contact_that_is_resolved_has_none() {
+    let (report, _) = solved(&ball(0.0), 2000.0, plain);
+    assert!(report.normal.contact_count > 50 && report.accuracy.error_force >= 0.0);
+    assert_eq!((report.warnings, report.normal.edge_count), (0, 0));
+}
+
+#[test]
+fn one_element_in_contact() {
+    let (report, message) = solved(&ball(1e-3), 1e-3, plain);
+    assert_eq!(report.normal.contact_count, 1);
+    assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_ONE_ELEMENT, 0);
+    assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, 0);
+    assert_eq!(report.warnings & (CONTACT_NORMAL_WARNING_SPIKE | CONTACT_NORMAL_WARNING_BORDER), 0);
+    assert!(message.contains("one element is in contact") && message.contains("error is not known"), "{message}");
+}
+
+#[test]
+fn contact_at_the_border_where_nothing_repeats_itself() {
+    let (report, message) = solved(&ball(0.0), 1e6, plain);
+    assert!(report.normal.edge_count > 0);
+    assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
+    assert!(message.contains("reaches the border"), "{message}");
+    // A line across the grid: at both ends in x, which the period joins; not in y.
+    let line: Vec<f64> = (0..M * M).map(|i| 0.02 * ((i / M) as f64 * D - 15.5 * D).powi(2)).collect();
+    let mut period = contact_normal_period { x: 1, ..Default::default() };
+    let border = |period: &contact_normal_period| {
+        let found = solved(&line, 100.0, |scene, _| scene.period = period).0;
+        assert!(found.normal.edge_count > 0);
+        found.warnings & CONTACT_NORMAL_WARNING_BORDER != 0
+    };
+    assert!(!border(&period));
+    (period.x, period.y) = (0, 1);
+    assert!(border(&period));
+    assert_ne!(solved(&line, 100.0, |scene, _| scene.period = null()).0.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
+    // A row of elements is a line contact: its one row is no border.
+    let row: Vec<f64> = ball(0.0)[..M].to_vec();
+    assert_eq!(solved(&row, 1.0, plain).0.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
+}
+
+#[test]
+fn one_element_that_carries_more_than_half() {
+    let mut seen = [false; 2];
+    for spike in [0.0, 1e-4, 1e-3, 3e-3, 6e-3, 8e-3, 1e-2, 1.2e-2, 1.5e-2] {
+        let (report, message) = solved(&ball(spike), 100.0, plain);
+        let carries = report.normal.contact_count > 1 && report.normal.max_pressure * D * D > 0.5 * report.normal.force;
+        assert_eq!(report.warnings & CONTACT_NORMAL_WARNING_SPIKE != 0, carries, "{spike}");
+        assert_eq!(message.contains("more than half of the force"), carries, "{message}");
+        seen[usize::from(carries)] = true;
+    }
+    assert_eq!(seen, [true; 2]);
+}
