@@ -1410,11 +1410,11 @@ typedef struct contact_normal_friction_results {
    */
   double *creepage;
   /*
-   As `tangential_residual` of the report, `[n]`.
+   As `tangential.residual` of the report, `[n]`.
    */
   double *residual;
   /*
-   As `tangential_gap` of the report, `[n]`.
+   As `tangential.gap` of the report, `[n]`.
    */
   double *gap;
   /*

@@ -161,7 +161,7 @@ class Solved:
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN"."""
-        return tuple(name for name, bit in _WARNINGS.items() if self._report.warnings & bit)
+        return tuple(name for name, bit in _WARNINGS.items() if self.report["warnings"] & bit)
 
     def __repr__(self) -> str:
         my, mx = self.pressure.shape

@@ -34,6 +34,8 @@ class Numbers(unittest.TestCase):
         self.assertAlmostEqual(found.mean_pressure, found.pressure.mean(), places=9)
         np.testing.assert_allclose(found.tangential_force, found.traction.sum(axis=(1, 2)) * DX * DY, atol=1e-9)
         np.testing.assert_allclose(found.tangential_force, (10.0, -5.0), atol=1e-4)
+        moment = ((X * found.traction[1]).sum() - (Y[:, None] * found.traction[0]).sum()) * DX * DY
+        self.assertAlmostEqual(found.report["tangential_moment"], moment, delta=1e-9 * np.abs(found.traction).sum())
         self.assertEqual(solve().tangential_force, (0.0, 0.0))
 
     def test_coordinates_of_a_callable_surface(self):

@@ -34,6 +34,22 @@ class TangentialInfluence(unittest.TestCase):
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
             self.assertGreater(np.count_nonzero(found.stick_slip == 1), 0)
 
+    def test_tables_of_unlike_bodies(self):
+        # As above with K/G = (1/G1 - 1/G2)/4 = 1/4: Axz = -K/(pi G) c, where c is the integral of x/(x^2 + y^2) over an element; Ayz likewise.
+        unlike = {"shear_modulus": (1 / 1.5, 1 / 0.5), "poisson_ratio": 0.0}
+        both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
+        xz = -0.25 / np.pi * corner_differences(lambda x, y: 0.5 * y * np.log(x**2 + y**2) + x * np.arctan(y / x))
+        friction = {"coefficient": 0.3, "creepage": (-0.004, 0.001)}
+        known, alike = (cn.solve(H, D, D, force=0.05, friction=friction, **bodies) for bodies in (unlike, BODIES))
+        largest = np.abs(known.traction).max()
+        self.assertGreater(np.abs(known.traction - alike.traction).max(), 0.05 * largest)
+        for scale in (1.0, 0.25):
+            tables = [table / scale for table in (both, both, np.zeros_like(both), xz, xz.T)]
+            own = {"influence": (*tables[:3], scale), "influence_cross": tables[3:]}
+            found = cn.solve(H, D, D, force=0.05, friction={**friction, **own}, **unlike)
+            self.assertEqual(found.status, cn.OK)
+            np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * largest)
+
     def test_a_batch_takes_tables_for_both_problems(self):
         # nu = 0: the normal displacements by a pressure are those in x by a traction in x (Kalker 1990, appendix B).
         both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi

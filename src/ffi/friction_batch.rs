@@ -31,9 +31,9 @@ pub struct contact_normal_friction_results {
     pub moment: *mut f64,
     /// Creepages in x and y, given or found, `[n][2]`.
     pub creepage: *mut f64,
-    /// As `tangential_residual` of the report, `[n]`.
+    /// As `tangential.residual` of the report, `[n]`.
     pub residual: *mut f64,
-    /// As `tangential_gap` of the report, `[n]`.
+    /// As `tangential.gap` of the report, `[n]`.
     pub gap: *mut f64,
     /// As `tangential_products` of the report, `[n]`.
     pub products: *mut f64,
