@@ -47,6 +47,17 @@ enum Way {
     Bracket,
 }
 
+impl Way {
+    /// As the log calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Way::Gradients => "the gradients' method",
+            Way::Newton(_) => "Newton's method",
+            Way::Bracket => "a bracket of creepages",
+        }
+    }
+}
+
 /// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: of the step before.
 pub fn solve(
     levels: &mut [Level],
@@ -140,7 +151,7 @@ fn one(
             break;
         }
         if k > 0 {
-            log::info!("tangential problem: no further progress, {way:?} goes on");
+            log::info!("tangential problem: no further progress, {} goes on", way.name());
             best.take_up(problem, state);
         }
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
