@@ -101,7 +101,7 @@ impl Library {
         value
     }
 
-    /// The defaults but for the number of threads, as bytes: the options of ABI 1 are laid out otherwise.
+    /// The default options with another number of threads, as bytes. ABI 1 and ABI 2 lay them out in different orders.
     ///
     /// # Safety
     /// The library is one of this project.

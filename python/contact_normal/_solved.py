@@ -12,7 +12,7 @@ import numpy as np
 from ._constants import WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_SPIKE
 from ._library import library
 from ._structs import names
-from ._units import Units, checked, with_unit
+from ._units import WithUnits, with_unit
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -48,7 +48,7 @@ def reported(report: Any) -> dict[str, Any]:
     return found
 
 
-class Solved:
+class Solved(WithUnits):
     """What a solve found, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
@@ -61,20 +61,11 @@ class Solved:
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
-        self._units = checked(units)
+        self.units = units
 
     def __getstate__(self) -> dict[str, Any]:
         # Pickled and copied as plain numbers: structs of the library hold addresses.
         return {name: value for name, value in {**self.__dict__, "report": self.report}.items() if name != "_report"}
-
-    @property
-    def units(self) -> Units:
-        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
-        return self._units
-
-    @units.setter
-    def units(self, units: Any) -> None:
-        self._units = checked(units)
 
     # What follows is made when it is first asked for: small problems take no longer than that would.
     @cached_property

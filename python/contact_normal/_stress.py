@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._units import Units, checked
+from ._units import Units, WithUnits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 COMPONENTS = (*TENSOR, "von_mises", "maximum_shear")
 
 
-class SubsurfaceStress:
+class SubsurfaceStress(WithUnits):
     """Stresses below the centres of the elements, positive in tension.
 
     Attributes
@@ -60,16 +60,6 @@ class SubsurfaceStress:
         my, mx = scene.shape
         self.x: Doubles = (np.arange(mx) + 0.5 - 0.5 * mx) * self.dx
         self.y: Doubles = (np.arange(my) + 0.5 - 0.5 * my) * self.dy
-        self._units: Units = None
-
-    @property
-    def units(self) -> Units:
-        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
-        return self._units
-
-    @units.setter
-    def units(self, units: Any) -> None:
-        self._units = checked(units)
 
     def place(self, middle: tuple[float, float], units: Units) -> None:
         """Moves the middle of the grid there."""

@@ -25,6 +25,21 @@ def checked(units: Any) -> Units:
     return length, force
 
 
+class WithUnits:
+    """What is told in units that may be named."""
+
+    _units: Units = None
+
+    @property
+    def units(self) -> Units:
+        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
+        return self._units
+
+    @units.setter
+    def units(self, units: Any) -> None:
+        self._units = checked(units)
+
+
 def unit(kind: str, units: Units) -> str:
     """That of a "length", "force", "pressure", "area" or "moment"; "" where none are known."""
     if units is None:

@@ -89,7 +89,7 @@ impl Line {
             let change = (second(to) - second(from)).abs();
             change.is_finite().then_some(change)
         };
-        // Waves of few elements have opposite signs there, too; but their second differences change as much farther off.
+        // Second differences of waves of few elements have opposite signs there, too. Farther off they change as much.
         let around = [change(-2, -1), change(2, 3), change(-1, 2)].into_iter().flatten().reduce(f64::max);
         // Where nothing is known around, a jump is not told from what bends.
         if !around.is_some_and(|around| found.abs() > STANDS_OUT * around) {

@@ -11,6 +11,7 @@ use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
 use crate::sums::mean;
 
+/// Why no approach is taken where a contact area that is given is full.
 const FULL: &str = "active_set is FIXED and all elements are in contact; with two periods the approach is relative to the mean plane, \
      and any force fits: prescribe the force";
 

@@ -13,9 +13,9 @@ use super::solve::Conclusion;
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned};
-use super::watcher::{concluded, Watcher};
+use super::watcher::{watched, Watcher};
 use crate::grid::Grid;
-use crate::solver::{solve_to_accuracy, Accuracy, Progress, ProgressCallback, Solver, SurfaceCallback};
+use crate::solver::{solve_to_accuracy, Accuracy, Solver, SurfaceCallback};
 
 /// Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
 /// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
@@ -105,29 +105,27 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let scene = unsafe { named.with_distance(&h)? };
         let asked = translate(&given)?;
         let mut write = surface(&given);
-        let mut watcher = Watcher::of(&translated);
-        let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
-        let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
-        let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
-
-        let found = outcome.solver.as_ref();
-        let grid = found.map(|found| *found.grid());
-        (given.mx, given.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
-        (given.dx, given.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
-        (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
-        let warned = |found: &Solver| outputs.warnings(&scene, &translated.options, &outcome.report, found.state());
-        let warnings = found.map_or(0, warned);
-        outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
-        // SAFETY: a struct that declares its size; NULL or room for a pointer.
-        unsafe {
-            structs::write(accuracy, &given)?;
-            if !solver.is_null() {
-                solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
+        let concluded = watched(Watcher::of(&translated), |progress| {
+            let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
+            let found = outcome.solver.as_ref();
+            let grid = found.map(|found| *found.grid());
+            (given.mx, given.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
+            (given.dx, given.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
+            (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
+            let warned = |found: &Solver| outputs.warnings(&scene, &translated.options, &outcome.report, found.state());
+            let warnings = found.map_or(0, warned);
+            outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
+            // SAFETY: a struct that declares its size; NULL or room for a pointer.
+            unsafe {
+                structs::write(accuracy, &given)?;
+                if !solver.is_null() {
+                    solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
+                }
             }
-        }
-        let found = Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings };
-        concluded(watcher.as_ref(), found).conclude()
+            Ok(Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings })
+        });
+        concluded?.conclude()
     })
 }
 

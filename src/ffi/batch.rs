@@ -15,7 +15,7 @@ use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::structs::{self, Versioned};
-use super::watcher::{concluded, Watcher};
+use super::watcher::{watched, Watcher};
 use crate::memory::collected;
 use crate::solver::Solver;
 
@@ -166,10 +166,9 @@ impl Batch {
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             Solver::check_problem(&scene)?;
-            let mut watcher = Watcher::without_callback(options);
-            let found =
-                run(worker, (&scene, None), &options.options, watcher.as_mut(), outputs, &mut Buffers::default())?;
-            Ok(concluded(watcher.as_ref(), found))
+            watched(Watcher::without_callback(options), |progress| {
+                run(worker, (&scene, None), &options.options, progress, outputs, &mut Buffers::default())
+            })
         };
         let outcome = solved().unwrap_or_else(Conclusion::from);
         if !self.statuses.is_null() {

@@ -13,10 +13,9 @@ use super::scene::contact_normal_scene;
 use super::solve::{explain, Conclusion, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
-use super::watcher::{concluded, why, Watcher};
+use super::watcher::{watched, why, Watcher};
 use crate::friction::{Report, Solution};
 use crate::memory::collected;
-use crate::progress::{Progress, ProgressCallback};
 use crate::solver::{solve_friction_batch, Ended, Entry, Outcome};
 
 /// Where the results of n entries are written; NULL (the default of each): not wanted.
@@ -100,23 +99,23 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
         };
         let entry = |&[x, y, spin]: &[f64; 3]| Entry { amount: [x, y], spin };
         let table = collected(given.iter().map(entry), "the entries of a table")?;
-        let mut watcher = Watcher::of(&options);
-        let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-        let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
-        let not_ok = Mutex::new(NotOk::default());
-        let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
-            // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
-            let outcome = unsafe { wanted.write(i, ended, solution) };
-            not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
-        };
-        let (stop, normal) = solve_friction_batch(&read, pressure, &table, &options.options, progress, found)?;
-        outputs.write_report(&normal, &[], 0)?;
-        let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
-        if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
-            return concluded(watcher.as_ref(), entries).conclude();
-        }
-        let message = || format!("the normal problem: {}", explain(stop, &normal, options.options.method, None));
-        concluded(watcher.as_ref(), Conclusion::of(stop, message)).conclude()
+        let concluded = watched(Watcher::of(&options), |progress| {
+            let not_ok = Mutex::new(NotOk::default());
+            let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
+                // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
+                let outcome = unsafe { wanted.write(i, ended, solution) };
+                not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
+            };
+            let (stop, normal) = solve_friction_batch(&read, pressure, &table, &options.options, progress, found)?;
+            outputs.write_report(&normal, &[], 0)?;
+            let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
+            if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
+                return Ok(entries);
+            }
+            let message = || format!("the normal problem: {}", explain(stop, &normal, options.options.method, None));
+            Ok(Conclusion::of(stop, message))
+        });
+        concluded?.conclude()
     })
 }
 

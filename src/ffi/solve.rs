@@ -9,10 +9,10 @@ use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, set_last_error, set_last_text, Refusal, CONTACT_NORMAL_OK};
 use super::warnings;
-use super::watcher::{concluded, why, Watcher};
+use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::scene::Scene;
-use crate::solver::{Method, Options, Outcome, Progress, ProgressCallback, Report, Solver};
+use crate::solver::{Method, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -115,9 +115,9 @@ pub(super) fn run_watched(
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<contact_normal_status, Refusal> {
-    let mut watcher = Watcher::of(options);
-    let found = run(solver, scene, &options.options, watcher.as_mut(), outputs, buffers)?;
-    concluded(watcher.as_ref(), found).conclude()
+    let solve =
+        |progress: Option<ProgressCallback<'_>>| run(solver, scene, &options.options, progress, outputs, buffers);
+    watched(Watcher::of(options), solve)?.conclude()
 }
 
 /// Solves with a solver that is set up, and writes the outputs.
@@ -125,13 +125,11 @@ pub(super) fn run(
     solver: &mut Solver,
     (scene, lowest): (&Scene<'_>, Option<f64>),
     options: &Options,
-    watcher: Option<&mut Watcher>,
+    progress: Option<ProgressCallback<'_>>,
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<Conclusion, Refusal> {
     let n = scene.grid.len();
-    let mut told = watcher.map(|watcher| |progress: &Progress| watcher.told(progress));
-    let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;

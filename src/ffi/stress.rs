@@ -5,16 +5,14 @@ use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::solve::Conclusion;
-use super::status::{
-    contact_normal_status, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED,
-};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
-use super::watcher::{concluded, why, Watcher};
+use super::watcher::{watched, why, Watcher};
 use crate::effects;
 use crate::grid::Grid;
 use crate::memory::zeros;
-use crate::progress::{Outcome, Progress, ProgressCallback};
+use crate::progress::{Outcome, ProgressCallback};
 use crate::scene::Period;
 use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
@@ -50,7 +48,8 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
             written.add_to(&mut regions, outputs, (n, body.grid.len()))?;
             regions.check()?;
             let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
-            run(&body, &loads, depths, &options, &written)
+            watched(Watcher::of(&options), |progress| run(&body, &loads, depths, (&options, &written), progress))?
+                .conclude()
         }
     })
 }
@@ -162,17 +161,15 @@ impl Load {
     }
 }
 
+/// Computes and writes the stresses while `progress` is told of each depth.
 fn run(
     body: &Body,
     loads: &Loads<'_>,
     depths: &[f64],
-    options: &Translated,
-    outputs: &contact_normal_stress_outputs,
-) -> Result<contact_normal_status, Refusal> {
+    (options, outputs): (&Translated, &contact_normal_stress_outputs),
+    progress: Option<ProgressCallback<'_>>,
+) -> Result<Conclusion, Refusal> {
     let threads = Threads::new(options.options.threads)?;
-    let mut watcher = Watcher::of(options);
-    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-    let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
     let (mut mises, mut shear) = (None, None);
     let all = stress::subsurface_stress(body, loads, depths, &outputs.wanted(), &threads, progress, |k, depth| {
         Maximum::join(&mut mises, &depth.von_mises, k, &body.grid);
@@ -187,10 +184,6 @@ fn run(
             unsafe { structs::write(to, &largest)? };
         }
     }
-    if !all {
-        let message = format!("{}; the depths done so far are written", why(Outcome::Cancelled));
-        let found = Conclusion { status: CONTACT_NORMAL_CANCELLED, message, warnings: 0 };
-        return concluded(watcher.as_ref(), found).conclude();
-    }
-    Ok(CONTACT_NORMAL_OK)
+    let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
+    Ok(Conclusion::of(outcome, || format!("{}; the depths done so far are written", why(outcome))))
 }

@@ -9,8 +9,8 @@ use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
 use super::solve::{explain, Conclusion, Request};
 use super::status::contact_normal_status;
-use super::watcher::{concluded, Watcher};
-use crate::solver::{solve_tangential, Progress, ProgressCallback};
+use super::watcher::{watched, Watcher};
+use crate::solver::solve_tangential;
 
 /// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
 /// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
@@ -30,13 +30,12 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
             unsafe { Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))? };
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
-        let mut watcher = Watcher::of(&options);
-        let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-        let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
-        let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
-        outputs.write_friction(Some(&solution), scene.grid.len());
-        outputs.write_report(&report, &[], 0)?;
-        let found = Conclusion::of(stop, || explain(stop, &report, options.options.method, None));
-        concluded(watcher.as_ref(), found).conclude()
+        let found = watched(Watcher::of(&options), |progress| {
+            let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
+            outputs.write_friction(Some(&solution), scene.grid.len());
+            outputs.write_report(&report, &[], 0)?;
+            Ok(Conclusion::of(stop, || explain(stop, &report, options.options.method, None)))
+        });
+        found?.conclude()
     })
 }

@@ -7,8 +7,8 @@ use super::floating_point::in_host_environment;
 use super::options::{contact_normal_options, Translated};
 use super::progress::contact_normal_progress;
 use super::solve::Conclusion;
-use super::status::{CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_ITERATION_LIMIT};
-use crate::solver::{Outcome, Progress};
+use super::status::{Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_ITERATION_LIMIT};
+use crate::solver::{Outcome, Progress, ProgressCallback};
 
 /// Why a solve was ended from outside.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,22 +28,23 @@ pub(super) struct Watcher {
 impl Watcher {
     /// None where there is nothing to ask.
     pub fn of(options: &Translated) -> Option<Watcher> {
-        let given = options.given;
+        Watcher::asking(options, options.given)
+    }
+
+    /// For a thread of ours: no callback is called there.
+    pub fn without_callback(options: &Translated) -> Option<Watcher> {
+        Watcher::asking(options, contact_normal_options { progress: None, ..options.given })
+    }
+
+    fn asking(options: &Translated, given: contact_normal_options) -> Option<Watcher> {
         let seconds = Duration::try_from_secs_f64(given.max_seconds).ok().filter(|limit| !limit.is_zero());
         let end = seconds.and_then(|limit| options.began.checked_add(limit));
         let watches = given.progress.is_some() || !given.stop.is_null() || end.is_some();
         watches.then_some(Watcher { given, end, reason: None })
     }
 
-    /// For a thread of ours: no callback is called there.
-    pub fn without_callback(options: &Translated) -> Option<Watcher> {
-        let mut watcher = Watcher::of(options)?;
-        watcher.given.progress = None;
-        (!watcher.given.stop.is_null() || watcher.end.is_some()).then_some(watcher)
-    }
-
     /// Whether to cancel.
-    pub fn told(&mut self, progress: &Progress) -> bool {
+    fn told(&mut self, progress: &Progress) -> bool {
         let stop = self.given.stop.cast_mut();
         // SAFETY: not NULL: an integer of the caller's that another thread may set; only read here, and as an atomic.
         let is_stopped = !stop.is_null() && unsafe { AtomicI32::from_ptr(stop) }.load(Ordering::Relaxed) != 0;
@@ -75,7 +76,7 @@ impl Watcher {
     }
 
     /// The conclusion of a solve that this watched.
-    pub fn conclusion(&self, mut of: Conclusion) -> Conclusion {
+    fn conclusion(&self, mut of: Conclusion) -> Conclusion {
         if of.status == CONTACT_NORMAL_CANCELLED {
             of.message = of.message.replace(CANCELLED, self.why());
             if self.reason == Some(Reason::Late) {
@@ -99,10 +100,15 @@ pub(super) fn why(outcome: Outcome) -> &'static str {
     }
 }
 
-/// The conclusion of a solve, by what watched it, if anything did.
-pub(super) fn concluded(watcher: Option<&Watcher>, of: Conclusion) -> Conclusion {
-    match watcher {
-        Some(watcher) => watcher.conclusion(of),
-        None => of,
-    }
+/// The conclusion of a solve that a watcher, if there is one, is told of.
+pub(super) fn watched(
+    mut watcher: Option<Watcher>,
+    solve: impl FnOnce(Option<ProgressCallback<'_>>) -> Result<Conclusion, Refusal>,
+) -> Result<Conclusion, Refusal> {
+    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
+    let found = solve(told.as_mut().map(|told| told as ProgressCallback<'_>))?;
+    Ok(match watcher {
+        Some(watcher) => watcher.conclusion(found),
+        None => found,
+    })
 }

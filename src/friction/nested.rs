@@ -124,7 +124,7 @@ fn one(
     part: f64,
     work: &mut Work<'_>,
 ) -> Result<Outcome> {
-    let Level { problem, state, memory, .. } = level;
+    let Level { problem, state, .. } = &mut *level;
     let grid = problem.grid;
     // Nothing moves, and nothing did: forces of 0 take no creepage then.
     if forces.are_zero() && problem.rms(|i| problem.slip[i]) == 0.0 {
@@ -138,6 +138,7 @@ fn one(
     let all = products_of(work.limit, certified);
     let ways = ways(forces, newton_first, (problem.operators.rolling.is_some(), certified));
     for (k, &way) in ways.iter().enumerate() {
+        let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
         // In turns where nearly all slips.
         let slipping = memory.tangent.slip_count as f64;
@@ -156,26 +157,33 @@ fn one(
         }
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
         let goal = Goal { tolerance, limit, certified, watch };
-        end = match way {
-            Way::Newton(manner) => {
-                let memory = (&mut memory.tangent, &mut memory.fields, &mut best);
-                newton::solve(problem, state, memory, (forces, manner), goal)?
-            }
-            Way::Bracket => bracket::solve(problem, state, (memory, &mut best), forces, goal)?,
-            Way::Gradients => {
-                let limit = if certified { limit } else { limit.min(COARSE_LIMIT) };
-                shift::solve(problem, state, memory, Goal { limit, ..goal })?
-            }
-        };
-        work.products += part * problem.take_products() as f64;
+        end = by(way, level, &mut best, forces, goal)?;
+        work.products += part * level.problem.take_products() as f64;
         if end != Outcome::Stagnated && !(end == Outcome::IterationLimit && certified) {
             break;
         }
     }
+    let Level { problem, state, memory, .. } = level;
     if end != Outcome::Converged && certified {
         best.restore(problem, state, forces);
     }
     best.give(&mut memory.fields);
     work.products += part * problem.take_products() as f64;
     Ok(end)
+}
+
+/// Solves one grid by one way.
+fn by(way: Way, level: &mut Level, best: &mut Best, forces: Forces, goal: Goal<'_>) -> Result<Outcome> {
+    let Level { problem, state, memory, .. } = level;
+    match way {
+        Way::Newton(manner) => {
+            let memory = (&mut memory.tangent, &mut memory.fields, best);
+            newton::solve(problem, state, memory, (forces, manner), goal)
+        }
+        Way::Bracket => bracket::solve(problem, state, (memory, best), forces, goal),
+        Way::Gradients => {
+            let limit = if goal.certified { goal.limit } else { goal.limit.min(COARSE_LIMIT) };
+            shift::solve(problem, state, memory, Goal { limit, ..goal })
+        }
+    }
 }

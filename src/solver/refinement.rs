@@ -160,7 +160,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
         return scene.load.check();
     }
     scene.check(&Threads::One)?;
-    scene.check_free_load(false)
+    scene.check_area(None)
 }
 
 /// The grid over the same rectangle with twice the elements in both directions, so many times; with half of them if the number is

@@ -42,7 +42,7 @@
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::passes::{Step, Update};
-use super::search::{Search, FIRST_FORECAST, LONGEST};
+use super::search::{Search, FIRST_FORECAST};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
@@ -53,6 +53,9 @@ use crate::progress::Goal;
 pub(super) const OWED: f64 = 0.1;
 /// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
 const FIRST_STEP: f64 = 0.4;
+/// A step is at most so many times as long as the forecast. Elements were held back for a step of that length: by a longer one far more would be
+/// truncated than it gains. Strips of two periods do not converge without.
+const LONGEST: f64 = 2.0;
 /// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
 /// many roundings without a fresh u.
 const ROUNDINGS: f64 = 800.0;

@@ -7,10 +7,6 @@ const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 
-/// A step is at most so many times as long as the forecast. Elements were held back for a step of that length: by a longer one far more would be
-/// truncated than it gains. Strips of two periods do not converge without.
-pub(super) const LONGEST: f64 = 2.0;
-
 /// What an iteration leaves to the next.
 pub(super) struct Search {
     /// alpha', if there is one.
