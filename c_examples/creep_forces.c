@@ -48,7 +48,7 @@ int main(void)
     results.force = force[0];
     results.moment = moment;
     results.slip_count = slip_count;
-    if (!solved(contact_normal_friction_batch(&scene, NULL, &options, N, entries[0], &results, &report), "contact_normal_friction_batch"))
+    if (!solved(contact_normal_solve_tangential(NULL, &scene, NULL, &options, N, entries[0], &results, &report), "contact_normal_solve_tangential"))
         return EXIT_FAILURE;
     printf("%ld elements in contact\ncreepage in 1e-3  spin in 1/m  Fx/(mu N)  Fy/(mu N)  Mz in Nm   slip\n", (long)report.normal.contact_count);
     for (i = 0; i < N; i++) {

@@ -47,8 +47,8 @@ program creep_forces
     end do
   end do
   call contact_normal_set_friction_results(results, force=force, moment=moment, slip_count=slip_count)
-  if (contact_normal_friction_batch(scene, options=options, n=N, entries=entries, results=results, report=report) /= &
-    CONTACT_NORMAL_OK) error stop "contact_normal_friction_batch failed"
+  if (contact_normal_solve_tangential(scene, options=options, n=N, entries=entries, results=results, report=report) /= &
+    CONTACT_NORMAL_OK) error stop "contact_normal_solve_tangential failed"
   print '(i0, a)', report%normal%contact_count, " elements in contact"
   print '(a)', "creepage in 1e-3  spin in 1/m  Fx/(mu N)  Fy/(mu N)  Mz in Nm   slip"
   do i = 1, N

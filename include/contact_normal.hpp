@@ -413,7 +413,7 @@ struct friction_table {
 };
 
 /// Solves the tangential problem of a scene with friction for each of the entries: the creepage (or force) in x and in y, and the spin.
-/// `pressure`: my * mx values, or none: those of the normal problem. See `contact_normal_friction_batch`; throws `error` if the call itself is
+/// `pressure`: my * mx values, or none: those of the normal problem. See `contact_normal_solve_tangential`; throws `error` if the call itself is
 /// refused, but not for an entry.
 inline friction_table friction_batch(const scene &of, view<std::array<double, 3>> entries, const options &given = {},
                                      const progress &told = {}, std::optional<view<double>> pressure = {})
@@ -439,7 +439,7 @@ inline friction_table friction_batch(const scene &of, view<std::array<double, 3>
     detail::watched watch{told, nullptr};
     if (told) how.progress = detail::on_progress, how.user = &watch;
     const contact_normal_scene scene = of.get();
-    found.status = contact_normal_friction_batch(&scene, pressure ? pressure->data() : nullptr, &how, static_cast<std::int32_t>(count),
+    found.status = contact_normal_solve_tangential(nullptr, &scene, pressure ? pressure->data() : nullptr, &how, static_cast<std::int32_t>(count),
                                                  count == 0 ? nullptr : entries.data()->data(), &results, &found.report);
     found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
     if (watch.thrown) std::rethrow_exception(watch.thrown);

@@ -19,6 +19,9 @@ pub enum Error {
     /// The influence coefficients are not those of a positive definite operator.
     #[error("{0}")]
     NotPositiveDefinite(String),
+    /// The influence coefficients are not those that the solver has.
+    #[error("{0}")]
+    InfluenceChanged(String),
     /// Memory for the operators or the workspace could not be had.
     #[error("{0}")]
     OutOfMemory(String),

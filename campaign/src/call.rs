@@ -194,7 +194,7 @@ impl Handle {
         let mut influence = initialised(contact_normal_influence_init);
         (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
         // SAFETY: a struct with a table of the size that it says.
-        unsafe { contact_normal_solver_set_influence(self.0, &influence) }
+        unsafe { contact_normal_solver_set_influence(self.0, &influence, std::ptr::null()) }
     }
 
     /// Solves cases that differ in surface and load only, in one call: its status, and what came of each.

@@ -148,8 +148,26 @@ pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
 /// The tangential problem of pressures that are given.
 pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
-        // SAFETY: structs with the arrays that they declare, and a pressure for each element.
-        unsafe { contact_normal_solve_tangential(scene, p.as_ptr(), options, fields, report) }
+        // SAFETY: the struct of this call.
+        let fields = unsafe { &*fields };
+        let n = p.len();
+        let (mut q, mut s) = (vec![0.0; 2 * n], vec![0.0; 2 * n]);
+        let mut results = contact_normal_friction_results::default();
+        (results.traction, results.slip, results.stick_slip) = (q.as_mut_ptr(), s.as_mut_ptr(), fields.stick_slip);
+        // SAFETY (all): structs with the arrays that they declare, and a pressure for each element.
+        let status = unsafe {
+            let p = p.as_ptr();
+            contact_normal_solve_tangential(null_mut(), scene, p, options, 1, null(), &mut results, report)
+        };
+        if status >= 0 {
+            for k in 0..2 {
+                for (from, to) in [(&q, fields.traction[k]), (&s, fields.slip[k])] {
+                    // SAFETY: one value an element.
+                    unsafe { std::ptr::copy_nonoverlapping(from[k * n..].as_ptr(), to, n) };
+                }
+            }
+        }
+        status
     })
 }
 

@@ -153,7 +153,7 @@ def friction_batch(
     untouched = -(2**31)
     found.status[:] = untouched
     status, message = watched.call(
-        library.contact_normal_friction_batch, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
+        library.contact_normal_solve_tangential, None, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
         ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), keep=(scene, pressures, table, found),
     )
     if not len(table) or untouched in found.status:

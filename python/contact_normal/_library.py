@@ -43,11 +43,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solve_tangential": (
         c_int32,
-        [POINTER(Scene), POINTER(c_double), POINTER(Options), POINTER(Fields), POINTER(Report)],
-    ),
-    "friction_batch": (
-        c_int32,
-        [POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],
+        [c_void_p, POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],
     ),
     "solver_new": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(c_void_p)]),
     "solver_solve": (c_int32, [c_void_p, POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
@@ -55,7 +51,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_void_p, c_int32] + [POINTER(kind) for kind in (Scene, Options, Fields, Report, c_int32)],
     ),
-    "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence)]),
+    "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence), POINTER(Friction)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
     "solver_query": (c_int32, [c_void_p, POINTER(SolverInfo)]),
     "solver_free": (c_int32, [c_void_p]),

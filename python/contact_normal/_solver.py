@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, distances, integer, options, shaped
+from ._arguments import Both, SolveOptions, distances, doubles, integer, options, shaped
 from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
 from ._calls import called, is_short, parts
@@ -21,10 +21,12 @@ from ._constants import OK
 from ._handle import Handle
 from ._library import check, library
 from ._outputs import Outputs
-from ._result import Result
+from ._friction import friction as friction_of
+from ._result import Result, TangentialResult
 from ._scene import Scene, influence as influence_of
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
+from ._tangential import of_pressures
 from ._units import checked
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ class Solver:
         Element sizes.
     shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
+    friction : mapping, optional
+        Its "influence" and "influence_cross": the tangential coefficients of later solves, whose friction need not have them again.
 
     Examples
     --------
@@ -77,6 +81,7 @@ class Solver:
         patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
         row_tables: Any = None,
         coating: Any = None,
+        friction: Mapping[str, Any] | None = None,
         units: tuple[str, str] | None = None,
         **given: Unpack[SolveOptions],
     ) -> None:
@@ -89,7 +94,7 @@ class Solver:
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
-                      effects={"influence": influence, "row_tables": row_tables, **self._effects})
+                      effects={"influence": influence, "row_tables": row_tables, "friction": friction, **self._effects})
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
         check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))
@@ -213,16 +218,47 @@ class Solver:
         messages = _messages(statuses, message if status else "")
         return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
-    def set_influence(self, influence: Any) -> None:
+    def solve_tangential(
+        self,
+        pressure: npt.ArrayLike,
+        *,
+        friction: Mapping[str, Any],
+        progress: Callable[[Progress], Any] | bool | None = None,
+        **given: Unpack[SolveOptions],
+    ) -> TangentialResult:
+        """The function `solve_tangential`, with what this solver keeps: coefficients, operators, and the tractions found last.
+
+        Parameters
+        ----------
+        pressure : array_like, (my, mx)
+            Those that are not positive count as no contact.
+        friction : mapping
+            As for `solve`; `"continues": True`: the tractions before are those found last.
+        progress, **given
+            As for `solve`; `initial_guess="PREVIOUS"` starts from the tractions found last.
+
+        Returns
+        -------
+        TangentialResult
+        """
+        pressures = shaped("pressure", doubles("pressure", pressure), self._shape)
+        scene = self._scene(np.zeros(self._shape), {"approach": 0.0}, None, friction)
+        return of_pressures(scene, pressures, options({**self._given, **given}), progress, self._units, self._handle)
+
+    def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.
 
         Parameters
         ----------
-        influence : array_like, (2 cy, 2 cx), or (array_like, scale)
+        influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
             As for `solve`.
+        friction : mapping, optional
+            Its "influence" and "influence_cross", as for `solve`.
         """
-        effect, table = influence_of(influence)
-        check(*called(library.contact_normal_solver_set_influence, ctypes.byref(effect), handle=self._handle, keep=table))
+        effect, table = (None, None) if influence is None else influence_of(influence)
+        tables, kept, _ = (None, None, "") if friction is None else friction_of(friction, self._shape)
+        structs = [None if struct is None else ctypes.byref(struct) for struct in (effect, tables)]
+        check(*called(library.contact_normal_solver_set_influence, *structs, handle=self._handle, keep=(table, kept)))
 
     def close(self) -> None:
         """Frees the handle, at once or when the call that uses it returns; a second call does nothing."""

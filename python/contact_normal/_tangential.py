@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
+from ctypes import c_int32
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
-from ._library import check, library
+from ._library import check, initialised, library
 from ._outputs import Outputs
 from ._result import TangentialResult
 from ._scene import Scene
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._arguments import Doubles
+    from ._handle import Handle
 
 
 def with_pressures(
@@ -93,14 +95,23 @@ def solve_tangential(
     scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
                                       young_modulus=young_modulus, effects=effects)
     assert pressures is not None
-    struct, outputs = options(given), Outputs(scene.shape, has_friction=True)
+    return of_pressures(scene, pressures, options(given), progress, units, None)
+
+
+def of_pressures(
+    scene: Scene, pressures: Doubles, struct: Any, progress: Callable[[Progress], Any] | bool | None, units: tuple[str, str] | None,
+    handle: Handle | None,
+) -> TangentialResult:
+    """Solves the tangential problem of a scene, with a handle or without."""
+    outputs, results = Outputs(scene.shape, has_friction=True), initialised("friction_results")
     outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
     outputs.contact[:] = outputs.doubles[0] > 0.0
-    # What is known is not written.
-    outputs.fields.pressure = outputs.fields.deformed_distance = outputs.fields.displacement = outputs.fields.contact = None
+    results.traction, results.slip = pointer(outputs.traction), pointer(outputs.slip)
+    results.stick_slip = pointer(outputs.stick_slip, c_int32)
     watched = Watched(progress, struct, scene)
+    no_handle = [] if handle else [None]
     status, message = watched.call(
-        library.contact_normal_solve_tangential, ctypes.byref(scene.struct), pointer(pressures), ctypes.byref(struct),
-        ctypes.byref(outputs.fields), ctypes.byref(outputs.report), keep=(scene, pressures, outputs),
+        library.contact_normal_solve_tangential, *no_handle, ctypes.byref(scene.struct), pointer(pressures), ctypes.byref(struct), 1, None,
+        ctypes.byref(results), ctypes.byref(outputs.report), handle=handle, keep=(scene, pressures, outputs),
     )
     return TangentialResult(check(status, message), message, outputs, outputs.report, scene, units)

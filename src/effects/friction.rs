@@ -97,6 +97,8 @@ pub struct Friction<'a> {
     pub spin_offset: f64,
     /// The tractions before.
     pub previous: Previous<'a>,
+    /// Tractions in x and y to start the iteration from, `[my][mx]` each; the solution does not depend on them.
+    pub initial: Option<[&'a [f64]; 2]>,
     /// A rigid slip of the caller's in addition, lengths per step, x and y.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
     /// Tangential coefficients of the caller's own; none: those of the half-space.
@@ -118,6 +120,7 @@ impl Friction<'_> {
             rolling_direction: 0.0,
             spin_offset: 1.0 / 6.0,
             previous: Previous::None,
+            initial: None,
             rigid_slip: None,
             influence: None,
             sensitivities: false,
@@ -212,6 +215,10 @@ impl Friction<'_> {
         {
             check_values(name, own, grid, small)?;
         }
+        let starts = ["friction->initial_traction[0]", "friction->initial_traction[1]"];
+        for (name, q) in starts.iter().zip(self.initial.iter().flatten()) {
+            check_values(name, q, grid, finite)?;
+        }
         let Previous::Given(before) = self.previous else { return Ok(()) };
         for (name, q) in ["friction->previous_traction[0]", "friction->previous_traction[1]"].iter().zip(before) {
             match self.motion {
@@ -273,7 +280,6 @@ impl Effect for Friction<'_> {
     }
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
-        self.check(&scene.grid)?;
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
         let has_bodies = !others.iter().flatten().any(|other| other.replaces_bodies());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());

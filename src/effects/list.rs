@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::effect::Effect;
-use crate::error::{Error, Result};
+use crate::error::{invalid, Error, Result};
 use crate::influence::{Coefficients, HalfSpace};
-use crate::scene::Scene;
+use crate::scene::{Friction, Scene};
 use crate::threads::Threads;
 
 /// Number of effects.
@@ -84,11 +84,35 @@ impl Scene<'_> {
     /// Checks everything the solver relies on: each effect, the pairs that are not solved, and the bodies if they matter. Returns the least distance.
     pub fn check(&self, threads: &Threads) -> Result<f64> {
         let lowest = self.check_distance_and_load(threads)?;
+        self.check_effects_and_bodies()?;
+        Ok(lowest)
+    }
+
+    /// Checks all but the distance and the load.
+    pub fn check_effects_and_bodies(&self) -> Result<()> {
+        self.grid.check()?;
         check_effects(self)?;
         if !replace_bodies(self) {
             check_bodies(self)?;
         }
-        Ok(lowest)
+        Ok(())
+    }
+
+    /// The friction of a scene whose pressures are given; refuses what goes not with the bodies.
+    pub fn tangential(&self) -> Result<&Friction<'_>> {
+        self.grid.check()?;
+        let Some(friction) = &self.friction else {
+            return invalid("friction is not given: there is nothing to solve".into());
+        };
+        friction.check_load(&self.plain(), &list(self))?;
+        Ok(friction)
+    }
+
+    /// The same; checks all but the distance and the load.
+    pub fn check_tangential(&self) -> Result<&Friction<'_>> {
+        let friction = self.tangential()?;
+        self.check_effects_and_bodies()?;
+        Ok(friction)
     }
 
     /// Checks what changes from solve to solve. Returns the least distance.

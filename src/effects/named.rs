@@ -9,8 +9,13 @@ use std::sync::Arc;
 
 use super::effect::{Effect, Value};
 use super::list::{effects, list, replace_bodies, COUNT};
+use crate::error::{invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
+
+/// What to do where coefficients are others.
+pub const SET_THEM: &str =
+    "leave them out, or set them first (influence and tangential tables: contact_normal_solver_set_influence)";
 
 /// What is kept of a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,25 +83,29 @@ impl Named {
         });
     }
 
-    /// What of another scene is not as at the set-up; none if all is.
-    pub fn differs(&self, scene: &Scene<'_>) -> Option<String> {
+    /// Refuses another scene that is not as at the set-up.
+    pub fn check(&self, scene: &Scene<'_>) -> Result<()> {
         if let Some(bodies) = self.bodies.filter(|bodies| !replace_bodies(scene) && *bodies != scene.bodies) {
-            return scene.bodies.differs(&bodies);
+            return scene.bodies.differs(&bodies).map_or(Ok(()), invalid);
         }
         for pair in self.effects.into_iter().zip(list(scene).map(name_of_set_up)) {
             match pair {
-                (None, Some(name)) => return Some(format!("{name} is given, but this solver was set up without")),
+                (None, Some(name)) => return invalid(format!("{name} is given, but this solver was set up without")),
                 (Some(name), None) if !self.is_table(name) => {
-                    return Some(format!("{name} is not given, but this solver was set up with it"));
+                    return invalid(format!("{name} is not given, but this solver was set up with it"));
                 }
                 _ => {}
             }
         }
-        let mut difference = None;
+        let mut same = Ok(());
         for effect in effects(scene) {
-            effect.values(&mut |name, value| difference = difference.take().or_else(|| self.other(name, value)));
+            effect.values(&mut |name, value| {
+                if same.is_ok() {
+                    same = self.check_value(name, value);
+                }
+            });
         }
-        difference
+        same
     }
 
     /// Whether an effect is a table, which later scenes need not name again.
@@ -105,28 +114,26 @@ impl Named {
         self.values.iter().any(|(name, kept)| is_of(name) && matches!(kept, Kept::Shared(_)))
     }
 
-    fn other(&self, name: &'static str, value: Value<'_>) -> Option<String> {
+    fn check_value(&self, name: &'static str, value: Value<'_>) -> Result<()> {
         let kept = self.values.iter().find(|(known, _)| *known == name).map(|(_, kept)| kept);
         match (kept, value) {
-            (Some(kept), value) if kept.is(value) => None,
+            (Some(kept), value) if kept.is(value) => Ok(()),
             (Some(Kept::Number(kept)), Value::Number(number)) => {
-                Some(format!("{name} is {number}; this solver was set up with {kept}"))
+                invalid(format!("{name} is {number}; this solver was set up with {kept}"))
             }
             // Of tables that are even less is kept.
             (Some(Kept::Shared(kept)), Value::Shared(values)) if kept.len() == values.len() => {
                 let other = kept.iter().zip(values.iter()).find(|(kept, now)| kept != now);
                 let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));
-                Some(format!(
-                    "{name} holds other coefficients: {now} where those of this solver have {kept}; leave them out, or set them first (for influence: \
-                     contact_normal_solver_set_influence)"
-                ))
+                Err(Error::InfluenceChanged(format!(
+                    "{name} holds other coefficients: {now} where those of this solver have {kept}; {SET_THEM}"
+                )))
             }
-            (Some(Kept::Shared(_)), _) => Some(format!(
-                "{name} holds other coefficients than this solver has; leave them out, or set them first (for influence: \
-                 contact_normal_solver_set_influence)"
-            )),
-            (Some(_), _) => Some(format!("{name} has other values than this solver was set up with")),
-            (None, _) => Some(format!("{name} is given, but this solver was set up without")),
+            (Some(Kept::Shared(_)), _) => Err(Error::InfluenceChanged(format!(
+                "{name} holds other coefficients than this solver has; {SET_THEM}"
+            ))),
+            (Some(_), _) => invalid(format!("{name} has other values than this solver was set up with")),
+            (None, _) => invalid(format!("{name} is given, but this solver was set up without")),
         }
     }
 }

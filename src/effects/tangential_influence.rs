@@ -3,6 +3,7 @@
 use super::friction::{Friction, Motion};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
+use crate::memory::collected;
 
 /// Tangential influence coefficients of the caller's own: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the
 /// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both.
@@ -24,11 +25,27 @@ pub struct TangentialInfluence<'a> {
 /// A step of rolling is of whole elements if it is so near.
 const WHOLE: f64 = 1e-9;
 
-/// The names of the tables.
-const TABLES: [&str; 3] = ["friction->influence[0] (xx)", "friction->influence[1] (yy)", "friction->influence[2] (xy)"];
+/// What a component is to a mirrored offset.
+#[derive(Clone, Copy)]
+struct Symmetry {
+    name: &'static str,
+    /// The sign that it takes where x, where y changes its own.
+    in_x: f64,
+    in_y: f64,
+    rule: &'static str,
+}
 
-/// Those of unlike bodies.
-const CROSS_TABLES: [&str; 2] = ["friction->influence_cross[0] (xz)", "friction->influence_cross[1] (yz)"];
+const OWN: &str = "xx and yy must be even in x and in y, xy odd in both";
+const CROSS: &str = "xz must be odd in x and even in y, yz even in x and odd in y";
+
+/// Of the components xx, yy, xy, xz, yz.
+const SYMMETRIES: [Symmetry; 5] = [
+    Symmetry { name: "friction->influence[0] (xx)", in_x: 1.0, in_y: 1.0, rule: OWN },
+    Symmetry { name: "friction->influence[1] (yy)", in_x: 1.0, in_y: 1.0, rule: OWN },
+    Symmetry { name: "friction->influence[2] (xy)", in_x: -1.0, in_y: -1.0, rule: OWN },
+    Symmetry { name: "friction->influence_cross[0] (xz)", in_x: -1.0, in_y: 1.0, rule: CROSS },
+    Symmetry { name: "friction->influence_cross[1] (yz)", in_x: 1.0, in_y: -1.0, rule: CROSS },
+];
 
 /// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
 const SYMMETRY: f64 = 1e-7;
@@ -46,19 +63,19 @@ impl TangentialInfluence<'_> {
         self.cross.map_or([0.0; 2], |tables| tables.map(|values| self.scale * values[k]))
     }
 
-    /// Refuses tables that do not reach offsets of `mx` by `my`, and what no coefficients of a half-space's kind are.
-    fn check(&self, mx: usize, my: usize) -> Result<()> {
+    /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are.
+    fn check(&self, grid: &Grid) -> Result<()> {
         let scale = "coefficients are scaled by a positive, finite number";
         require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, scale)?;
-        for (name, c, m) in [("cx", self.cx, mx), ("cy", self.cy, my)] {
+        for (name, c, m) in [("cx", self.cx, grid.mx), ("cy", self.cy, grid.my)] {
             if c < m {
-                let rule = format!("the tables must reach the offsets of the grid, and of a step of rolling: {m}");
+                let rule = format!("the tables must reach the offsets of the grid: {m}");
                 return invalid(format!("friction->influence->{name} is {c}; {rule}"));
             }
         }
         let expected = self.cx.checked_mul(self.cy).and_then(|n| n.checked_mul(4));
-        let cross = self.cross.iter().flatten();
-        for (name, values) in TABLES.iter().zip(&self.coefficients).chain(CROSS_TABLES.iter().zip(cross)) {
+        let tables = || self.coefficients.iter().chain(self.cross.iter().flatten()).zip(SYMMETRIES);
+        for (values, Symmetry { name, .. }) in tables() {
             if expected != Some(values.len()) {
                 return invalid(format!("{name} has {} values; it must have 2 cx by 2 cy", values.len()));
             }
@@ -69,43 +86,103 @@ impl TangentialInfluence<'_> {
             return Err(Error::NotPositiveDefinite(format!("friction->influence at offset (0, 0) is {own:?}; {rule}")));
         }
         let largest = own[0].max(own[1]);
+        tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, symmetry, largest))
+    }
+
+    /// Those of one component: each offset and its mirrors.
+    fn check_symmetry(&self, values: &[f64], symmetry: Symmetry, largest: f64) -> Result<()> {
+        let Symmetry { name, in_x, in_y, rule } = symmetry;
+        let (cx, width) = (self.cx, 2 * self.cx);
+        let row = |ky: i64| &values[(ky + self.cy as i64) as usize * width..][..width];
+        let allowed = SYMMETRY * largest / self.scale;
         for ky in 0..self.cy as i64 {
-            for kx in 0..self.cx as i64 {
-                self.check_offset(kx, ky, largest)?;
+            let (below, above) = (row(ky), row(-ky));
+            for kx in 0..cx {
+                let (right, left) = (cx + kx, cx - kx);
+                let value = below[right];
+                let mirrored = [value, in_x * below[left], in_y * above[right], in_x * in_y * above[left]];
+                if mirrored.iter().all(|mirrored| (mirrored - value).abs() <= allowed) {
+                    continue;
+                }
+                let x = kx as i64;
+                let places = [(x, ky), (-x, ky), (x, -ky), (-x, -ky)];
+                for ((x, y), at) in places.into_iter().zip([below[right], below[left], above[right], above[left]]) {
+                    if !(self.scale * at).is_finite() {
+                        let finite = "coefficients must be finite";
+                        return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {at}; {finite}")));
+                    }
+                }
+                let other = (1..4).find(|&k| !((mirrored[k] - value).abs() <= allowed)).unwrap_or(1);
+                let ((x0, y0), (x, y)) = (places[0], places[other]);
+                let at = [below[right], below[left], above[right], above[left]][other];
+                return Err(Error::Unsupported(format!(
+                    "{name} is {value} at offset ({x0}, {y0}) and {at} at ({x}, {y}); {rule}"
+                )));
             }
         }
         Ok(())
     }
+}
 
-    /// Those of one offset and of its mirrors.
-    fn check_offset(&self, kx: i64, ky: i64, largest: f64) -> Result<()> {
-        let all = |x: i64, y: i64| {
-            let ([xx, yy, xy], [xz, yz]) = (self.at(x, y), self.cross_at(x, y));
-            [xx, yy, xy, xz, yz]
+/// A copy of the caller's tables: those of a solver.
+#[derive(Clone, Debug)]
+pub struct KeptInfluence {
+    cx: usize,
+    cy: usize,
+    coefficients: [Vec<f64>; 3],
+    cross: Option<[Vec<f64>; 2]>,
+    scale: f64,
+}
+
+impl KeptInfluence {
+    /// Of tables that have the sizes that they say.
+    pub fn new(of: &TangentialInfluence<'_>) -> Result<KeptInfluence> {
+        let copy = |values: &[f64]| collected(values.iter().copied(), "the tangential influence coefficients");
+        let [xx, yy, xy] = of.coefficients;
+        let cross = match of.cross {
+            Some([xz, yz]) => Some([copy(xz)?, copy(yz)?]),
+            None => None,
         };
-        let value = all(kx, ky);
-        // Of each component the sign that it takes where x, where y changes its own.
-        let signs = [(1.0, 1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0)];
-        for (component, name) in TABLES.iter().chain(&CROSS_TABLES).enumerate() {
-            let (in_x, in_y) = signs[component];
-            for (x, y, sign) in [(kx, ky, 1.0), (-kx, ky, in_x), (kx, -ky, in_y), (-kx, -ky, in_x * in_y)] {
-                let mirrored = all(x, y)[component];
-                if !mirrored.is_finite() {
-                    let rule = "coefficients must be finite";
-                    return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {mirrored}; {rule}")));
-                }
-                if !((mirrored - sign * value[component]).abs() <= SYMMETRY * largest) {
-                    let (at, rule) = match component {
-                        0..3 => (value[component], "xx and yy must be even in x and in y, xy odd in both"),
-                        _ => (value[component], "xz must be odd in x and even in y, yz even in x and odd in y"),
-                    };
-                    return Err(Error::Unsupported(format!(
-                        "{name} is {at} at offset ({kx}, {ky}) and {mirrored} at ({x}, {y}); {rule}"
-                    )));
-                }
-            }
+        Ok(KeptInfluence {
+            cx: of.cx,
+            cy: of.cy,
+            coefficients: [copy(xx)?, copy(yy)?, copy(xy)?],
+            cross,
+            scale: of.scale,
+        })
+    }
+
+    /// The tables.
+    pub fn view(&self) -> TangentialInfluence<'_> {
+        TangentialInfluence {
+            cx: self.cx,
+            cy: self.cy,
+            coefficients: self.coefficients.each_ref().map(|values| &values[..]),
+            cross: self.cross.as_ref().map(|tables| tables.each_ref().map(|values| &values[..])),
+            scale: self.scale,
         }
-        Ok(())
+    }
+
+    /// Whether these are the same, but for row -cy and column -cx, which nobody reads.
+    pub fn is(&self, other: &TangentialInfluence<'_>) -> bool {
+        let kept = self.view();
+        let (cx, cy, width) = (self.cx, self.cy, 2 * self.cx);
+        let same = |kept: &[f64], other: &[f64]| {
+            let read = |ky: usize| ky * width + 1..(ky + 1) * width;
+            kept.len() == other.len() && (1..2 * cy).all(|ky| kept[read(ky)] == other[read(ky)])
+        };
+        let cross = match (&kept.cross, &other.cross) {
+            (Some(kept), Some(other)) => kept.iter().zip(other).all(|(kept, other)| same(kept, other)),
+            (kept, other) => kept.is_none() && other.is_none(),
+        };
+        (cx, cy, self.scale) == (other.cx, other.cy, other.scale)
+            && kept.coefficients.iter().zip(&other.coefficients).all(|(kept, other)| same(kept, other))
+            && cross
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.coefficients.iter().chain(self.cross.iter().flatten()).map(|values| size_of_val(&values[..])).sum()
     }
 }
 
@@ -113,7 +190,6 @@ impl Friction<'_> {
     /// Refuses tables that do not suit the grid and the step: between whole offsets they say nothing.
     pub(super) fn check_influence(&self, grid: &Grid) -> Result<()> {
         let Some(influence) = &self.influence else { return Ok(()) };
-        let (mut mx, mut my) = (grid.mx, grid.my);
         if self.motion != Motion::Shift {
             let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
             let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
@@ -122,8 +198,7 @@ impl Friction<'_> {
                     "friction->influence is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements"
                 )));
             }
-            (mx, my) = (mx.saturating_add(x.round().abs() as usize), my.saturating_add(y.round().abs() as usize));
         }
-        influence.check(mx, my)
+        influence.check(grid)
     }
 }

@@ -83,8 +83,8 @@ pub struct contact_normal_friction {
     pub rigid_slip: [*const f64; 2],
     /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
     /// y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-    /// even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the tables must reach beyond
-    /// the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+    /// even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
+    /// across what is in contact. A solver keeps them: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
     pub influence: [*const contact_normal_influence; 3],
     /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
     /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
@@ -94,9 +94,12 @@ pub struct contact_normal_friction {
     pub sensitivities: i32,
     /// Must be 0.
     pub reserved: i32,
+    /// Tractions in x and y to start the iteration from, `[my][mx]` each, both or none; default NULL. The solution does not depend on them:
+    /// those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
+    pub initial_traction: [*const f64; 2],
 }
 
-versioned! { contact_normal_friction, contact_normal_friction_init, 200, spin_offset: 1.0 / 6.0 }
+versioned! { contact_normal_friction, contact_normal_friction_init, 216, spin_offset: 1.0 / 6.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.
@@ -149,10 +152,16 @@ impl contact_normal_friction {
             rolling_direction: self.rolling_direction,
             spin_offset: self.spin_offset,
             previous,
+            initial: pair("initial_traction", self.initial_traction)?,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
             influence: self.own_influence()?,
             sensitivities,
         })
+    }
+
+    /// The friction of the tables, of which nothing else is used.
+    pub(super) fn tables_alone<'a>(&self) -> Result<Friction<'a>, Refusal> {
+        Ok(Friction { influence: self.own_influence()?, ..Friction::new(0.0) })
     }
 
     /// The structs of the tables, as the caller's header has them; none if there are no tables.
@@ -213,6 +222,7 @@ impl GivenEffect for contact_normal_friction {
         for k in 0..2 {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
+            regions.input("friction->initial_traction", self.initial_traction[k], n)?;
         }
         let at = self.influence.into_iter().chain(self.influence_cross);
         for ((at, table), name) in at.zip(self.tables()?.iter().flatten()).zip(TABLES) {

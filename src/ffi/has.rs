@@ -11,8 +11,8 @@ const NAMES: [&str; 22] = [
     "coating",
     "cycle",
     "friction",
-    "friction_batch",
     "influence",
+    "initial_traction",
     "keep",
     "layer",
     "max_seconds",
@@ -31,7 +31,7 @@ const NAMES: [&str; 22] = [
 ];
 
 /// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
-/// calls do ("batch", "accuracy", "price_list", "stress", "friction_batch", "solve_tangential", "sensitivities", "warnings", "keep",
+/// calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep",
 /// "release"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {

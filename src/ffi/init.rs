@@ -9,7 +9,7 @@ use super::effects::{
 };
 use super::fields::contact_normal_fields;
 use super::friction::contact_normal_friction;
-use super::friction_batch::contact_normal_friction_results;
+use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::ledger::contact_normal_ledger_row;

@@ -158,9 +158,25 @@ impl Named {
 
     /// The same with another undeformed distance.
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
+        let load = load_of(self.scene.load, self.scene.approach, self.scene.force)?;
+        // SAFETY: by the caller.
+        unsafe { self.with_load(undeformed_distance, load) }
+    }
+
+    /// The scene of pressures that are given: it has no undeformed distance, and its load says nothing.
+    pub unsafe fn without_load<'a>(&self) -> Result<Scene<'a>, Refusal> {
+        // SAFETY: by the caller.
+        unsafe { self.with_load(&[], Load::Approach(0.0)) }
+    }
+
+    /// Whether there is an undeformed distance.
+    pub fn has_distance(&self) -> bool {
+        !self.scene.undeformed_distance.is_null()
+    }
+
+    unsafe fn with_load<'a>(&self, undeformed_distance: &'a [f64], load: Load) -> Result<Scene<'a>, Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         arguments::reserved("scene->reserved", scene.reserved)?;
-        let load = load_of(scene.load, scene.approach, scene.force)?;
         let bodies = Bodies { shear_modulus: scene.shear_modulus, poisson_ratio: scene.poisson_ratio };
         // SAFETY (all): NULL or arrays of as many values as each says, by the conventions of the ABI.
         unsafe {

@@ -41,6 +41,17 @@ pub(super) struct Request<'a> {
     pub outputs: Outputs,
 }
 
+/// Which scene a call asks for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Needs {
+    /// One with an undeformed distance and a load.
+    All,
+    /// One that may be without an undeformed distance: then its load is not looked at either.
+    Bodies,
+    /// One whose pressures are given: undeformed distance and load are not looked at.
+    NoLoad,
+}
+
 impl Request<'_> {
     /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
     /// must live as long as the result is used.
@@ -49,6 +60,18 @@ impl Request<'_> {
         options: *const contact_normal_options,
         fields: *mut contact_normal_fields,
         report: *mut contact_normal_report,
+        buffers: &mut Buffers,
+        also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
+    ) -> Result<Request<'a>, Refusal> {
+        // SAFETY: by the caller.
+        unsafe { Request::read_for(Needs::All, (scene, options), (fields, report), buffers, also) }
+    }
+
+    /// The same for a call that needs less of its scene.
+    pub unsafe fn read_for<'a>(
+        needs: Needs,
+        (scene, options): (*const contact_normal_scene, *const contact_normal_options),
+        (fields, report): (*mut contact_normal_fields, *mut contact_normal_report),
         buffers: &mut Buffers,
         also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
     ) -> Result<Request<'a>, Refusal> {
@@ -63,7 +86,12 @@ impl Request<'_> {
             outputs.add_to(regions, named.len())?;
             also(regions, named.len())?;
             regions.check()?;
-            Ok(Request { scene: named.translate()?, options: translated, outputs })
+            let scene = match needs {
+                Needs::NoLoad => named.without_load()?,
+                Needs::Bodies if !named.has_distance() => named.without_load()?,
+                _ => named.translate()?,
+            };
+            Ok(Request { scene, options: translated, outputs })
         }
     }
 }

@@ -6,13 +6,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arguments::Regions;
 use super::fields::contact_normal_fields;
+use super::friction::contact_normal_friction;
 use super::guard::guard;
 use super::influence::contact_normal_influence;
 use super::options::contact_normal_options;
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{run_watched, Request};
+use super::solve::{run_watched, Needs, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned, Versioned};
 use crate::solver::Solver;
@@ -71,8 +72,8 @@ impl Drop for InUse<'_> {
 }
 
 /// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
-/// precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
-/// valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+/// precision and threads of `options` (NULL: the defaults). The undeformed distance may be NULL; where it is given, it and the load of
+/// `scene` must be valid. Each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
 /// Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_new(
@@ -87,7 +88,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, .. } = unsafe {
             let also = |regions: &mut Regions, _| regions.output("solver", solver, 1);
-            Request::read(scene, options, null_mut(), null_mut(), &mut Buffers::default(), also)?
+            let (arguments, no_outputs) = ((scene, options), (null_mut(), null_mut()));
+            Request::read_for(Needs::Bodies, arguments, no_outputs, &mut Buffers::default(), also)?
         };
         let new = Solver::new(&scene, &options.options)?;
         // SAFETY: not null: room for a pointer.
@@ -120,28 +122,47 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
     })
 }
 
-/// From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
-/// `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
-/// changes nothing. Since 0.2.
+/// From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
+/// its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
+/// up with `scene->influence`, with `friction->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
+/// `continues` may start from. What is refused changes nothing. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_set_influence(
     solver: *mut contact_normal_solver,
     influence: *const contact_normal_influence,
+    friction: *const contact_normal_friction,
 ) -> contact_normal_status {
     guard(|| {
         // SAFETY: NULL or a handle of ours.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, .. } = in_use.held();
-        // SAFETY: NULL or a struct that declares its size, with a table of the size that it says.
-        let table = unsafe { structs::read(influence, "influence")?.translate(solver.grid())? };
-        solver.set_influence(table)?;
+        // SAFETY (all): NULL or structs that declare their size, with tables of the sizes that they say.
+        let (table, friction) = unsafe {
+            let grid = solver.grid();
+            let table = structs::read_optional(influence, "influence")?.map(|of| of.translate(grid)).transpose()?;
+            let friction = structs::read_optional(friction, "friction")?.map(|of| of.tables_alone()).transpose()?;
+            (table, friction)
+        };
+        if table.is_none() && friction.is_none() {
+            return Err(Refusal::null("influence and friction"));
+        }
+        if let Some(friction) = &friction {
+            solver.check_tangential_influence(friction)?;
+        }
+        if let Some(table) = table {
+            solver.set_influence(table)?;
+        }
+        if let Some(friction) = &friction {
+            solver.set_tangential_influence(friction)?;
+        }
         Ok(CONTACT_NORMAL_OK)
     })
 }
 
 /// Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
 /// with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
-/// leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it.
+/// leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it. Tractions, slip
+/// and stick area are those that `contact_normal_solve_tangential` found with this handle since, if it did.
 /// INVALID_ARGUMENT if there is none. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_fields(

@@ -36,6 +36,8 @@ pub const CONTACT_NORMAL_INFEASIBLE: i32 = -6;
 pub const CONTACT_NORMAL_NOT_POSITIVE_DEFINITE: i32 = -7;
 /// Memory (or a thread) could not be had.
 pub const CONTACT_NORMAL_OUT_OF_MEMORY: i32 = -8;
+/// The influence coefficients are not those that the solver has: `contact_normal_solver_set_influence` gives it others.
+pub const CONTACT_NORMAL_INFLUENCE_CHANGED: i32 = -9;
 /// A bug of ours, caught at the boundary.
 pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 
@@ -82,6 +84,7 @@ impl From<Error> for Refusal {
             Error::Unsupported(_) => CONTACT_NORMAL_UNSUPPORTED,
             Error::Infeasible(_) => CONTACT_NORMAL_INFEASIBLE,
             Error::NotPositiveDefinite(_) => CONTACT_NORMAL_NOT_POSITIVE_DEFINITE,
+            Error::InfluenceChanged(_) => CONTACT_NORMAL_INFLUENCE_CHANGED,
             Error::OutOfMemory(_) => CONTACT_NORMAL_OUT_OF_MEMORY,
         };
         Refusal::new(status, error.to_string())
@@ -133,6 +136,7 @@ fn text_of(status: contact_normal_status) -> &'static CStr {
         CONTACT_NORMAL_INFEASIBLE => c"the force cannot be carried",
         CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => c"influence coefficients that are not positive definite",
         CONTACT_NORMAL_OUT_OF_MEMORY => c"out of memory",
+        CONTACT_NORMAL_INFLUENCE_CHANGED => c"influence coefficients changed",
         CONTACT_NORMAL_INTERNAL => c"internal error, please report",
         _ => c"an unknown status",
     }

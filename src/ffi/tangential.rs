@@ -1,41 +1,170 @@
-//! `contact_normal_solve_tangential`: the tangential problem alone, with pressures that are given.
+//! `contact_normal_solve_tangential`: tangential problems with pressures that are given, one or a table of them.
 
-use super::arguments::required;
-use super::fields::contact_normal_fields;
+use std::ptr::null_mut;
+use std::sync::{Mutex, PoisonError};
+
+use super::arguments::{not_negative, optional, required, Regions};
+use super::batch::NotOk;
+use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
-use super::options::contact_normal_options;
-use super::outputs::Buffers;
+use super::options::{contact_normal_options, Translated};
+use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{explain, Conclusion, Request};
-use super::status::contact_normal_status;
+use super::solve::{explain, Conclusion, Needs, Request};
+use super::solver::{contact_normal_solver, InUse};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use super::structs;
 use super::watcher::{watched, Watcher};
-use crate::solver::solve_tangential;
+use crate::friction::Solution;
+use crate::memory::collected;
+use crate::scene::Scene;
+use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcome, Solver};
 
-/// Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
-/// contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
-/// used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
-/// `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
+/// Solves n tangential problems of `scene->friction`: one with pressures of the caller's own, beside a normal solver of the caller's own, or a
+/// table of creep forces.
+///
+/// `solver`: keeps coefficients, operators and the last tractions from call to call, for `friction->continues` and for `initial_guess`
+/// PREVIOUS; `scene` and `options` must be as at its set-up. NULL: nothing is kept.
+///
+/// `pressure` `[my][mx]`: those that are not positive count as no contact; the undeformed distance and the load are then not looked at and
+/// may be left unset. Tractions do not change the pressures: of unlike bodies this is one turn of two. NULL, without a solver: the
+/// normal problem of the scene is solved first, once.
+///
+/// `report` (NULL: not wanted) is that of the pressures.
+///
+/// `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force) and
+/// the spin. NULL, with n = 1: those of `scene->friction`; then all threads work on it, `report` speaks of friction, too, `progress` is called for
+/// each iteration, and where the call is refused `results` stays as it is.
+///
+/// Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
+/// a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
+/// have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
+///
+/// An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
+/// status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
+/// (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
+///
+/// `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
+/// the entries that are done and `residual` is that of the last one. When it cancels, the results of
+/// entries that are not done stay as they are, with the status CANCELLED. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve_tangential(
+    solver: *mut contact_normal_solver,
     scene: *const contact_normal_scene,
     pressure: *const f64,
     options: *const contact_normal_options,
-    fields: *mut contact_normal_fields,
+    n: i32,
+    entries: *const f64,
+    results: *mut contact_normal_friction_results,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))? };
-        // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
-        let found = watched(Watcher::of(&options), |progress| {
-            let (stop, solution, report) = solve_tangential(&scene, pressure, &options.options, progress)?;
-            outputs.write_friction(Some(&solution), scene.grid.len());
-            outputs.write_report(&report, &[], 0)?;
-            Ok(Conclusion::of(stop, || explain(stop, &report, options.options.method, None)))
+        let n = not_negative("n", n)?;
+        // SAFETY: NULL or a handle of ours.
+        let mut in_use = if solver.is_null() { None } else { Some(unsafe { InUse::begin(solver)? }) };
+        // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+        let results_given = unsafe { structs::read_optional(results.cast_const(), "results")? };
+        let wanted = results_given.unwrap_or_default();
+        // SAFETY: likewise.
+        let Request { scene: read, options, outputs } = unsafe {
+            let also = |regions: &mut Regions, elements: usize| {
+                regions.input("pressure", pressure, elements)?;
+                regions.input("entries", entries.cast::<[f64; 3]>(), n)?;
+                results_given.map_or(Ok(()), |given| given.add_to(regions, results, (n, elements)))
+            };
+            let needs = if pressure.is_null() { Needs::All } else { Needs::NoLoad };
+            let arguments = ((scene, options), (null_mut(), report));
+            let mut own = Buffers::default();
+            let buffers = in_use.as_mut().map_or(&mut own, |in_use| &mut in_use.held().buffers);
+            Request::read_for(needs, arguments.0, arguments.1, buffers, also)?
+        };
+        // SAFETY (both): NULL or arrays of this size, by the conventions of the ABI.
+        let (pressure, given) = unsafe {
+            let given = match (n, entries.is_null()) {
+                (0, _) => Some(&[][..]),
+                (1, true) => None,
+                _ => Some(required("entries", entries.cast::<[f64; 3]>(), n)?),
+            };
+            (optional(pressure, read.grid.len()), given)
+        };
+        let solver = in_use.as_mut().map(|in_use| &mut in_use.held().solver);
+        if solver.is_some() && pressure.is_none() {
+            return Err(Refusal::null("pressure (with a solver)"));
+        }
+        let call = Call { scene: &read, options: &options, outputs: &outputs, wanted: &wanted };
+        match (pressure, given) {
+            (Some(pressure), None) => call.one(solver, pressure),
+            (None, None) => call.table(solver, pressure, read.friction.as_ref().map(Entry::of).as_slice()),
+            (_, Some(given)) => {
+                let entry = |&[x, y, spin]: &[f64; 3]| Entry { amount: [x, y], spin };
+                call.table(solver, pressure, &collected(given.iter().map(entry), "the entries of a table")?)
+            }
+        }
+    })
+}
+
+/// What all entries share.
+struct Call<'a> {
+    scene: &'a Scene<'a>,
+    options: &'a Translated,
+    outputs: &'a Outputs,
+    wanted: &'a contact_normal_friction_results,
+}
+
+impl Call<'_> {
+    /// One problem, on all threads.
+    fn one(&self, solver: Option<&mut Solver>, pressure: &[f64]) -> Result<contact_normal_status, Refusal> {
+        let (scene, options) = (self.scene, &self.options.options);
+        let found = watched(Watcher::of(self.options), |progress| {
+            let one_shot;
+            let (stop, solution, report) = match solver {
+                Some(solver) => solver.solve_tangential(scene, pressure, options, progress)?,
+                None => {
+                    let (stop, solution, report) = solve_tangential(scene, pressure, options, progress)?;
+                    one_shot = solution;
+                    (stop, &one_shot, report)
+                }
+            };
+            if let Some(found) = report.friction {
+                // SAFETY: the caller's arrays were checked; there is one entry.
+                unsafe { self.wanted.write(0, Ok((stop, found)), Some(solution)) };
+            }
+            self.outputs.write_report(&report, &[], 0)?;
+            Ok(Conclusion::of(stop, || explain(stop, &report, options.method, None)))
         });
         found?.conclude()
-    })
+    }
+
+    /// A table, each entry on one thread.
+    fn table(
+        &self,
+        solver: Option<&mut Solver>,
+        pressure: Option<&[f64]>,
+        table: &[Entry],
+    ) -> Result<contact_normal_status, Refusal> {
+        let options = &self.options.options;
+        let concluded = watched(Watcher::of(self.options), |progress| {
+            let not_ok = Mutex::new(NotOk::default());
+            let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
+                // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
+                let outcome = unsafe { self.wanted.write(i, ended, solution) };
+                not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
+            };
+            let (stop, normal) = match (solver, pressure) {
+                (Some(solver), Some(pressure)) => {
+                    solver.solve_friction_batch(self.scene, pressure, table, options, progress, found)?
+                }
+                _ => solve_friction_batch(self.scene, pressure, table, options, progress, found)?,
+            };
+            self.outputs.write_report(&normal, &[], 0)?;
+            let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
+            if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
+                return Ok(entries);
+            }
+            let message = || format!("the normal problem: {}", explain(stop, &normal, options.method, None));
+            Ok(Conclusion::of(stop, message))
+        });
+        concluded?.conclude()
+    }
 }

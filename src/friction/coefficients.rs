@@ -33,7 +33,8 @@ use super::series::{Series, Shape};
 use super::tables::Tables;
 use super::unit::unit_of;
 use crate::effects::TangentialInfluence;
-use crate::error::Result;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
 use crate::influence::gauss;
 use crate::scene::Bodies;
 
@@ -115,12 +116,17 @@ impl Tangential {
         self.own.is_some()
     }
 
-    /// Whether these are the caller's own, or there are none, as `influence` says.
-    pub fn are_of(&self, influence: Option<&TangentialInfluence<'_>>) -> bool {
-        match (&self.own, influence) {
-            (Some(own), Some(influence)) => own.are_of(influence),
-            (own, influence) => own.is_none() && influence.is_none(),
+    /// Refuses own tables that do not reach the offsets between the elements of a box, and a step of rolling `by` elements.
+    pub fn check_reach(&self, window: &Grid, by: (f64, f64)) -> Result<()> {
+        let Some((cx, cy)) = self.own.as_ref().map(Tables::reach) else { return Ok(()) };
+        for (name, c, m, by) in [("cx", cx, window.mx, by.0), ("cy", cy, window.my, by.1)] {
+            let needed = (m as f64 + by.abs()).round();
+            if needed > c as f64 {
+                let rule = format!("the contact area and a step of rolling ask for {needed}");
+                return invalid(format!("friction->influence->{name} is {c}; {rule}"));
+            }
         }
+        Ok(())
     }
 
     /// The same bodies, another element size; own tables are coarsened where elements are larger.

@@ -35,6 +35,13 @@ impl Solver {
         Ok(Some(Last { solution, offset: self.offset }))
     }
 
+    /// The last result is that of another solver on the same grid.
+    pub fn take_last_of(&mut self, other: &mut Solver) {
+        std::mem::swap(&mut self.solution, &mut other.solution);
+        std::mem::swap(&mut self.sums, &mut other.sums);
+        (self.offset, self.has_solution) = (other.offset, other.has_solution);
+    }
+
     /// What was found since is gone.
     pub fn go_back(&mut self, last: Option<Last>) {
         self.has_solution = last.is_some();

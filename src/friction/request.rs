@@ -46,6 +46,10 @@ pub enum Start<'a> {
     Superposed(Superposed<'a>),
     /// The same step once more, with other pressures: from the last result. What was before the step stays.
     Again,
+    /// From the last result.
+    Last,
+    /// From tractions of the caller's, in x and y.
+    Given([&'a [f64]; 2]),
 }
 
 /// Tractions near those of a shift from rest: `q = along (p - p*)`, within their bounds.
@@ -68,5 +72,10 @@ impl Start<'_> {
             Start::Superposed(_) => Start::Before,
             other => other,
         }
+    }
+
+    /// Whether it may be worth less than the coarser grids.
+    pub fn is_guess(&self) -> bool {
+        matches!(self, Start::Last | Start::Given(_))
     }
 }

@@ -154,6 +154,8 @@ impl Solver {
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = window {
+            let by = if friction.motion == Motion::Shift { (0.0, 0.0) } else { friction.elements_rolled(&self.grid) };
+            self.tangential.check_reach(&window.grid(&self.grid), by)?;
             self.scales.fit(self.largest_bound(window, bound));
             let forces = forces.in_units_of(&self.scales);
             end = self.solve_in((window, rolling), request, forces, watch, &mut report)?;
@@ -195,13 +197,23 @@ impl Solver {
         if near.is_solution {
             return Ok(Outcome::Converged);
         }
-        let had_slip = if near.is_worth_something {
+        let mut had_slip = if near.is_worth_something {
             self.levels[0].be_ready().map(|()| false)?
         } else {
             self.set_up(window, rolling)?;
             let request = Request { start: request.start.or_before(), ..*request };
             self.begin(&request, from_rest, window, bound)?
         };
+        if request.start.is_guess() {
+            near = self.look(forces, request.tolerance);
+            (report.products, report.certificate) = (near.products, near.certificate);
+            if near.is_solution {
+                return Ok(Outcome::Converged);
+            }
+            if !near.is_worth_something {
+                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
+            }
+        }
         let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,

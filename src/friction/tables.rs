@@ -34,14 +34,9 @@ impl Tables {
         Ok(Tables { cx, cy, values: Arc::new(values), factor: 1.0 })
     }
 
-    /// Whether they were made of these.
-    pub fn are_of(&self, influence: &TangentialInfluence<'_>) -> bool {
-        let place = |k: usize| ((k % self.cx) as i64, (k / self.cx) as i64);
-        (self.cx, self.cy) == (influence.cx, influence.cy)
-            && self.values.iter().enumerate().all(|(k, entry)| {
-                let (x, y) = place(k);
-                *entry == influence.at(x, y)
-            })
+    /// Offsets less than these are in them.
+    pub fn reach(&self) -> (usize, usize) {
+        (self.cx, self.cy)
     }
 
     /// The same in units of `unit`.

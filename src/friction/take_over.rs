@@ -1,7 +1,8 @@
 //! What a solve takes over: bounds, rigid slip and the tractions to start from.
 
+use super::certificate::is_on_circle;
 use super::levels::Level;
-use super::problem::{add, square, Scale};
+use super::problem::{add, square, Problem, Scale, State};
 use super::request::{Request, Start, Superposed};
 use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
@@ -129,6 +130,9 @@ impl Solver {
         if !matches!(request.start, Start::Superposed(_)) {
             problem.refresh(state);
         }
+        if let Start::Given(_) = request.start {
+            problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });
+        }
         Ok(mostly)
     }
 
@@ -148,11 +152,14 @@ impl Solver {
                 });
                 problem.offset = scales.displacement(offset);
             }
-            Start::Again => {
+            Start::Again | Start::Last => {
                 window
                     .elements(&self.grid)
                     .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
                 problem.offset = scales.displacement(self.offset);
+            }
+            Start::Given([x, y]) => {
+                window.elements(&self.grid).for_each(|(k, i)| state.q[k] = in_range([x[i], y[i]], &scales));
             }
         }
     }
@@ -190,6 +197,18 @@ impl Solver {
             ));
         }
         Ok(())
+    }
+}
+
+/// The creepage of tractions to start from: with it what sticks does not slip in the mean. 0 where all slips.
+fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
+    let sticks = |i: usize| problem.bound[i] > 0.0 && !is_on_circle(state.q[i], problem.bound[i]);
+    let terms = |i: usize| if sticks(i) { [problem.slip[i][k] + state.u[i][k], 1.0] } else { [0.0; 2] };
+    let [slip, count] = vectors::sum(problem.threads(), problem.bound.len(), terms);
+    if count > 0.0 {
+        -slip / count
+    } else {
+        0.0
     }
 }
 

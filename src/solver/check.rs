@@ -11,23 +11,10 @@ impl SetUp {
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
         scene.check_free_load(options.is_fixed())?;
-        if let Some(difference) = scene.grid.differs(&problem.grid) {
-            return invalid(difference);
-        }
-        effects::check_effects(scene)?;
-        // Own coefficients know no bodies.
-        if !problem.given {
-            effects::check_bodies(scene)?;
-        }
-        if self.lacks_table {
-            return invalid("influence could not be set the last time: set it again".into());
-        }
+        self.check_scene(scene, problem)?;
         if options.method == Method::ProjectedCg && !problem.symmetric {
             let message = "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works";
             return Err(Error::Unsupported(message.into()));
-        }
-        if let Some(difference) = self.named.differs(scene) {
-            return invalid(difference);
         }
         if scene.pressure_limit.is_some() && options.is_fixed() {
             let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
@@ -41,6 +28,22 @@ impl SetUp {
         Err(Error::Unsupported(format!(
             "method is {method}, which does not solve scenes with {effect}; AUTO chooses a method that does"
         )))
+    }
+
+    /// Refuses a scene whose grid, bodies and effects are not those of the set-up. Its distance and its load are not looked at.
+    pub fn check_scene(&self, scene: &Scene<'_>, problem: &Problem) -> Result<()> {
+        if let Some(difference) = scene.grid.differs(&problem.grid) {
+            return invalid(difference);
+        }
+        effects::check_effects(scene)?;
+        // Own coefficients know no bodies.
+        if !problem.given {
+            effects::check_bodies(scene)?;
+        }
+        if self.lacks_table {
+            return invalid("influence could not be set the last time: set it again".into());
+        }
+        self.named.check(scene)
     }
 
     /// Refuses options that are not those of the set-up.

@@ -62,9 +62,9 @@ impl Coupled {
         })
     }
 
-    /// Where its coefficients come from.
-    pub fn source(&self) -> &Source {
-        &self.source
+    /// The last pressures are those of another one.
+    pub fn take_last_of(&mut self, other: &mut Coupled) {
+        std::mem::swap(&mut self.last_pressure, &mut other.last_pressure);
     }
 
     /// Bytes held.

@@ -13,6 +13,7 @@ use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects::{Effect, Previous};
 use crate::error::{invalid, Result};
 use crate::friction::{self, Solution};
+use crate::grid::Grid;
 use crate::memory::collected;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
@@ -38,6 +39,14 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// What a scene's friction prescribes.
+    pub fn of(friction: &Friction<'_>) -> Entry {
+        let amount = friction.prescribed.map(|prescribed| match prescribed {
+            Prescribed::Creepage(amount) | Prescribed::Force(amount) => amount,
+        });
+        Entry { amount, spin: friction.spin }
+    }
+
     /// The friction of a table with what this entry prescribes.
     fn friction<'a>(&self, of: &Friction<'a>) -> Friction<'a> {
         let mut friction = Friction { spin: self.spin, ..*of };
@@ -69,24 +78,19 @@ pub fn solve_friction_batch(
     mut progress: Option<ProgressCallback<'_>>,
     found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
 ) -> Result<(Outcome, Report)> {
-    scene.check(&Threads::One)?;
-    options.check()?;
-    scene.check_free_load(options.is_fixed())?;
-    let Some(friction) = &scene.friction else {
-        return invalid("friction is not given: there is nothing to solve".into());
-    };
-    if friction.previous == Previous::Kept {
-        return invalid("friction->continues is 1; in a table there is no step before".into());
-    }
-    let threads = Threads::new(options.threads)?;
     let (solver, given);
     let (stop, mut report, pressure) = match pressure {
         Some(pressure) => {
+            scene.check_tangential()?;
+            options.check()?;
             given = positive(&scene.grid, pressure)?;
-            let measures = measures(&scene.grid, &given);
-            (Outcome::Converged, Report { measures, tolerance: options.tolerance, ..Report::default() }, &*given)
+            (Outcome::Converged, of_pressures(&scene.grid, &given, options), &*given)
         }
         None => {
+            scene.check(&Threads::One)?;
+            options.check()?;
+            scene.check_free_load(options.is_fixed())?;
+            friction_of_table(scene)?;
             let normal = Scene { friction: None, ..scene.clone() };
             let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
@@ -95,19 +99,61 @@ pub fn solve_friction_batch(
             (stop, report, &solver.state().p[..])
         }
     };
-    let bounds = pressure.iter().enumerate().map(|(i, p)| friction.coefficient.at(i) * p.max(0.0));
-    let near_force = NEAR_FORCE * in_blocks(bounds) * scene.grid.element_area();
-    let contact = pressure.iter().filter(|p| **p > 0.0).count() as f64 * scene.grid.element_area();
-    let radius = (contact / std::f64::consts::PI).sqrt();
-    let table = Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() };
+    let table = Table::new(scene, friction_of_table(scene)?, pressure, entries, options);
     if stop == Outcome::Cancelled {
         table.done.cancelled.store(true, Ordering::Relaxed);
     }
     let began = std::time::Instant::now();
-    table.solve(&threads, progress, &found)?;
+    table.solve(&mut Vec::new(), &Threads::new(options.threads)?, progress, &found)?;
     report.solve_seconds += began.elapsed().as_secs_f64();
     let cancelled = table.done.cancelled.into_inner();
     Ok((if cancelled { Outcome::Cancelled } else { stop }, report))
+}
+
+impl Solver {
+    /// [`solve_friction_batch`] with the coefficients that this solver keeps, and with pressures that are given. What it solved last stays
+    /// as it is.
+    pub fn solve_friction_batch(
+        &mut self,
+        scene: &Scene<'_>,
+        pressure: &[f64],
+        entries: &[Entry],
+        options: &Options,
+        progress: Option<ProgressCallback<'_>>,
+        found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
+    ) -> Result<(Outcome, Report)> {
+        let own = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own.as_deref())?;
+        scene.tangential()?;
+        self.set_up.check_options(options)?;
+        self.set_up.check_scene(scene, &self.problem)?;
+        let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
+        self.keep_tables(scene)?;
+        let table = Table::new(scene, friction, pressure, entries, options);
+        let began = std::time::Instant::now();
+        let threads = self.problem.threads.clone();
+        table.solve(&mut self.crew, &threads, progress, &found)?;
+        let solve_seconds = began.elapsed().as_secs_f64();
+        let report = Report { solve_seconds, ..of_pressures(&scene.grid, pressure, options) };
+        let cancelled = table.done.cancelled.into_inner();
+        Ok((if cancelled { Outcome::Cancelled } else { Outcome::Converged }, report))
+    }
+}
+
+/// The friction of a table, in which no entry has a step before.
+fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
+    match &scene.friction {
+        None => invalid("friction is not given: there is nothing to solve".into()),
+        Some(friction) if friction.previous == Previous::Kept => {
+            invalid("friction->continues is 1; in a table there is no step before".into())
+        }
+        Some(friction) => Ok(friction),
+    }
+}
+
+/// What is to be said of pressures that are given.
+fn of_pressures(grid: &Grid, pressure: &[f64], options: &Options) -> Report {
+    Report { measures: measures(grid, pressure), tolerance: options.tolerance, ..Report::default() }
 }
 
 /// What all workers read, and where they say what is done.
@@ -134,9 +180,25 @@ struct Done {
     cancelled: AtomicBool,
 }
 
-impl Table<'_> {
+impl<'a> Table<'a> {
+    fn new(
+        scene: &'a Scene<'a>,
+        friction: &'a Friction<'a>,
+        pressure: &'a [f64],
+        entries: &'a [Entry],
+        options: &'a Options,
+    ) -> Table<'a> {
+        let bounds = pressure.iter().enumerate().map(|(i, p)| friction.coefficient.at(i) * p.max(0.0));
+        let near_force = NEAR_FORCE * in_blocks(bounds) * scene.grid.element_area();
+        let contact = pressure.iter().filter(|p| **p > 0.0).count() as f64 * scene.grid.element_area();
+        let radius = (contact / std::f64::consts::PI).sqrt();
+        Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() }
+    }
+
+    /// `crew`: workers of one thread, of which those that are missing are made.
     fn solve(
         &self,
+        crew: &mut Vec<Tangent>,
         threads: &Threads,
         mut progress: Option<ProgressCallback<'_>>,
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
@@ -144,8 +206,9 @@ impl Table<'_> {
         let runs = self.entries.len().div_ceil(RUN);
         let workers = threads.count().min(runs).max(1);
         // Set up before any entry is solved: there is none that one lack of memory could lose.
-        let tangents = (0..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
-        let mut crew = collected(tangents, "the workers of a table")?.into_iter().collect::<Result<Vec<_>>>()?;
+        let missing = (crew.len()..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
+        let missing = collected(missing, "the workers of a table")?;
+        crew.extend(missing.into_iter().collect::<Result<Vec<_>>>()?);
         let began = std::time::Instant::now();
         let mut told = |residual: f64| {
             let Some(progress) = &mut progress else { return };
@@ -157,7 +220,7 @@ impl Table<'_> {
             }
         };
         threads.for_each_beside(
-            &mut crew,
+            &mut crew[..workers],
             |tangent| self.work(tangent, &mut told, found),
             |tangent| self.work(tangent, &mut |_| (), found),
         );

@@ -18,11 +18,8 @@ pub struct Kept {
 impl Solver {
     /// Refuses friction that continues from tractions that are not there.
     pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
-        let Some(friction) = scene.friction.as_ref().filter(|friction| friction.previous == Previous::Kept) else {
-            return Ok(());
-        };
-        let has_tractions = self.friction().is_some();
-        if !has_tractions || !self.friction.as_ref().is_some_and(|tangent| tangent.suits(friction)) {
+        let continues = scene.friction.as_ref().is_some_and(|friction| friction.previous == Previous::Kept);
+        if continues && self.friction().is_none() {
             return invalid("friction continues, but this solver holds no tractions yet".into());
         }
         Ok(())

@@ -18,6 +18,7 @@ mod methods;
 mod nested;
 mod normal;
 mod options;
+mod own_tables;
 mod refinement;
 mod report;
 mod superposition;
@@ -44,7 +45,7 @@ pub use report::{Halving, Limit, Report};
 pub use tangential::solve_tangential;
 
 use crate::contact::{self, Curvature, Freshness, State};
-use crate::effects::{self, Effect, Named};
+use crate::effects::{self, Effect, KeptInfluence, Named};
 use crate::error::{invalid, Result};
 use crate::friction;
 use crate::grid::Grid;
@@ -90,6 +91,10 @@ pub struct Solver {
     ledger: Vec<LedgerRow>,
     /// Of scenes with friction.
     friction: Option<Box<Tangent>>,
+    /// Tangential coefficients of the caller's own.
+    own_tables: Option<Arc<KeptInfluence>>,
+    /// For tables of tangential problems: of one thread each, made when first needed.
+    crew: Vec<Tangent>,
     /// For batches: solvers of one thread, made when first needed.
     workers: Vec<Option<Solver>>,
     setup_seconds: f64,
@@ -123,7 +128,8 @@ pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, R
 }
 
 impl Solver {
-    /// Sets up operators and grids; of `scene` the grid, the bodies and the influence coefficients matter.
+    /// Sets up operators and grids; of `scene` the grid, the bodies and the effects matter. It may be without an undeformed distance: an empty
+    /// one.
     pub fn new(scene: &Scene<'_>, options: &Options) -> Result<Solver> {
         Ok(Solver::for_scene(scene, options)?.0)
     }
@@ -133,8 +139,15 @@ impl Solver {
         let began = Instant::now();
         // The scene is refused first; threads that cannot be had, and options that are none, after it.
         let threads = options.check().and_then(|()| Threads::new(options.threads));
-        let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
-        scene.check_free_load(options.is_fixed())?;
+        // A set-up may be without a surface.
+        let lowest = if scene.undeformed_distance.is_empty() {
+            scene.check_effects_and_bodies()?;
+            f64::INFINITY
+        } else {
+            let lowest = scene.check(threads.as_ref().unwrap_or(&Threads::One))?;
+            scene.check_free_load(options.is_fixed())?;
+            lowest
+        };
         let threads = threads?;
         let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
@@ -148,6 +161,7 @@ impl Solver {
             options: *options,
         };
         let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
+        solver.keep_tables(scene)?;
         solver.setup_seconds = began.elapsed().as_secs_f64();
         Ok((solver, lowest))
     }
@@ -164,6 +178,8 @@ impl Solver {
             limits: Vec::new(),
             ledger: Vec::new(),
             friction: None,
+            own_tables: None,
+            crew: Vec::new(),
             workers: Vec::new(),
             setup_seconds: 0.0,
         })
@@ -177,6 +193,8 @@ impl Solver {
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
+        let own = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own.as_deref())?;
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
         self.solve_checked((scene, lowest), options, guess, progress)
     }
@@ -195,6 +213,7 @@ impl Solver {
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
         self.check_continues(scene)?;
+        self.keep_tables(scene)?;
         let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
@@ -305,7 +324,8 @@ impl Solver {
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
         let limits = self.limits.len() * size_of::<f64>();
-        let friction = self.friction.as_ref().map_or(0, |friction| friction.bytes());
-        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction
+        let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
+        let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
+        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction + tables
     }
 }

@@ -79,6 +79,7 @@ impl Push {
         let is_known = friction.motion == Motion::Shift
             && friction.previous == Previous::None
             && friction.spin == 0.0
+            && friction.initial.is_none()
             && friction.rigid_slip.is_none()
             && friction.influence.is_none()
             && scene.influence.is_none()

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::coupled::Coupled;
-use super::{Measures, Options, Outcome, ProgressCallback};
+use super::{InitialGuess, Measures, Options, Outcome, ProgressCallback, Solver as Handle};
 use crate::contact::State;
 use crate::error::{invalid, Error, Result};
 use crate::friction::{Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential};
@@ -63,15 +63,13 @@ impl Tangent {
         self.solver.into_solution()
     }
 
-    /// Whether it has the coefficients that a scene asks for.
-    pub fn suits(&self, friction: &Friction<'_>) -> bool {
-        let cross = self.coupled.as_ref().map(Coupled::source);
-        let has_cross = match (cross, &friction.influence) {
-            (Some(Source::Tables(tables)), Some(influence)) => tables.are_of(influence),
-            (_, Some(influence)) => influence.cross.is_none(),
-            _ => true,
-        };
-        has_cross && self.solver.tangential().are_of(friction.influence.as_ref())
+    /// The same with the last result of another one, which had other coefficients.
+    pub fn with_last_of(mut self, mut other: Tangent) -> Tangent {
+        self.solver.take_last_of(&mut other.solver);
+        if let (Some(coupled), Some(before)) = (&mut self.coupled, &mut other.coupled) {
+            coupled.take_last_of(before);
+        }
+        self
     }
 
     /// Whether tractions do not change the pressures.
@@ -189,30 +187,83 @@ impl Tangent {
     }
 }
 
+impl Handle {
+    /// What solves friction, to be put back; made where there is none.
+    pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
+        match self.friction.take() {
+            Some(tangent) => Ok(tangent),
+            None => Ok(Box::new(Tangent::new(scene, options, &self.problem.threads)?)),
+        }
+    }
+
+    /// [`solve_tangential`] with what this solver keeps: coefficients, and the tractions of the step before.
+    pub fn solve_tangential(
+        &mut self,
+        scene: &Scene<'_>,
+        pressure: &[f64],
+        options: &Options,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, &Solution, super::Report)> {
+        let own = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own.as_deref())?;
+        let friction = scene.tangential()?;
+        self.set_up.check_options(options)?;
+        self.set_up.check_scene(scene, &self.problem)?;
+        let pressure = &*positive(&scene.grid, pressure)?;
+        self.keep_tables(scene)?;
+        let threads = self.problem.threads.clone();
+        let mut tangent = self.take_tangent(scene, options)?;
+        let turn = Turn { scene, friction, options, threads: &threads };
+        let solved = alone(&mut tangent, &turn, pressure, progress);
+        let tangent = &*self.friction.insert(tangent);
+        let (stop, report) = solved?;
+        // A solve that ends has a result.
+        let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
+        Ok((stop, solution, report))
+    }
+
+    /// The tractions, slip and stick area that were found last, with pressures of the normal problem or with given ones.
+    pub fn tractions(&self) -> Option<&Solution> {
+        self.friction.as_deref().and_then(Tangent::solution)
+    }
+}
+
 /// Solves the tangential problem of a scene alone, with pressures that are given: `[my][mx]`; those that are not positive count as no
-/// contact. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not change the pressures.
+/// contact. Its distance and its load are not looked at. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not
+/// change the pressures.
 pub fn solve_tangential(
     scene: &Scene<'_>,
     pressure: &[f64],
     options: &Options,
     progress: Option<ProgressCallback<'_>>,
 ) -> Result<(Outcome, Solution, super::Report)> {
-    scene.check(&Threads::One)?;
+    let friction = scene.check_tangential()?;
     options.check()?;
-    scene.check_free_load(options.is_fixed())?;
-    let Some(friction) = &scene.friction else {
-        return invalid("friction is not given: there is nothing to solve".into());
-    };
     let pressure = &*positive(&scene.grid, pressure)?;
     let threads = Threads::new(options.threads)?;
-    let mut monitor = Monitor::new(progress, Vec::new(), false);
     let mut tangent = Tangent::new(scene, options, &threads)?;
     let turn = Turn { scene, friction, options, threads: &threads };
-    let (stop, found) = tangent.solve(&turn, pressure, false, &mut monitor)?;
-    let measures = measures(&scene.grid, pressure);
-    let (friction, tolerance, solve_seconds) = (Some(found), options.tolerance, monitor.seconds());
-    let report = super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() };
+    let (stop, report) = alone(&mut tangent, &turn, pressure, progress)?;
     Ok((stop, tangent.into_solution(), report))
+}
+
+/// One step with pressures that are given.
+fn alone(
+    tangent: &mut Tangent,
+    turn: &Turn<'_>,
+    pressure: &[f64],
+    progress: Option<ProgressCallback<'_>>,
+) -> Result<(Outcome, super::Report)> {
+    let mut monitor = Monitor::new(progress, Vec::new(), false);
+    let start = match turn.options.initial_guess {
+        InitialGuess::Previous if tangent.solution().is_some() => Start::Last,
+        _ => turn.friction.initial.map_or(Start::Before, Start::Given),
+    };
+    let (stop, found) = tangent.solve_from(start, turn, pressure, &mut monitor)?;
+    tangent.keep_pressures(pressure);
+    let measures = measures(&turn.scene.grid, pressure);
+    let (friction, tolerance, solve_seconds) = (Some(found), turn.options.tolerance, monitor.seconds());
+    Ok((stop, super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() }))
 }
 
 /// The pressures of what is in contact: negative ones are 0. Refuses those that are not one finite value per element.

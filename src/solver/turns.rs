@@ -28,16 +28,7 @@ impl Solver {
             return Ok((stop, None));
         };
         let threads = self.problem.threads.clone();
-        let (mut tangent, replaced) = match self.friction.take() {
-            Some(before) if before.suits(friction) => (before, None),
-            before => match Tangent::new(scene, options, &threads) {
-                Ok(new) => (Box::new(new), before),
-                Err(error) => {
-                    self.friction = before;
-                    return Err(error);
-                }
-            },
-        };
+        let mut tangent = self.take_tangent(scene, options)?;
         let turn = Turn { scene, friction, options, threads: &threads };
         let outcome = tangent.last().and_then(|last| {
             let outcome = self.solve_step(&mut tangent, &turn, stop, monitor);
@@ -47,8 +38,7 @@ impl Solver {
             }
             outcome
         });
-        // What was replaced has the last result, if this is none.
-        self.friction = replaced.filter(|_| outcome.is_err()).or(Some(tangent));
+        self.friction = Some(tangent);
         outcome.map(|(stop, found)| (stop, Some(found)))
     }
 
@@ -79,7 +69,8 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, friction::Report)> {
         let smaller = if tangent.is_of_like_bodies() { self.smaller_load(turn, stop, monitor)? } else { None };
-        let start = smaller.as_ref().map_or(Start::Before, Smaller::start);
+        let given = turn.friction.initial.map_or(Start::Before, Start::Given);
+        let start = smaller.as_ref().map_or(given, Smaller::start);
         let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, start, monitor)?;
         if let Some(smaller) = smaller {
             if tangential_stop == Outcome::Converged && monitor.is_cancelled() {

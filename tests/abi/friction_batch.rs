@@ -1,4 +1,4 @@
-//! `contact_normal_friction_batch`: results, entries that are refused, cancelling, memory that overlaps.
+//! `contact_normal_solve_tangential`: results, entries that are refused, cancelling, memory that overlaps.
 
 use std::ffi::CStr;
 use std::ptr::{null, null_mut};
@@ -72,7 +72,8 @@ impl Call {
         // SAFETY: arrays as long as the call says.
         unsafe {
             let (scene, options) = (&raw const self.scene, &raw const self.options);
-            let status = contact_normal_friction_batch(
+            let status = contact_normal_solve_tangential(
+                null_mut(),
                 scene,
                 pressure,
                 options,
@@ -187,8 +188,9 @@ fn the_call_itself_is_refused_by_name() {
     let (status, message) = call.run_with(pressure, 2, null());
     assert!(status == CONTACT_NORMAL_NULL_POINTER && message.contains("entries"));
     // SAFETY: NULL is refused.
-    let status =
-        unsafe { contact_normal_friction_batch(&call.scene, pressure, null(), 0, null(), null_mut(), null_mut()) };
+    let status = unsafe {
+        contact_normal_solve_tangential(null_mut(), &call.scene, pressure, null(), 0, null(), null_mut(), null_mut())
+    };
     assert_eq!(status, CONTACT_NORMAL_NULL_POINTER);
 }
 

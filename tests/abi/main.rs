@@ -11,5 +11,6 @@ mod odd_input;
 mod rows;
 mod struct_sizes;
 mod subsurface_stress;
+mod tangential_handle;
 mod warnings;
 mod watching;

@@ -239,7 +239,7 @@ contains
     call contact_normal_set_friction_results(results, force=force, moment=moment, status=status, traction=traction)
     call contact_normal_report_init(normal)
     call contact_normal_report_init(one)
-    call hold(contact_normal_friction_batch(ball, n=n, entries=entries, results=results, report=normal) == &
+    call hold(contact_normal_solve_tangential(ball, n=n, entries=entries, results=results, report=normal) == &
       CONTACT_NORMAL_OK, "a table")
     call hold(all(status == CONTACT_NORMAL_OK) .and. abs(normal%normal%force - 1000) < 1e-2_dp, "its statuses and its normal force")
     do k = 1, n
@@ -253,7 +253,7 @@ contains
     end do
     friction%prescribed(1) = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
     entries(1, 2) = 1e9_dp
-    call hold(contact_normal_friction_batch(ball, n=n, entries=entries, results=results) == CONTACT_NORMAL_INFEASIBLE, &
+    call hold(contact_normal_solve_tangential(ball, n=n, entries=entries, results=results) == CONTACT_NORMAL_INFEASIBLE, &
       "a force that friction does not carry")
     call hold(index(contact_normal_last_error_message(), "entry 1: ") == 1, "the entry is named")
     call hold(all(status == [CONTACT_NORMAL_OK, CONTACT_NORMAL_INFEASIBLE, CONTACT_NORMAL_OK]), "the others are solved")

@@ -126,7 +126,7 @@ int main(void)
     contact_normal_solver *solver = NULL;
     check(contact_normal_solver_new(&scene.it, &options.it, &solver) == CONTACT_NORMAL_OK, "solver_new");
     check(contact_normal_solver_solve(solver, &scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solver_solve");
-    check(contact_normal_solver_set_influence(solver, &influence.it) == CONTACT_NORMAL_OK, "solver_set_influence");
+    check(contact_normal_solver_set_influence(solver, &influence.it, NULL) == CONTACT_NORMAL_OK, "solver_set_influence");
     check(contact_normal_solver_fields(solver, &fields.it) == CONTACT_NORMAL_OK, "solver_fields");
     check(contact_normal_solver_query(solver, &info.it) == CONTACT_NORMAL_OK && info.it.mx == M && info.it.has_result == 1, "solver_query");
     check(contact_normal_solver_free(solver) == CONTACT_NORMAL_OK, "solver_free");
@@ -167,13 +167,14 @@ int main(void)
     fields.it.traction[0] = q[0], fields.it.traction[1] = q[1], fields.it.slip[0] = slip[0], fields.it.slip[1] = slip[1];
     check(contact_normal_solve(&scene.it, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "friction");
     check(stick_slip[0] == CONTACT_NORMAL_STICK_SLIP_EXTERIOR && stick_slip[N / 2 + M / 2] != stick_slip[0], "stick_slip");
-    check(contact_normal_solve_tangential(&scene.it, p, &options.it, &fields.it, &report.it) == CONTACT_NORMAL_OK, "solve_tangential");
     const double entries[2][3] = {{-1e-4, 0.0, 0.0}, {-2e-4, 0.0, 0.0}};
     double forces[4];
     int32_t statuses[2];
     results.it.force = forces, results.it.status = statuses;
-    check(contact_normal_friction_batch(&scene.it, p, &options.it, 2, entries[0], &results.it, &report.it) == CONTACT_NORMAL_OK, "friction_batch");
+    check(contact_normal_solve_tangential(NULL, &scene.it, p, &options.it, 2, entries[0], &results.it, &report.it) == CONTACT_NORMAL_OK, "a table");
     check(forces[2] > forces[0] && forces[0] > 0.0, "its forces");
+    check(contact_normal_solve_tangential(NULL, &scene.it, p, &options.it, 1, NULL, &results.it, &report.it) == CONTACT_NORMAL_OK, "one problem");
+    check(forces[0] == report.it.tangential.force[0] && statuses[0] == CONTACT_NORMAL_OK, "its force");
 
     /* Stresses. */
     const double depths[1] = {0.5};

@@ -1,6 +1,6 @@
 //! Friction on long lines, whose rows or columns are as large as the grid: whatever memory lacks, plans of transforms included, is a status.
 
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use super::call::initialised;
 use super::lack_of_memory::release;
@@ -30,7 +30,10 @@ fn solve((mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<
     (options.tolerance, options.threads) = (1e-3, 1);
     // SAFETY (both): structs with their arrays.
     match pressures {
-        Some(p) => unsafe { contact_normal_solve_tangential(&scene, p.as_ptr(), &options, null_mut(), null_mut()) },
+        Some(p) => unsafe {
+            let (p, report) = (p.as_ptr(), null_mut());
+            contact_normal_solve_tangential(null_mut(), &scene, p, &options, 1, null(), null_mut(), report)
+        },
         None => unsafe { contact_normal_solve(&scene, &options, null_mut(), null_mut()) },
     }
 }

@@ -2,7 +2,7 @@
 //! solving.
 
 use std::hint::black_box;
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use libc::{c_char, c_int, c_void};
 
@@ -181,7 +181,7 @@ unsafe extern "C" fn misuse(_: *const contact_normal_progress, user: *mut c_void
             outcomes.push(call.run(through, *handle));
         }
         outcomes.push((contact_normal_solver_fields(*handle, &mut call.fields.known), last_error()));
-        outcomes.push((contact_normal_solver_set_influence(*handle, &call.influence.known), last_error()));
+        outcomes.push((contact_normal_solver_set_influence(*handle, &call.influence.known, null()), last_error()));
         outcomes.push((contact_normal_solver_free(*handle), last_error()));
         // A handle of its own it may use.
         let own = Handle::of(call);

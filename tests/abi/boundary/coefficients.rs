@@ -12,7 +12,7 @@ const HANDLES: [Through; 2] = [Through::SolverSolve, Through::SolverSolveBatch];
 /// Gives the handle the table of the call.
 fn set_influence(handle: &Handle, call: &Call) -> (i32, String) {
     // SAFETY: a handle, and a struct with its table.
-    let status = unsafe { contact_normal_solver_set_influence(handle.0, &call.influence.known) };
+    let status = unsafe { contact_normal_solver_set_influence(handle.0, &call.influence.known, null()) };
     (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
 }
 
@@ -176,9 +176,9 @@ fn what_cannot_be_another_table_is_refused_and_changes_nothing() {
     // SAFETY: NULL is refused.
     unsafe {
         let call = Call::new();
-        let status = contact_normal_solver_set_influence(null_mut(), &call.influence.known);
+        let status = contact_normal_solver_set_influence(null_mut(), &call.influence.known, null());
         assert_refused((status, last_error()), CONTACT_NORMAL_NULL_POINTER, &["solver"]);
-        let status = contact_normal_solver_set_influence(handle.0, null());
+        let status = contact_normal_solver_set_influence(handle.0, null(), null());
         assert_refused((status, last_error()), CONTACT_NORMAL_NULL_POINTER, &["influence"]);
     }
     let (mut call, mut expected) = (with_table(1.0, 0.0), with_table(1.0, 0.0));
@@ -196,17 +196,25 @@ fn other_coefficients_than_those_of_the_handle_are_refused() {
     for through in HANDLES {
         assert_eq!(with_table(1.0, 0.0).run(through, handle.0), (CONTACT_NORMAL_OK, String::new()));
         let mut other = with_table(1.0, 1e-12);
-        assert_refused(other.run(through, handle.0), INVALID, &["influence", "contact_normal_solver_set_influence"]);
+        assert_refused(
+            other.run(through, handle.0),
+            CONTACT_NORMAL_INFLUENCE_CHANGED,
+            &["influence", "contact_normal_solver_set_influence"],
+        );
         let mut scaled = with_table(1.0, 0.0);
         scaled.use_table().scale = 2.0;
-        assert_refused(scaled.run(through, handle.0), INVALID, &["influence", "contact_normal_solver_set_influence"]);
+        assert_refused(
+            scaled.run(through, handle.0),
+            CONTACT_NORMAL_INFLUENCE_CHANGED,
+            &["influence", "contact_normal_solver_set_influence"],
+        );
 
         let mut same = Call::new();
         same.use_row_tables();
         assert_eq!(same.run(through, of_rows.0), (CONTACT_NORMAL_OK, String::new()));
         let mut other = Call::new();
         other.set_in_row(2, 1, 3, 1e-7);
-        assert_refused(other.run(through, of_rows.0), INVALID, &["row_tables", "other"]);
+        assert_refused(other.run(through, of_rows.0), CONTACT_NORMAL_INFLUENCE_CHANGED, &["row_tables", "other"]);
         // What an effect of a scene for a handle with coefficients of its own holds is checked as ever.
         let mut bad = with_table(1.0, 0.0);
         bad.use_limit().limit = f64::NAN;

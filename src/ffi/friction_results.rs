@@ -1,0 +1,121 @@
+//! `contact_normal_friction_results`: where the results of tangential problems are written.
+
+use super::arguments::Regions;
+use super::solve::Conclusion;
+use super::status::{contact_normal_status, Refusal};
+use super::structs::versioned;
+use super::watcher::why;
+use crate::friction::{Report, Solution};
+use crate::solver::{Ended, Outcome};
+
+/// Where the results of n entries are written; NULL (the default of each): not wanted.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_friction_results {
+    /// Set by `contact_normal_friction_results_init`.
+    pub struct_size: i64,
+    /// The sums of q dx dy in x and y, on body 1, `[n][2]`.
+    pub force: *mut f64,
+    /// The sums of (x qy - y qx) dx dy about the centre of spin, `[n]`.
+    pub moment: *mut f64,
+    /// Creepages in x and y, given or found, `[n][2]`.
+    pub creepage: *mut f64,
+    /// As `tangential.residual` of the report, `[n]`.
+    pub residual: *mut f64,
+    /// As `tangential.gap` of the report, `[n]`.
+    pub gap: *mut f64,
+    /// As `tangential_products` of the report, `[n]`.
+    pub products: *mut f64,
+    /// Elements that stick, `[n]`.
+    pub stick_count: *mut i64,
+    /// Elements that slip, `[n]`.
+    pub slip_count: *mut i64,
+    /// The status of each entry, `[n]`.
+    pub status: *mut contact_normal_status,
+    /// Tractions, `[n][2][my][mx]`: those in x and then those in y of each entry.
+    pub traction: *mut f64,
+    /// Slip, `[n][2][my][mx]`.
+    pub slip: *mut f64,
+    /// CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
+    pub stick_slip: *mut i32,
+}
+
+versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
+
+// SAFETY: the pointers are the caller's, who leaves what they point to alone during the call; what is written for one entry no other
+// one writes.
+unsafe impl Sync for contact_normal_friction_results {}
+
+impl contact_normal_friction_results {
+    /// Adds what is written of n entries on so many elements, and the struct that says where.
+    pub(super) fn add_to(
+        &self,
+        regions: &mut Regions,
+        at: *const contact_normal_friction_results,
+        (n, elements): (usize, usize),
+    ) -> Result<(), Refusal> {
+        let fields = n.saturating_mul(elements);
+        regions.input_struct(at, self)?;
+        regions.output("force", self.force, n.saturating_mul(2))?;
+        regions.output("moment", self.moment, n)?;
+        regions.output("creepage", self.creepage, n.saturating_mul(2))?;
+        regions.output("residual", self.residual, n)?;
+        regions.output("gap", self.gap, n)?;
+        regions.output("products", self.products, n)?;
+        regions.output("stick_count", self.stick_count, n)?;
+        regions.output("slip_count", self.slip_count, n)?;
+        regions.output("status", self.status, n)?;
+        regions.output("traction", self.traction, fields.saturating_mul(2))?;
+        regions.output("slip", self.slip, fields.saturating_mul(2))?;
+        regions.output("stick_slip", self.stick_slip, fields)
+    }
+
+    /// Writes how entry i ended, and what was found of it.
+    pub(super) unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Conclusion {
+        let outcome = match &ended {
+            Ok((stop, report)) => Conclusion::of(*stop, || said(*stop, report)),
+            Err(error) => Refusal::from(error.clone()).into(),
+        };
+        // SAFETY (all): by the caller: NULL or room for all entries.
+        unsafe {
+            put(self.status, i, outcome.status);
+            if let (Ok((_, report)), Some(solution)) = (&ended, solution) {
+                put(self.force.cast::<[f64; 2]>(), i, report.force);
+                put(self.moment, i, report.moment);
+                put(self.creepage.cast::<[f64; 2]>(), i, report.creepage);
+                put(self.residual, i, report.certificate.residual);
+                put(self.gap, i, report.certificate.gap);
+                put(self.products, i, report.products);
+                put(self.stick_count, i, report.certificate.stick_count as i64);
+                put(self.slip_count, i, report.certificate.slip_count as i64);
+                let elements = solution.stick_slip.len();
+                for (field, to) in [(&solution.traction, self.traction), (&solution.slip, self.slip)] {
+                    for (element, v) in field.iter().enumerate().filter(|_| !to.is_null()) {
+                        put(to, 2 * i * elements + element, v[0]);
+                        put(to, (2 * i + 1) * elements + element, v[1]);
+                    }
+                }
+                for (element, stick_slip) in solution.stick_slip.iter().enumerate() {
+                    put(self.stick_slip, i * elements + element, *stick_slip);
+                }
+            }
+        }
+        outcome
+    }
+}
+
+/// Writes a value where it is wanted.
+unsafe fn put<T>(to: *mut T, i: usize, value: T) {
+    if !to.is_null() {
+        // SAFETY: not null: room for it, by the caller.
+        unsafe { to.add(i).write_unaligned(value) };
+    }
+}
+
+/// Why an entry is not OK.
+fn said(stop: Outcome, found: &Report) -> String {
+    match stop {
+        Outcome::Cancelled => why(stop).into(),
+        _ => format!("{}; the residual is {:e}", why(stop), found.certificate.residual),
+    }
+}
