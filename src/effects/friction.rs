@@ -101,6 +101,8 @@ pub struct Friction<'a> {
     pub initial: Option<[&'a [f64]; 2]>,
     /// A rigid slip of the caller's in addition, lengths per step, x and y.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
+    /// The compliance of a thin elastic layer between the bodies, a length per traction: it displaces by that times the traction on it.
+    pub compliance: Coefficient<'a>,
     /// Tangential coefficients of the caller's own; none: those of the half-space.
     pub influence: Option<TangentialInfluence<'a>>,
     /// Whether the derivatives of the forces by the creepages and the spin are asked for.
@@ -122,6 +124,7 @@ impl Friction<'_> {
             previous: Previous::None,
             initial: None,
             rigid_slip: None,
+            compliance: Coefficient::Uniform(0.0),
             influence: None,
             sensitivities: false,
         }
@@ -273,6 +276,13 @@ impl Effect for Friction<'_> {
         match self.coefficient {
             Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
             Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
+        }
+        let compliance = |name: &str, value: f64| {
+            require((0.0..LARGEST).contains(&value), name, value, "a compliance must be 0 or more, and below 1e140")
+        };
+        match self.compliance {
+            Coefficient::Uniform(value) => compliance("friction->compliance", value)?,
+            Coefficient::PerElement(values) => check_values("friction->compliances", values, grid, compliance)?,
         }
         self.check_step(grid)?;
         self.check_range(grid)?;

@@ -97,9 +97,14 @@ pub struct contact_normal_friction {
     /// Tractions in x and y to start the iteration from, `[my][mx]` each, both or none; default NULL. The solution does not depend on them:
     /// those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
     pub initial_traction: [*const f64; 2],
+    /// The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
+    /// it. For a third body of thickness h and shear modulus G h/G. Default 0: none. Not read if there are `compliances`.
+    pub compliance: f64,
+    /// That of each element, `[my][mx]`, or NULL (default).
+    pub compliances: *const f64,
 }
 
-versioned! { contact_normal_friction, contact_normal_friction_init, 216, spin_offset: 1.0 / 6.0 }
+versioned! { contact_normal_friction, contact_normal_friction_init, 232, spin_offset: 1.0 / 6.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.
@@ -140,8 +145,9 @@ impl contact_normal_friction {
                 return Err(Refusal::invalid(format!("friction->sensitivities is {other}; it must be 0 or 1")));
             }
         };
-        // SAFETY: as above.
-        let coefficients = unsafe { optional(self.coefficients, grid.len()) };
+        // SAFETY (both): as above.
+        let (coefficients, compliances) =
+            unsafe { (optional(self.coefficients, grid.len()), optional(self.compliances, grid.len())) };
         Ok(Friction {
             coefficient: coefficients.map_or(Coefficient::Uniform(self.coefficient), Coefficient::PerElement),
             motion,
@@ -154,6 +160,7 @@ impl contact_normal_friction {
             previous,
             initial: pair("initial_traction", self.initial_traction)?,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
+            compliance: compliances.map_or(Coefficient::Uniform(self.compliance), Coefficient::PerElement),
             influence: self.own_influence()?,
             sensitivities,
         })
@@ -219,6 +226,7 @@ impl GivenEffect for contact_normal_friction {
     fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
         let n = grid.len();
         regions.input("friction->coefficients", self.coefficients, n)?;
+        regions.input("friction->compliances", self.compliances, n)?;
         for k in 0..2 {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;

@@ -81,6 +81,8 @@ pub struct Tangential {
     series: [Series; 2],
     /// The caller's own, in place of these.
     own: Option<Tables>,
+    /// What a layer between the bodies adds to the coefficient of an element on itself.
+    layer: f64,
 }
 
 impl Tangential {
@@ -102,13 +104,23 @@ impl Tangential {
         };
         let xx = combined(&|a, b| shear * (a + b) - poisson * a);
         let yy = combined(&|a, b| shear * (a + b) - poisson * b);
-        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy], own: None }
+        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy], own: None, layer: 0.0 }
     }
 
     /// The caller's own coefficients, for elements `dx` by `dy`.
     pub fn of_tables(dx: f64, dy: f64, influence: &TangentialInfluence<'_>) -> Result<Tangential> {
         let no_bodies = Compliance { shear: 1.0, poisson: 0.0, unlike: 0.0 };
         Ok(Tangential { own: Some(Tables::new(influence)?), ..Tangential::new(dx, dy, no_bodies) })
+    }
+
+    /// The same with a layer of this compliance between the bodies.
+    pub fn with_layer(&self, layer: f64) -> Tangential {
+        Tangential { layer, ..self.clone() }
+    }
+
+    /// The compliance of the layer.
+    pub fn layer(&self) -> f64 {
+        self.layer
     }
 
     /// Whether these are the caller's own.
@@ -134,7 +146,7 @@ impl Tangential {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
         let own = self.own.as_ref().map(|own| own.coarsened(dx > self.dx, dy > self.dy)).transpose()?;
-        Ok(Tangential { own, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
+        Ok(Tangential { own, layer: self.layer, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
     }
 
     /// The same with lengths in units of `length`, and the unit of displacements by tractions of 1 that makes the coefficients of order 1.
@@ -147,7 +159,7 @@ impl Tangential {
         let compliance = Compliance { shear: shear / stiff, poisson: poisson / stiff, unlike: unlike / stiff };
         let own = self.own.as_ref().map(|own| own.in_units_of(unit));
         let scaled = Tangential::of_shape(self.dx / length, self.dy / length, compliance, self.shape.clone());
-        (Tangential { own, ..scaled }, unit)
+        (Tangential { own, layer: self.layer / unit, ..scaled }, unit)
     }
 
     /// What the materials make of tractions.
@@ -157,7 +169,8 @@ impl Tangential {
 
     /// These over others, where they are a multiple of them.
     pub fn times(&self, other: &Tangential) -> Option<f64> {
-        let is_multiple = self.own.is_none()
+        let is_multiple = [self.layer, other.layer] == [0.0; 2]
+            && self.own.is_none()
             && other.own.is_none()
             && self.compliance == other.compliance
             && Arc::ptr_eq(&self.shape, &other.shape);
@@ -166,6 +179,14 @@ impl Tangential {
 
     /// The coefficients at an offset, in elements; of own tables at the next whole one.
     pub fn at(&self, x: f64, y: f64) -> Entry {
+        let [xx, yy, xy] = self.of_bodies(x, y);
+        // Between the centres tractions are interpolated.
+        let layer = self.layer * (1.0 - x.abs()).max(0.0) * (1.0 - y.abs()).max(0.0);
+        [xx + layer, yy + layer, xy]
+    }
+
+    /// The same without the layer.
+    fn of_bodies(&self, x: f64, y: f64) -> Entry {
         if let Some(own) = &self.own {
             return own.at(x.round() as i64, y.round() as i64);
         }
@@ -189,6 +210,13 @@ impl Tangential {
             out.iter_mut().enumerate().for_each(|(kx, entry)| *entry = self.at(kx as f64, ky as f64));
             return;
         }
+        self.fill_row_of_bodies(ky, out);
+        if let (0, Some(own)) = (ky, out.first_mut()) {
+            (own[0], own[1]) = (own[0] + self.layer, own[1] + self.layer);
+        }
+    }
+
+    fn fill_row_of_bodies(&self, ky: usize, out: &mut [Entry]) {
         // The distance grows along the row: one segment after the other, each with its own number of terms.
         let (y, count) = (ky as f64 * self.dy, out.len());
         let starts = SERIES.map(|(distance, _)| {

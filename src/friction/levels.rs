@@ -17,6 +17,7 @@
 use std::iter::successors;
 
 use super::certificate::ON_THE_CIRCLE;
+use super::excess::Excess;
 use super::extension::{neighbours, Extension};
 use super::march::Rolling;
 use super::operators::Operators;
@@ -168,6 +169,15 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             (bound[ix], slip[ix], rigid[ix]) = element(iy * to.mx + ix);
         }
     });
+    problem.operators.excess = match &fine.operators.excess {
+        None => None,
+        Some(excess) => Some(Excess::new(&to, |i| {
+            let mean = |(sum, count): (f64, f64), child: usize| (sum + excess.at(child), count + 1.0);
+            let in_contact = to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
+            let (sum, count) = in_contact.fold((0.0, 0.0), mean);
+            sum / f64::max(count, 1.0)
+        })?),
+    };
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
     problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();

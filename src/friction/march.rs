@@ -66,6 +66,16 @@ impl March {
         march
     }
 
+    /// The weight of an element itself at its place after a step, between the centres.
+    pub fn own(&self) -> f64 {
+        self.own
+    }
+
+    /// The neighbours between which that place lies, with their weights.
+    pub fn neighbours(&self) -> &[(isize, isize, f64)] {
+        &self.ahead
+    }
+
     /// Axx and Ayy ahead of a loaded element, interpolated from `at(x, y)`.
     pub fn ahead_of(&self, at: impl Fn(f64, f64) -> [f64; 3]) -> Vector {
         let own = at(0.0, 0.0);

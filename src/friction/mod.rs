@@ -27,6 +27,7 @@ pub mod dense;
 mod derivatives;
 mod disc;
 mod discs;
+mod excess;
 mod extension;
 mod fgmres;
 mod forces;

@@ -1,6 +1,7 @@
 //! The operators of one grid: products with A or B, and what undoes them nearly.
 
 use super::coefficients::Tangential;
+use super::excess::Excess;
 use super::march::{March, Rolling};
 use super::quadrant::Quadrant;
 use super::toeplitz::Toeplitz;
@@ -25,6 +26,8 @@ pub struct Operators {
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
     pub rolling: Option<(Rolling, March)>,
+    /// A layer between the bodies, where it is not uniform.
+    pub excess: Option<Excess>,
     /// What a traction on one element displaces itself by, in steady rolling in a step: the larger of both directions.
     pub self_influence: f64,
     /// The same without rolling.
@@ -44,6 +47,7 @@ impl Operators {
             fast: None,
             inverse: None,
             rolling: None,
+            excess: None,
             self_influence: xx.max(yy),
             a0: xx.max(yy),
             threads: threads.suited_to(WORK * grid.len()),
@@ -106,13 +110,22 @@ impl Operators {
             (_, Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
             _ => unreachable!("there is one of them"),
         }
+        self.add_excess(q, 1.0, u);
         self.products += 1;
+    }
+
+    /// What a layer adds that is not uniform.
+    fn add_excess<T: Real>(&self, q: &[[T; 2]], by: f64, u: &mut [[T; 2]]) {
+        if let Some(excess) = &self.excess {
+            excess.add(q, by, self.rolling.as_ref().map(|(_, march)| march), u);
+        }
     }
 
     /// The same to single precision.
     pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         let Some((operator, workspace)) = &mut self.fast else { return self.multiply(q, unit, u) };
         operator.apply(q, unit_of(unit), u, workspace);
+        self.add_excess(q, 1.0, u);
         self.products += 1;
     }
 
@@ -123,6 +136,7 @@ impl Operators {
             (Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
             _ => unreachable!("there is one of them"),
         }
+        self.add_excess(q, 1.0 / self.unit(), u);
         self.products += 1;
     }
 
@@ -164,7 +178,8 @@ impl Operators {
         fn of<T: Real>(operator: &Option<(Toeplitz<T>, Workspace<T>)>) -> usize {
             operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
         }
-        of(&self.exact) + of(&self.fast) + of(&self.inverse)
+        let excess = self.excess.as_ref().map_or(0, Excess::bytes);
+        of(&self.exact) + of(&self.fast) + of(&self.inverse) + excess
     }
 }
 

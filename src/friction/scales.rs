@@ -48,6 +48,11 @@ impl Scales {
         length / self.length
     }
 
+    /// A displacement by a traction of 1.
+    pub fn compliance(&self, compliance: f64) -> f64 {
+        compliance / self.compliance
+    }
+
     /// A traction.
     pub fn traction(&self, traction: f64) -> f64 {
         traction / self.traction

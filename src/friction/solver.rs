@@ -13,11 +13,12 @@ use super::take_over::before;
 use super::vectors;
 use super::window::{Displaced, Window};
 use super::{Tangential, Vector};
-use crate::effects::{Friction, Motion, Prescribed, Previous};
+use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
 use crate::progress::Outcome;
+use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// A start that leaves more than this residual is worth less than the coarser grids.
@@ -137,6 +138,7 @@ impl Solver {
             return invalid("friction continues, but this solver holds no tractions yet".into());
         }
         self.make_room()?;
+        self.set_layer(friction);
         let forces = Forces::of(friction, &self.grid, bound)?;
         if keeps && !matches!(request.start, Start::Again) {
             self.keep_tractions()?;
@@ -243,6 +245,19 @@ impl Solver {
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
         report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
         Ok(end)
+    }
+
+    /// The mean of the compliance of what lies between the bodies is one of the coefficients.
+    fn set_layer(&mut self, friction: &Friction<'_>) {
+        let layer = match friction.compliance {
+            Coefficient::Uniform(compliance) => compliance,
+            Coefficient::PerElement(of) => in_blocks(of.iter().copied()) / of.len() as f64,
+        };
+        if layer != self.tangential.layer() {
+            self.tangential = self.tangential.with_layer(layer);
+            self.scaled = self.scaled.with_layer(self.scales.compliance(layer));
+            (self.levels, self.has_coarser, self.displaced) = (Vec::new(), false, None);
+        }
     }
 
     /// Operators of a window.

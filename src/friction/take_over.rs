@@ -1,7 +1,9 @@
 //! What a solve takes over: bounds, rigid slip and the tractions to start from.
 
 use super::certificate::is_on_circle;
+use super::excess::Excess;
 use super::levels::Level;
+use super::march::{March, Rolling};
 use super::problem::{add, square, Problem, Scale, State};
 use super::request::{Request, Start, Superposed};
 use super::scales::Scales;
@@ -10,7 +12,7 @@ use super::solver::Solver;
 use super::vectors;
 use super::window::{displaced, Window};
 use super::Vector;
-use crate::effects::{Friction, Motion, Prescribed, Previous};
+use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, unwritten, zeros};
@@ -94,6 +96,14 @@ impl Solver {
                 *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }
         });
+        problem.operators.excess = match friction.compliance {
+            Coefficient::Uniform(_) => None,
+            Coefficient::PerElement(of) => {
+                let (mean, grid) = (problem.operators.tangential.layer(), &self.grid);
+                let place = |k: usize| window.row(grid, k / width).start + k % width;
+                Some(Excess::new(&problem.grid, |k| scales.compliance(of[place(k)]) - mean)?)
+            }
+        };
         if !from_rest {
             threads.for_each_plain_row(&mut state.q, width, |iy, row| {
                 row.iter_mut()
@@ -174,6 +184,10 @@ impl Solver {
                 let by = friction.elements_rolled(&self.grid);
                 let displaced = displaced(&mut self.displaced, &self.scaled, problem.grid, by, &self.threads)?;
                 displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
+                if let Some(excess) = &problem.operators.excess {
+                    let rolling = Rolling { distance: self.scales.length(friction.distance(&self.grid)), by };
+                    excess.subtract_ahead(&state.q, &March::new(&rolling), &mut problem.slip);
+                }
             }
         }
         for (w, u) in problem.slip.iter_mut().zip(&state.u) {

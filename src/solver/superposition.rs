@@ -82,6 +82,7 @@ impl Push {
             && friction.initial.is_none()
             && friction.rigid_slip.is_none()
             && friction.influence.is_none()
+            && friction.compliance == Coefficient::Uniform(0.0)
             && scene.influence.is_none()
             && scene.layer.is_none()
             && scene.pressure_limit.is_none()

@@ -10,6 +10,7 @@ mod estimates;
 mod forces;
 #[allow(dead_code)] // what docs/reliability.md prints
 mod hard;
+mod layer;
 mod linear_theory;
 mod onset_of_rolling;
 mod refusals;

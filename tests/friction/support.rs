@@ -41,6 +41,20 @@ fn rms(values: impl Iterator<Item = f64>, count: usize) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count as f64).sqrt()
 }
 
+/// Adds what a layer displaces by tractions, which are interpolated between the centres, at places `by` elements from each.
+fn add_layer(grid: &Grid, friction: &Friction<'_>, by: (f64, f64), q: &[Vector], u: &mut [Vector]) {
+    for (i, u) in u.iter_mut().enumerate() {
+        let (x, y) = ((i % grid.mx) as f64 + by.0, (i / grid.mx) as f64 + by.1);
+        for (j, q) in q.iter().enumerate() {
+            let hat = |distance: f64| (1.0 - distance.abs()).max(0.0);
+            let weight = hat(x - (j % grid.mx) as f64) * hat(y - (j / grid.mx) as f64);
+            if weight > 0.0 {
+                (0..2).for_each(|k| u[k] += weight * friction.compliance.at(j) * q[k]);
+            }
+        }
+    }
+}
+
 /// The conditions of friction, by direct sums: `|q| <= mu p` to the last bit; what is left of the slip; returns that, relative. The gap that
 /// is reported is that of the same sums.
 pub fn residual(
@@ -61,7 +75,10 @@ pub fn residual(
         _ => (distance * cosine / grid.dx, distance * sine / grid.dy),
     };
     let is_steady = friction.motion == Motion::SteadyRolling;
-    dense::apply(&tangential, grid, by, if is_steady { q } else { before }, &mut u_before);
+    let before = if is_steady { q } else { before };
+    dense::apply(&tangential, grid, by, before, &mut u_before);
+    add_layer(grid, friction, (0.0, 0.0), q, &mut u);
+    add_layer(grid, friction, by, before, &mut u_before);
     let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let (mut gap, mut work, mut rounding) = (0.0, 0.0, 0.0);
     for i in 0..n {

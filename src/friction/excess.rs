@@ -1,0 +1,76 @@
+//! A layer between the bodies whose compliance differs from element to element: what it displaces beyond its mean, which is among the
+//! coefficients.
+//!
+//! ```text
+//! u_I += r_I q_I                             r: the compliance less its mean
+//! u_I += d (r q)_I                           in steady rolling; d v = v - v(x + dq), interpolated between the centres
+//! ```
+
+use super::march::March;
+use super::Vector;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::operator::fft::Real;
+
+/// r on the elements of a grid.
+pub struct Excess {
+    mx: usize,
+    my: usize,
+    values: Vec<f64>,
+}
+
+impl Excess {
+    /// Of a grid: `of(i)` each.
+    pub fn new(grid: &Grid, of: impl Fn(usize) -> f64) -> Result<Excess> {
+        let mut values: Vec<f64> = zeros(grid.len(), "the layer between the bodies")?;
+        values.iter_mut().enumerate().for_each(|(i, value)| *value = of(i));
+        Ok(Excess { mx: grid.mx, my: grid.my, values })
+    }
+
+    /// r of element i.
+    pub fn at(&self, i: usize) -> f64 {
+        self.values[i]
+    }
+
+    /// Adds `by` times what q displaces; with a march, in a step of steady rolling.
+    pub fn add<T: Real>(&self, q: &[[T; 2]], by: f64, march: Option<&March>, u: &mut [[T; 2]]) {
+        for i in 0..q.len() {
+            let here = self.displaced(q, i);
+            let there = march.map_or([0.0; 2], |march| self.ahead(q, march, i));
+            for k in 0..2 {
+                u[i][k] = T::of(u[i][k].to_double() + by * (here[k] - there[k]));
+            }
+        }
+    }
+
+    /// Subtracts what tractions before displaced at the places of a step of transient rolling.
+    pub fn subtract_ahead(&self, q: &[Vector], march: &March, w: &mut [Vector]) {
+        for (i, w) in w.iter_mut().enumerate() {
+            let there = self.ahead(q, march, i);
+            *w = [w[0] - there[0], w[1] - there[1]];
+        }
+    }
+
+    fn displaced<T: Real>(&self, q: &[[T; 2]], i: usize) -> Vector {
+        q[i].map(|q| self.values[i] * q.to_double())
+    }
+
+    /// `r q` at the place of element i after a step.
+    fn ahead<T: Real>(&self, q: &[[T; 2]], march: &March, i: usize) -> Vector {
+        let mut sum = self.displaced(q, i).map(|v| march.own() * v);
+        for &(in_x, in_y, weight) in march.neighbours() {
+            let (x, y) = ((i % self.mx).wrapping_add_signed(in_x), (i / self.mx).wrapping_add_signed(in_y));
+            if x < self.mx && y < self.my {
+                let v = self.displaced(q, y * self.mx + x);
+                sum = [sum[0] + weight * v[0], sum[1] + weight * v[1]];
+            }
+        }
+        sum
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..])
+    }
+}

@@ -1,0 +1,98 @@
+//! A thin elastic layer between the bodies: a compliance, uniform or one per element, beside the coefficients.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
+
+use super::scenes::Ellipse;
+use super::support::{residual, run, solver};
+
+/// Compliances of elements from 0 to 2 `mean`, in a pattern without symmetry.
+fn uneven(grid: &Grid, mean: f64) -> Vec<f64> {
+    (0..grid.len())
+        .map(|i| mean * (1.0 + (0.7 * (i % grid.mx) as f64).sin() * (0.4 * (i / grid.mx) as f64).cos()))
+        .collect()
+}
+
+#[test]
+fn one_element_sticks_by_both_compliances_together() {
+    let grid = Grid::new(1, 1, 0.5, 0.4).unwrap();
+    let own = solver(&grid, 0.0).tangential().at(0.0, 0.0)[0];
+    for layer in [0.0, 0.1 * own, own, 1e4 * own] {
+        let prescribed = [Prescribed::Creepage(-1e-3), Prescribed::Creepage(0.0)];
+        let compliance = Coefficient::Uniform(layer);
+        let friction = Friction { prescribed, compliance, ..Friction::new(1e3) };
+        let (_, solution) = run(&mut solver(&grid, 0.0), &[1.0], &friction, 1e-12);
+        let expected = 1e-3 / (own + layer);
+        assert!(
+            (solution.traction[0][0] - expected).abs() <= 1e-11 * expected,
+            "{layer} {:?} {expected}",
+            solution.traction
+        );
+    }
+}
+
+#[test]
+fn all_motions_meet_the_conditions() {
+    let mut most = 0.0f64;
+    for seed in 0..8 {
+        for (motion, step, direction) in [
+            (Motion::Shift, 0.0, 0.0),
+            (Motion::TransientRolling, 1.0, 0.0),
+            (Motion::TransientRolling, 2.4, 0.6),
+            (Motion::SteadyRolling, 1.0, 0.0),
+            (Motion::SteadyRolling, 1.5, 0.0),
+            (Motion::SteadyRolling, 1.0, 0.5),
+        ] {
+            for forces in [false, true] {
+                let case = Ellipse::random(seed, 20, forces);
+                let own = solver(&case.grid, case.nu).tangential().at(0.0, 0.0)[0];
+                let uneven = uneven(&case.grid, own);
+                for compliance in [Coefficient::Uniform(0.5 * own), Coefficient::PerElement(&uneven)] {
+                    let (rolling_distance, rolling_direction) = (step * case.grid.dx, direction);
+                    let friction =
+                        Friction { motion, rolling_distance, rolling_direction, compliance, ..case.friction };
+                    let mut solver = solver(&case.grid, case.nu);
+                    let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
+                    let none = vec![[0.0; 2]; case.grid.len()];
+                    let (place, found) = ((&case.grid, case.nu), (&report, &solution));
+                    let left = residual(place, &case.bound, &friction, &none, found);
+                    // The tolerance, and round-off of two products.
+                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}: {left}");
+                    most = most.max(report.products);
+                    if motion == Motion::SteadyRolling {
+                        continue;
+                    }
+                    // A step from there.
+                    let prescribed = friction.prescribed.map(|prescribed| match prescribed {
+                        Prescribed::Force(force) => Prescribed::Force(0.8 * force),
+                        given => given,
+                    });
+                    let (previous, spin) = (Previous::Kept, 0.5 * friction.spin);
+                    let next = Friction { previous, spin, prescribed, ..friction };
+                    let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
+                    let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}, the next step: {left}");
+                }
+            }
+        }
+    }
+    // Without a layer these take up to 60.
+    assert!(most <= 80.0, "{most} products");
+}
+
+#[test]
+fn one_compliance_for_each_element_is_the_uniform_one() {
+    for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+        let case = Ellipse::random(3, 20, false);
+        let same = vec![0.3; case.grid.len()];
+        let solved = |compliance: Coefficient<'_>| {
+            let friction = Friction { motion, compliance, ..case.friction };
+            run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-10).1
+        };
+        let (uniform, each) = (solved(Coefficient::Uniform(0.3)), solved(Coefficient::PerElement(&same)));
+        let largest = case.bound.iter().fold(0.0f64, |most, g| most.max(*g));
+        for (a, b) in uniform.traction.iter().zip(&each.traction) {
+            assert!((0..2).all(|k| (a[k] - b[k]).abs() <= 1e-8 * largest), "{motion:?} {a:?} {b:?}");
+        }
+    }
+}
