@@ -104,6 +104,9 @@ class Friction(ctypes.Structure):
         ("influence_cross", POINTER(Influence) * 2),
         ("sensitivities", c_int32),
         ("reserved", c_int32),
+        ("initial_traction", POINTER(c_double) * 2),
+        ("compliance", c_double),
+        ("compliances", POINTER(c_double)),
     ]
 
 
@@ -264,7 +267,8 @@ class ReportTangential(ctypes.Structure):
         ("stick_count", c_int64),
         ("slip_count", c_int64),
         ("sensitivities", c_double * 9),
-        ("reserved", c_double * 8),
+        ("update", c_double),
+        ("reserved", c_double * 7),
     ]
 
 

@@ -4,25 +4,43 @@ use super::effect::{Effect, Value};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
+use crate::memory::collected;
 
 /// Patches at most: each costs a product.
 const MOST: usize = 64;
+
+/// An element of no patch: nothing touches there.
+pub const NONE: i32 = -1;
 
 /// The patch of each element, and the factors between patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patches<'a> {
     /// Number of patches.
     pub count: usize,
-    /// Of each element, `[my][mx]`: 0 to count - 1.
+    /// Of each element, `[my][mx]`: 0 to count - 1, or [`NONE`].
     pub patch: &'a [i32],
     /// `[count][count]`, symmetric, 1 on the diagonal; 0: independent, 1: as if there were no patches.
     pub factors: &'a [f64],
 }
 
 impl Patches<'_> {
+    /// The patch whose coefficients element i has: of none those of the first.
+    pub fn of(&self, i: usize) -> usize {
+        self.patch[i].max(0) as usize
+    }
+
     /// The factor between a patch and that of element i.
     pub fn factor(&self, patch: usize, i: usize) -> f64 {
-        self.factors[patch * self.count + self.patch[i] as usize]
+        self.factors[patch * self.count + self.of(i)]
+    }
+
+    /// The undeformed distance `h` with no surface where there is no patch; none if all elements have one.
+    pub fn surface(&self, h: &[f64]) -> Result<Option<Vec<f64>>> {
+        if !self.patch.contains(&NONE) {
+            return Ok(None);
+        }
+        let of = |(h, patch): (&f64, &i32)| if *patch == NONE { f64::INFINITY } else { *h };
+        collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches").map(Some)
     }
 }
 
@@ -44,9 +62,12 @@ impl Effect for Patches<'_> {
                 grid.len()
             ));
         }
-        if let Some(i) = self.patch.iter().position(|patch| !(0..count as i32).contains(patch)) {
+        if let Some(i) = self.patch.iter().position(|patch| !(NONE..count as i32).contains(patch)) {
             let (element, patch) = (grid.element(i), self.patch[i]);
-            return invalid(format!("patches->patch of {element} is {patch}; it must lie in 0..{}", count - 1));
+            return invalid(format!(
+                "patches->patch of {element} is {patch}; it must lie in 0..{}, or be -1 for none",
+                count - 1
+            ));
         }
         for (k, &factor) in self.factors.iter().enumerate() {
             let (a, b) = (k / count, k % count);
@@ -72,7 +93,7 @@ impl Effect for Patches<'_> {
     }
 
     fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
-        let patch = self.patch.iter().map(|&patch| patch as u16);
+        let patch = self.patch.iter().map(|&patch| patch.max(0) as u16);
         Ok(coefficients.with_patches(influence::Patches::new(self.count, patch, self.factors)?))
     }
 

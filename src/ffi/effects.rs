@@ -60,7 +60,7 @@ pub struct contact_normal_patches {
     pub count: i32,
     /// Always 0.
     pub reserved: i32,
-    /// The patch of each element, `[my][mx]`: 0 to count - 1. Default NULL: to be set.
+    /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there. Default NULL: to be set.
     pub patch: *const i32,
     /// `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
     /// Default NULL: to be set.

@@ -15,7 +15,8 @@ pub struct contact_normal_fields {
     pub deformed_distance: *mut f64,
     /// u = A p.
     pub displacement: *mut f64,
-    /// 0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+    /// 0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with initial_guess GIVEN and with
+    /// active_set FIXED: then it is not written, and keeps whatever codes it has.
     pub contact: *mut i32,
     /// With friction: tractions q on body 1, in x and y; 0 where there is no contact, and without friction.
     pub traction: [*mut f64; 2],

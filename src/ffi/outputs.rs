@@ -135,8 +135,8 @@ impl Outputs {
         Ok(())
     }
 
-    /// Writes the caller's arrays.
-    pub fn write_fields(&self, solver: &Solver) {
+    /// Writes the caller's arrays. A contact area that `is_fixed` is the caller's, with whatever codes it has: it stays.
+    pub fn write_fields(&self, solver: &Solver, is_fixed: bool) {
         let state = solver.state();
         let n = state.p.len();
         let fields = &self.fields;
@@ -151,7 +151,7 @@ impl Outputs {
             if !fields.deformed_distance.is_null() {
                 (0..n).for_each(|i| fields.deformed_distance.add(i).write(state.deformed_distance(i)));
             }
-            if !fields.contact.is_null() {
+            if !fields.contact.is_null() && !is_fixed {
                 (0..n).for_each(|i| fields.contact.add(i).write(i32::from(state.contact[i])));
                 let at_limit = state.at_limit.iter().enumerate().filter(|(_, &at_limit)| at_limit);
                 at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));

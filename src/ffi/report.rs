@@ -71,8 +71,10 @@ pub struct contact_normal_report_tangential {
     /// the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow the tractions, but
     /// those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
     pub sensitivities: [f64; 9],
+    /// rms over C of the last change of q; 0 where the iteration ended where it began.
+    pub update: f64,
     /// Room for later versions: 0.
-    pub reserved: [f64; 8],
+    pub reserved: [f64; 7],
 }
 
 /// How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
@@ -207,7 +209,7 @@ impl contact_normal_report_normal {
 
 impl contact_normal_report_tangential {
     fn set(&mut self, found: &friction::Report) {
-        copy!(found => self: force, moment, creepage);
+        copy!(found => self: force, moment, creepage, update);
         copy!(found.certificate => self: residual, gap, stick_count, slip_count);
         let sensitivities = found.sensitivities.iter().flatten().flatten();
         self.sensitivities.iter_mut().zip(sensitivities).for_each(|(to, from)| *to = *from);

@@ -12,7 +12,7 @@ use super::warnings;
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::scene::Scene;
-use crate::solver::{Method, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{ActiveSet, Method, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -166,7 +166,7 @@ pub(super) fn run(
         None => solver.solve(scene, options, guess, progress)?,
     };
     let warnings = outputs.warnings(scene, options, &report, solver.state());
-    outputs.write_fields(solver);
+    outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;
     let message = || explain(stop, &report, options.method, Some(solver.state()));
     Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })

@@ -184,7 +184,7 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
         if !solver.has_solved() {
             return Err(Refusal::invalid("solver has no result: no solve with it had a status >= 0".into()));
         }
-        outputs.write_fields(solver);
+        outputs.write_fields(solver, false);
         Ok(CONTACT_NORMAL_OK)
     })
 }

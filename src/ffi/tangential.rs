@@ -63,6 +63,9 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         let n = not_negative("n", n)?;
         // SAFETY: NULL or a handle of ours.
         let mut in_use = if solver.is_null() { None } else { Some(unsafe { InUse::begin(solver)? }) };
+        if in_use.is_some() && pressure.is_null() {
+            return Err(Refusal::null("pressure (with a solver)"));
+        }
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let results_given = unsafe { structs::read_optional(results.cast_const(), "results")? };
         let wanted = results_given.unwrap_or_default();
@@ -89,9 +92,6 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
             (optional(pressure, read.grid.len()), given)
         };
         let solver = in_use.as_mut().map(|in_use| &mut in_use.held().solver);
-        if solver.is_some() && pressure.is_none() {
-            return Err(Refusal::null("pressure (with a solver)"));
-        }
         let call = Call { scene: &read, options: &options, outputs: &outputs, wanted: &wanted };
         match (pressure, given) {
             (Some(pressure), None) => call.one(solver, pressure),

@@ -55,12 +55,19 @@ pub struct Sums {
     pub displaced: f64,
     pub owed: f64,
     pub gone: f64,
+    /// The squares of those ways.
+    pub moved: f64,
 }
 
 impl<T: Real> Discs<T> {
     /// A length in the unit of displacements.
     pub fn scaled(&self, length: f64) -> f64 {
         length / self.units.displacement
+    }
+
+    /// A traction of these fields as the state has it.
+    pub fn own_traction(&self, traction: f64) -> f64 {
+        self.units.traction * traction
     }
 
     /// Predicts what slips; what the preconditioner is given is made ready.
@@ -80,7 +87,7 @@ impl<T: Real> Discs<T> {
             }
             sums
         });
-        Sums { rest, displaced, owed: 0.0, gone: 0.0 }
+        Sums { rest, displaced, owed: 0.0, gone: 0.0, moved: 0.0 }
     }
 
     /// z, the preconditioned driving: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
@@ -157,7 +164,7 @@ impl<T: Real> Discs<T> {
         let work = |_: usize, block: &mut _| {
             let (((part, ((q, u), (direction, debt))), ((normal, curvature), driving)), given): &mut Block<'_, T> =
                 block;
-            let mut sums = [0.0; 4];
+            let mut sums = [0.0; 5];
             given.fill([T::zero(); 2]);
             for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
@@ -170,7 +177,8 @@ impl<T: Real> Discs<T> {
                 let owed = plus([new[0] - straight[0], new[1] - straight[1]], left, double(debt[j]));
                 debt[j] = owed.map(T::of);
                 sums[2] += square(owed).sqrt();
-                sums[3] += square([new[0] - q[j][0], new[1] - q[j][1]]).sqrt();
+                let moved = square([new[0] - q[j][0], new[1] - q[j][1]]);
+                (sums[3], sums[4]) = (sums[3] + moved.sqrt(), sums[4] + moved);
                 u[j] = plus(u[j], length, double(product[k]));
                 if !slips(n) {
                     direction[j] = chord[k];
@@ -183,8 +191,8 @@ impl<T: Real> Discs<T> {
             }
             sums
         };
-        let [rest, displaced, owed, gone] = over(threads, blocks, work);
-        Sums { rest, displaced, owed, gone }
+        let [rest, displaced, owed, gone, moved] = over(threads, blocks, work);
+        Sums { rest, displaced, owed, gone, moved }
     }
 
     /// Multiplies the debt: nothing is owed any more.

@@ -76,6 +76,8 @@ pub struct Problem {
     pub places: Places,
     /// Where forces are given: rms over C of the rigid slip without what is found, whose round-off is left of it.
     pub given: f64,
+    /// rms over C of the last change of q.
+    pub update: f64,
     /// rms over C of g.
     rms_bound: f64,
 }
@@ -138,6 +140,7 @@ impl Problem {
             operators,
             places: Places::new(&grid)?,
             given: 0.0,
+            update: 0.0,
             rms_bound: 0.0,
         })
     }
@@ -212,6 +215,11 @@ impl Problem {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
         let [sum] = vectors::sum(self.threads(), self.bound.len(), squared);
         (sum / self.count().max(1) as f64).sqrt()
+    }
+
+    /// Of the sum of squares of a field over C, the rms.
+    pub fn rms_of(&self, squares: f64) -> f64 {
+        (squares / self.count().max(1) as f64).sqrt()
     }
 
     /// rms over C of w.

@@ -137,6 +137,7 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     let length = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
     let mut sums = discs.go(&problem.places, &threads, length, steps);
+    problem.update = discs.own_traction(problem.rms_of(sums.moved));
     if sums.owed > MOST_DEBT * sums.gone {
         discs.pay(problem);
         sums = discs.predict(&problem.places, &threads);

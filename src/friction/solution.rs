@@ -40,6 +40,8 @@ pub struct Report {
     pub sensitivities: Option<[[f64; 3]; 3]>,
     /// mu N: the sum of the traction bounds, times the area of an element.
     pub carried: f64,
+    /// rms over C of the last change of q; 0 where the iteration ended where it began.
+    pub update: f64,
     /// By how much forces that are given are missed, relative to mu N.
     pub missing: f64,
     /// Whether there were no tractions before.
@@ -63,6 +65,7 @@ impl Default for Report {
             creepage: [0.0; 2],
             sensitivities: None,
             carried: 0.0,
+            update: 0.0,
             missing: 0.0,
             from_rest: false,
             coarser: None,

@@ -223,6 +223,7 @@ impl Solver {
         };
         let Level { problem, state, .. } = &self.levels[0];
         report.certificate = Certificate::of(problem, state);
+        [report.update, _] = self.scales.own_traction([problem.update, 0.0]);
         Ok(end)
     }
 

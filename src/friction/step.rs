@@ -118,6 +118,7 @@ pub fn polish(
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
     system.give(fields);
+    problem.update = problem.rms_of(vectors::dot(problem.threads(), &gained, &gained));
     vectors::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
     problem.offset = add(problem.offset, by);
     [gained, along].into_iter().for_each(|field| fields.give(field));
@@ -179,6 +180,7 @@ pub fn step(
     let mut gained = Bordered { field: gained, border: by };
     found.add_to(&mut gained, &mut product, &threads, fields);
     system.give(fields);
+    problem.update = effort.length * problem.rms_of(vectors::dot(&threads, &gained.field, &gained.field));
     vectors::add_all(&threads, &mut state.q, &[(effort.length, &gained.field)]);
     vectors::add_all(&threads, &mut state.u, &[(effort.length, &product)]);
     fields.give(gained.field);

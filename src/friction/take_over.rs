@@ -121,7 +121,7 @@ impl Solver {
             _ => Scale::Slip,
         };
         problem.ahead = scales.displacement(spin_ahead(friction, grid));
-        problem.given = 0.0;
+        (problem.given, problem.update) = (0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);

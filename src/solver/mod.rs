@@ -208,6 +208,22 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
+        if let Some(h) = scene.patches.map_or(Ok(None), |patches| patches.surface(scene.undeformed_distance))? {
+            let scene = &Scene { undeformed_distance: &h, patches: None, ..scene.clone() };
+            let lowest = scene.check_distance_and_load(&self.problem.threads)?;
+            return self.solve_surface((scene, lowest), options, guess, progress);
+        }
+        self.solve_surface((scene, lowest), options, guess, progress)
+    }
+
+    /// The same for a scene that is checked, and whose patches are among the coefficients.
+    fn solve_surface(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
         self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());

@@ -47,7 +47,7 @@ impl<'a> Loads<'a> {
     /// The parts of the grid that are stressed by loads of their own.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
-        let has = |patch: &usize| patches.patch.contains(&(*patch as i32));
+        let has = |patch: &usize| (0..patches.patch.len()).any(|i| patches.of(i) == *patch);
         (0..patches.count).filter(has).map(Part::Patch).collect()
     }
 

@@ -91,7 +91,7 @@ fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
     let patches = loads.coupled().map(|patches| {
         let i = grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my));
-        (patches, patches.patch[i] as usize)
+        (patches, patches.of(i))
     });
     let [x, y, z] = [x, y, z].map(|length| body.in_units(length));
     let mut sum = [0.0; 6];

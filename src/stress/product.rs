@@ -141,8 +141,8 @@ impl<'a> Product<'a> {
             let to = if *part == Part::All { &mut *out } else { &mut field[..] };
             self.transforms.rows_back(stress, left.0, self.scale, memory, to, self.body.grid.mx);
             if let (Part::Patch(patch), Some(patches)) = (part, &self.patches) {
-                for ((out, value), of) in out.iter_mut().zip(&*field).zip(patches.patch) {
-                    *out = if *of as usize == *patch { *value } else { *out };
+                for (i, (out, value)) in out.iter_mut().zip(&*field).enumerate() {
+                    *out = if patches.of(i) == *patch { *value } else { *out };
                 }
             }
         }

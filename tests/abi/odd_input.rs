@@ -18,6 +18,25 @@ fn elements_at_the_limit_are_in_contact_with_2() {
     assert_eq!(call.report.known.normal.max_pressure, 1000.0);
 }
 
+/// Codes of a host's own, 2 for slip: with a fixed area `contact` is only read.
+#[test]
+fn codes_of_a_fixed_area_stay() {
+    let mut call = Call::new();
+    call.fix_contact();
+    for (i, code) in call.contact.iter_mut().enumerate() {
+        *code = [0, 1, 2, 7, -3][i % 5];
+    }
+    let codes = call.contact.clone();
+    let handle = call.new_handle();
+    for through in [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch] {
+        assert_eq!(call.run(through, handle), (CONTACT_NORMAL_OK, String::new()));
+        assert_eq!(call.contact, codes);
+        assert!(call.pressure.iter().zip(&codes).all(|(p, code)| (*p == 0.0) == (*code == 0)));
+    }
+    // SAFETY: a handle, not used any more.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
 /// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
 #[test]
 fn a_batch_refuses_friction_that_continues() {

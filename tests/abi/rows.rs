@@ -103,7 +103,7 @@ pub const SET_UP: &[Row] = &[
     (&["patches->count", "2147483647"], INVALID, |c| c.use_patches(HALF).count = i32::MAX),
     (&["patches->reserved", "1"], INVALID, |c| c.use_patches(HALF).reserved = 1),
     (&["patches->patch", "(5, 4)", "2"], INVALID, |c| { c.use_patches(HALF); c.patch[29] = 2; }),
-    (&["patches->patch", "(0, 0)", "-1"], INVALID, |c| { c.use_patches(HALF); c.patch[0] = -1; }),
+    (&["patches->patch", "(0, 0)", "-2"], INVALID, |c| { c.use_patches(HALF); c.patch[0] = -2; }),
     (&["patches->factors", "(0, 1)", "NaN"], NOT_FINITE, |c| { c.use_patches([1.0, NAN, NAN, 1.0]); }),
     (&["patches->factors", "(0, 1)", "-0.5"], INVALID, |c| { c.use_patches([1.0, -0.5, -0.5, 1.0]); }),
     (&["patches->factors", "(1, 0)", "symmetric"], INVALID, |c| { c.use_patches([1.0, 0.5, 0.4, 1.0]); }),

@@ -29,7 +29,7 @@ fn the_committed_header_is_the_generated_one() {
         "solve",
         "solver",
         "tangential",
-        "friction_batch",
+        "friction_results",
         "batch",
         "accuracy",
         "price_list",

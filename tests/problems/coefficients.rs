@@ -240,11 +240,12 @@ fn what_differs_from_the_set_up_is_named_with_its_values() {
         (&plain, &own(0.25), &["influence", "without"]),
     ];
     for (set_up, scene, words) in cases {
-        let difference = Named::new(set_up).differs(scene).unwrap_or_else(|| panic!("{words:?}: no difference"));
+        let Err(difference) = Named::new(set_up).check(scene) else { panic!("{words:?}: no difference") };
+        let difference = difference.to_string();
         assert!(words.iter().all(|word| difference.contains(word)), "{words:?}: {difference}");
-        assert_eq!(Named::new(set_up).differs(set_up), None, "{words:?}");
+        assert_eq!(Named::new(set_up).check(set_up), Ok(()), "{words:?}");
     }
     // Own coefficients need not be given again, a layer that gives way nowhere is none, and bodies do not matter beside a table.
-    assert_eq!(Named::new(&own(0.25)).differs(&softer), None);
-    assert_eq!(Named::new(&plain).differs(&layer(Layer::Uniform(0.0))), None);
+    assert_eq!(Named::new(&own(0.25)).check(&softer), Ok(()));
+    assert_eq!(Named::new(&plain).check(&layer(Layer::Uniform(0.0))), Ok(()));
 }

@@ -1,6 +1,7 @@
 //! Effect `patches`: independent ones are scenes of their own, factors of 1 are none, and the equations hold with the direct sum.
 
 use crate::support::run;
+use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Layer, Load, Patches, PressureLimit, Scene};
@@ -105,6 +106,41 @@ fn factors_of_one_are_none() {
         }
         assert!(limit.is_none() || expected.state().p != without.state().p);
     }
+}
+
+#[test]
+fn nothing_touches_where_there_is_no_patch() {
+    let grid = Grid::new(60, 22, 1.0, 0.8).unwrap();
+    let (h, mut patch) = bumps(&grid);
+    // The middle of the first bump is in none, and a strip; so they might as well have no surface.
+    let is_none = |i: usize| i % 60 == 10 || (i / 60) % 7 == 3;
+    let holes: Vec<f64> = (0..grid.len()).map(|i| if is_none(i) { f64::INFINITY } else { h[i] }).collect();
+    let of_holes = patch.clone();
+    (0..grid.len()).filter(|&i| is_none(i)).for_each(|i| patch[i] = -1);
+    for load in [Load::Approach(0.6), Load::Force(5.0)] {
+        let scene = |h, patch| Scene {
+            patches: Some(Patches { count: 3, patch, factors: &FACTORS }),
+            ..Scene::new(grid, h, Bodies::same(1.0, 0.3), load)
+        };
+        for method in [Method::Auto, Method::Norm] {
+            let (found, _) = run(&scene(&h, &patch), &tight(method));
+            let (expected, _) = run(&scene(&holes, &of_holes), &tight(method));
+            // A residual of 1e-10 leaves some 1e-9 of the pressures; sums over patches are in another order.
+            let largest = expected.state().p.iter().copied().fold(0.0, f64::max);
+            let same = |p: &[f64]| p.iter().zip(&expected.state().p).all(|(a, b)| (a - b).abs() <= 1e-7 * largest);
+            assert!(same(&found.state().p), "{load:?} {method:?}");
+            assert!((0..grid.len()).all(|i| !is_none(i) || found.state().p[i] == 0.0));
+            // A handle, whose set-up has seen the patches.
+            let mut handle = Solver::new(&scene(&h, &patch), &tight(method)).unwrap();
+            handle.solve(&scene(&h, &patch), &tight(method), None, None).unwrap();
+            assert_eq!(handle.state().p, found.state().p);
+        }
+    }
+    let nowhere = vec![-1; grid.len()];
+    let patches = Some(Patches { count: 3, patch: &nowhere, factors: &FACTORS });
+    let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(5.0));
+    let refused = solve(&Scene { patches, ..plain }, &Options::default()).map(|_| ());
+    assert!(matches!(&refused, Err(Error::Infeasible(_))), "{refused:?}");
 }
 
 #[test]

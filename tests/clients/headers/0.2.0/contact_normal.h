@@ -72,6 +72,11 @@
 #define CONTACT_NORMAL_OUT_OF_MEMORY -8
 
 /*
+ The influence coefficients are not those that the solver has: `contact_normal_solver_set_influence` gives it others.
+ */
+#define CONTACT_NORMAL_INFLUENCE_CHANGED -9
+
+/*
  A bug of ours, caught at the boundary.
  */
 #define CONTACT_NORMAL_INTERNAL -99
@@ -598,7 +603,7 @@ typedef struct contact_normal_patches {
    */
   int32_t reserved;
   /*
-   The patch of each element, `[my][mx]`: 0 to count - 1. Default NULL: to be set.
+   The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there. Default NULL: to be set.
    */
   const int32_t *patch;
   /*
@@ -709,8 +714,8 @@ typedef struct contact_normal_friction {
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements, which the tables must reach beyond
-   the grid. With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+   even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
+   across what is in contact. A solver keeps them: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
   const struct contact_normal_influence *influence[3];
   /*
@@ -727,6 +732,20 @@ typedef struct contact_normal_friction {
    Must be 0.
    */
   int32_t reserved;
+  /*
+   Tractions in x and y to start the iteration from, `[my][mx]` each, both or none; default NULL. The solution does not depend on them:
+   those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
+   */
+  const double *initial_traction[2];
+  /*
+   The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
+   it. For a third body of thickness h and shear modulus G h/G. Default 0: none. Not read if there are `compliances`.
+   */
+  double compliance;
+  /*
+   That of each element, `[my][mx]`, or NULL (default).
+   */
+  const double *compliances;
 } contact_normal_friction;
 
 /*
@@ -989,7 +1008,8 @@ typedef struct contact_normal_fields {
    */
   double *displacement;
   /*
-   0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with active_set FIXED or initial_guess GIVEN.
+   0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with initial_guess GIVEN and with
+   active_set FIXED: then it is not written, and keeps whatever codes it has.
    */
   int32_t *contact;
   /*
@@ -1197,9 +1217,13 @@ typedef struct contact_normal_report_tangential {
    */
   double sensitivities[9];
   /*
+   rms over C of the last change of q; 0 where the iteration ended where it began.
+   */
+  double update;
+  /*
    Room for later versions: 0.
    */
-  double reserved[8];
+  double reserved[7];
 } contact_normal_report_tangential;
 
 /*
@@ -1760,8 +1784,8 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
 
 /*
  Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
- precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
- valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+ precision and threads of `options` (NULL: the defaults). The undeformed distance may be NULL; where it is given, it and the load of
+ `scene` must be valid. Each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
  Since 0.1.
  */
 contact_normal_status contact_normal_solver_new(const struct contact_normal_scene *scene,
@@ -1782,17 +1806,20 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
                                                   struct contact_normal_report *report);
 
 /*
- From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
- `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
- changes nothing. Since 0.2.
+ From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
+ its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
+ up with `scene->influence`, with `friction->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
+ `continues` may start from. What is refused changes nothing. Since 0.2.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
-                                                          const struct contact_normal_influence *influence);
+                                                          const struct contact_normal_influence *influence,
+                                                          const struct contact_normal_friction *friction);
 
 /*
  Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
  with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
- leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it.
+ leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it. Tractions, slip
+ and stick area are those that `contact_normal_solve_tangential` found with this handle since, if it did.
  INVALID_ARGUMENT if there is none. Since 0.1.
  */
 contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
@@ -1811,43 +1838,42 @@ contact_normal_status contact_normal_solver_query(const struct contact_normal_so
 contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
 
 /*
- Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
- contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
- used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
- `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
- */
-contact_normal_status contact_normal_solve_tangential(const struct contact_normal_scene *scene,
-                                                      const double *pressure,
-                                                      const struct contact_normal_options *options,
-                                                      struct contact_normal_fields *fields,
-                                                      struct contact_normal_report *report);
+ Solves n tangential problems of `scene->friction`: one with pressures of the caller's own, beside a normal solver of the caller's own, or a
+ table of creep forces.
 
-/*
- Solves n tangential problems of one scene: a table of creep forces. `entries` is `[n][3]`: of each entry what is prescribed in x and in y
- (the creepage or, where `scene->friction->prescribed` says so, the force) and the spin; those of `scene->friction` itself are not
- used. `pressure` `[my][mx]`: as for `contact_normal_solve_tangential`; NULL: the normal problem of the scene is solved first, once. Of
- unlike bodies the tractions do not change the pressures.
+ `solver`: keeps coefficients, operators and the last tractions from call to call, for `friction->continues` and for `initial_guess`
+ PREVIOUS; `scene` and `options` must be as at its set-up. NULL: nothing is kept.
 
- As many entries are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in a row
- are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results have
- the same bits for any number of threads.
+ `pressure` `[my][mx]`: those that are not positive count as no contact; the undeformed distance and the load are then not looked at and
+ may be left unset. Tractions do not change the pressures: of unlike bodies this is one turn of two. NULL, without a solver: the
+ normal problem of the scene is solved first, once.
+
+ `report` (NULL: not wanted) is that of the pressures.
+
+ `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force) and
+ the spin. NULL, with n = 1: those of `scene->friction`; then all threads work on it, `report` speaks of friction, too, `progress` is called for
+ each iteration, and where the call is refused `results` stays as it is.
+
+ Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
+ a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
+ have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
 
  An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
  status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
- (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
- "entry 3: ..." for each of them, counted from 0: 1000 lines at most. `report` (NULL: not wanted) is that of the normal problem.
+ (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
 
  `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
- the entries that are done and `residual` is that of the last one. When it cancels, the results of entries that are not done stay as
- they are, with the status CANCELLED. Since 0.2.
+ the entries that are done and `residual` is that of the last one. When it cancels, the results of
+ entries that are not done stay as they are, with the status CANCELLED. Since 0.2.
  */
-contact_normal_status contact_normal_friction_batch(const struct contact_normal_scene *scene,
-                                                    const double *pressure,
-                                                    const struct contact_normal_options *options,
-                                                    int32_t n,
-                                                    const double *entries,
-                                                    struct contact_normal_friction_results *results,
-                                                    struct contact_normal_report *report);
+contact_normal_status contact_normal_solve_tangential(struct contact_normal_solver *solver,
+                                                      const struct contact_normal_scene *scene,
+                                                      const double *pressure,
+                                                      const struct contact_normal_options *options,
+                                                      int32_t n,
+                                                      const double *entries,
+                                                      struct contact_normal_friction_results *results,
+                                                      struct contact_normal_report *report);
 
 /*
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
@@ -1994,7 +2020,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
- calls do ("batch", "accuracy", "price_list", "stress", "friction_batch", "solve_tangential", "sensitivities", "warnings", "keep",
+ calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep",
  "release"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
