@@ -101,6 +101,9 @@ pub struct Friction<'a> {
     pub initial: Option<[&'a [f64]; 2]>,
     /// A rigid slip of the caller's in addition, lengths per step, x and y.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
+    /// How much of a creepage in x, in y reaches each element, `[my][mx]` each; none: all of it. Forces that are given are then the sums of
+    /// these times q.
+    pub weights: Option<[&'a [f64]; 2]>,
     /// The compliance of a thin elastic layer between the bodies, a length per traction: it displaces by that times the traction on it.
     pub compliance: Coefficient<'a>,
     /// Tangential coefficients of the caller's own; none: those of the half-space.
@@ -124,6 +127,7 @@ impl Friction<'_> {
             previous: Previous::None,
             initial: None,
             rigid_slip: None,
+            weights: None,
             compliance: Coefficient::Uniform(0.0),
             influence: None,
             sensitivities: false,
@@ -169,7 +173,14 @@ impl Friction<'_> {
             Prescribed::Force(_) => 0.0,
         });
         let own = self.rigid_slip.map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
+        let weight = self.weight_at(i);
+        let creepage = [weight[0] * creepage[0], weight[1] * creepage[1]];
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+    }
+
+    /// How much of the creepages reaches element i.
+    pub fn weight_at(&self, i: usize) -> [f64; 2] {
+        self.weights.map_or([1.0; 2], |[x, y]| [x[i], y[i]])
     }
 
     /// How the rigid slip at element i changes with xi (0), eta (1) or phi (2).
@@ -210,13 +221,20 @@ impl Friction<'_> {
         let finite = |name: &str, value: f64| if value.is_finite() { Ok(()) } else { small(name, value) };
         // Slips by creepages and spin are largest in a corner.
         let corners = [0, grid.mx - 1, grid.len() - grid.mx, grid.len() - 1];
-        for slip in corners.iter().flat_map(|&i| Friction { rigid_slip: None, ..*self }.rigid_slip_at(grid, i)) {
+        for slip in
+            corners.iter().flat_map(|&i| Friction { rigid_slip: None, weights: None, ..*self }.rigid_slip_at(grid, i))
+        {
             require(slip.abs() < LARGEST, "the rigid slip by friction->creepage and spin", slip, OTHER_UNITS)?;
         }
         for (name, own) in
             ["friction->rigid_slip[0]", "friction->rigid_slip[1]"].iter().zip(self.rigid_slip.iter().flatten())
         {
             check_values(name, own, grid, small)?;
+        }
+        let weights = ["friction->creepage_weight[0]", "friction->creepage_weight[1]"];
+        for (name, weights) in weights.iter().zip(self.weights.iter().flatten()) {
+            let rule = "a weight must lie in [-1, 1]";
+            check_values(name, weights, grid, |name, weight| require(weight.abs() <= 1.0, name, weight, rule))?;
         }
         let starts = ["friction->initial_traction[0]", "friction->initial_traction[1]"];
         for (name, q) in starts.iter().zip(self.initial.iter().flatten()) {

@@ -111,8 +111,8 @@ impl Regions {
             return Ok(());
         }
         if self.list.len() == self.list.capacity() {
-            // All regions of one problem fit at once: 11 outputs, 15 structs and 16 arrays that are read.
-            let room = (2 * self.list.len()).max(42);
+            // All regions of one problem fit at once: 11 outputs, 15 structs and 18 arrays that are read.
+            let room = (2 * self.list.len()).max(44);
             reserve(&mut self.list, room, "the addresses of the arrays")?;
         }
         self.list.push(Region { start, end: start.saturating_add(bytes), name, problem: self.problem, is_output });

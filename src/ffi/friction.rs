@@ -102,9 +102,12 @@ pub struct contact_normal_friction {
     pub compliance: f64,
     /// That of each element, `[my][mx]`, or NULL (default).
     pub compliances: *const f64,
+    /// How much of a creepage in x, in y reaches each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. For surfaces that are
+    /// inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
+    pub creepage_weight: [*const f64; 2],
 }
 
-versioned! { contact_normal_friction, contact_normal_friction_init, 232, spin_offset: 1.0 / 6.0 }
+versioned! { contact_normal_friction, contact_normal_friction_init, 248, spin_offset: 1.0 / 6.0 }
 
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.
@@ -160,6 +163,7 @@ impl contact_normal_friction {
             previous,
             initial: pair("initial_traction", self.initial_traction)?,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
+            weights: pair("creepage_weight", self.creepage_weight)?,
             compliance: compliances.map_or(Coefficient::Uniform(self.compliance), Coefficient::PerElement),
             influence: self.own_influence()?,
             sensitivities,
@@ -231,6 +235,7 @@ impl GivenEffect for contact_normal_friction {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;
             regions.input("friction->initial_traction", self.initial_traction[k], n)?;
+            regions.input("friction->creepage_weight", self.creepage_weight[k], n)?;
         }
         let at = self.influence.into_iter().chain(self.influence_cross);
         for ((at, table), name) in at.zip(self.tables()?.iter().flatten()).zip(TABLES) {

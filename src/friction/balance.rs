@@ -29,15 +29,19 @@ fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, 
         if !(g > 0.0) {
             return [0.0; 5];
         }
-        let tau = plus(state.q[i], -rho, add(problem.slip_at(i, &state.u), dc));
+        let weight = problem.weighted(i, [1.0; 2]);
+        let tau = plus(state.q[i], -rho, add(problem.slip_at(i, &state.u), problem.weighted(i, dc)));
         let length = square(tau).sqrt();
+        let of = |[x, y]: Vector, [xx, xy, yy]: [f64; 3]| {
+            let [a, b] = weight;
+            [a * x, b * y, a * a * xx, a * b * xy, b * b * yy]
+        };
         if !(length > g) {
-            return [tau[0], tau[1], 1.0, 0.0, 1.0];
+            return of(tau, [1.0, 0.0, 1.0]);
         }
         let (n, share) = (tau.map(|tau| tau / length), g / length);
         let turned = [share * n[1] * n[1], -share * n[0] * n[1], share * n[0] * n[0]];
-        let [x, y] = onto_disc(tau, g);
-        [x, y, turned[0], turned[1], turned[2]]
+        of(onto_disc(tau, g), turned)
     });
     ([x, y], [[xx, xy], [xy, yy]])
 }
@@ -51,6 +55,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
         let reach = if problem.bound[i] > 0.0 { square(problem.slip_at(i, &state.u)).sqrt() } else { 0.0 };
         reach + (square(state.q[i]).sqrt() + problem.bound[i]) / rho
     });
+    let furthest = furthest * problem.farthest_creepage();
     let mut corral = Corral::new(4.0 * furthest / (1.0 - part).max(f64::EPSILON), forces.given);
     let (mut dc, mut least, mut last) = ([0.0; 2], (f64::INFINITY, [0.0; 2]), f64::INFINITY);
     for _ in 0..MOST_TRIALS {

@@ -175,7 +175,7 @@ impl Trials {
             }
         });
         let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
-        let half = 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
+        let half = problem.farthest_creepage() * 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
         Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, last: None }
     }
 
@@ -222,7 +222,7 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
     for k in (0..2).filter(|&k| forces.given[k]) {
         let mut change = fields.take(problem.grid.len())?;
         let unit = [[1.0, 0.0], [0.0, 1.0]][k];
-        vectors::fill(problem.threads(), &mut change, |_| unit);
+        vectors::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
         sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE)?;
         let by = forces.only_given(sum_of(problem, &change));
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);

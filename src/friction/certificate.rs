@@ -60,7 +60,7 @@ impl Certificate {
                 slips += f64::from(u8::from(is_on_circle(q, g)));
                 squares += rest(s, q, g);
                 gap += dot(s, q) + g * square(s).sqrt();
-                work += g * square(add(problem.rigid[i], problem.offset)).sqrt();
+                work += g * square(add(problem.rigid[i], problem.weighted(i, problem.offset))).sqrt();
             }
             [squares, gap, work, slips]
         });

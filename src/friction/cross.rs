@@ -20,7 +20,7 @@ use super::Vector;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::{gauss, Coefficients, Kernel};
+use crate::influence::{gauss, gauss_each, Coefficients, Kernel};
 use crate::memory::zeros;
 use crate::operator::fft::Complex;
 use crate::operator::{Operator, Workspace};
@@ -158,10 +158,11 @@ fn moment(k: usize, dx: f64, dy: f64) -> f64 {
 
 fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
     if ky >= 2.0 {
-        return [gauss(ky * dy, dy, |y| along(kx, dx, y)[0]), gauss(ky * dy, dy, |y| along(kx, dx, y)[1])];
+        return gauss_each(ky * dy, dy, |y| along(kx, dx, y));
     }
     if kx >= 2.0 {
-        return [gauss(kx * dx, dx, |x| along(ky, dy, x)[1]), gauss(kx * dx, dx, |x| along(ky, dy, x)[0])];
+        let [y, x] = gauss_each(kx * dx, dx, |x| along(ky, dy, x));
+        return [x, y];
     }
     if dx >= dy {
         // In units of the shorter side: the integral of a length over r^2 is a length.

@@ -43,11 +43,13 @@ impl Forces {
         if !forces.any() {
             return Ok(forces);
         }
-        let greatest = in_blocks((0..grid.len()).map(bound));
+        let wanted = forces.sum[0].hypot(forces.sum[1]);
+        let along = if wanted > 0.0 { forces.sum.map(|sum| sum / wanted) } else { [1.0, 0.0] };
+        let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));
+        let greatest = in_blocks((0..grid.len()).map(|i| share(i) * bound(i)));
         if greatest == 0.0 && forces.sum == [0.0; 2] {
             return Ok(Forces::NONE);
         }
-        let wanted = forces.sum[0].hypot(forces.sum[1]);
         if !(wanted < greatest * (1.0 - ROUND_OFF)) {
             return Err(Error::Infeasible(format!(
                 "the tangential force is {}; with this friction it must be less than {}",
@@ -86,9 +88,9 @@ impl Forces {
     }
 }
 
-/// The sum of a field that is 0 outside C.
+/// The sum of a field that is 0 outside C, times the weights of creepages.
 pub fn sum_of(problem: &Problem, field: &[Vector]) -> Vector {
-    vectors::sum(problem.threads(), field.len(), |i| field[i])
+    vectors::sum(problem.threads(), field.len(), |i| problem.weighted(i, field[i]))
 }
 
 /// The sum of g.
@@ -98,5 +100,5 @@ pub fn sum_of_bounds(problem: &Problem) -> f64 {
 
 /// The sum of two fields.
 pub fn sum_of_both(problem: &Problem, v: &[Vector], w: &[Vector]) -> Vector {
-    vectors::sum(problem.threads(), v.len(), |i| add(v[i], w[i]))
+    vectors::sum(problem.threads(), v.len(), |i| problem.weighted(i, add(v[i], w[i])))
 }

@@ -178,6 +178,17 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             sum / f64::max(count, 1.0)
         })?),
     };
+    if !fine.weights.is_empty() {
+        let of = |i: usize| {
+            let in_contact = to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
+            let (sum, count) =
+                in_contact.fold(([0.0; 2], 0.0), |(sum, count), child| (add(sum, fine.weights[child]), count + 1.0));
+            sum.map(|weight| weight / f64::max(count, 1.0))
+        };
+        problem.weights = collected((0..to.len()).map(of), "the weights of creepages")?;
+    } else {
+        problem.weights = Vec::new();
+    }
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
     problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();
@@ -231,7 +242,11 @@ pub fn interpolate(coarse: &Level, fine: &mut Level) -> Result<()> {
         }
         let direction = mean.direction();
         if is_rolling && mean.any_slip {
-            let s = plus(add(fine.problem.slip[i], fine.problem.offset), shorter / mean.weights, mean.displaced);
+            let s = plus(
+                add(fine.problem.slip[i], fine.problem.weighted(i, fine.problem.offset)),
+                shorter / mean.weights,
+                mean.displaced,
+            );
             let stiff = fine.problem.operators.self_influence * g;
             onto_disc(turned_against(direction, s, stiff).map(|v| g * v), g)
         } else if is_rolling || mean.all_slip {

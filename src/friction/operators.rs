@@ -32,6 +32,8 @@ pub struct Operators {
     pub self_influence: f64,
     /// The same without rolling.
     a0: f64,
+    /// The unit of the coefficients, a power of two.
+    unit: f64,
     pub(super) threads: Threads,
     /// Products since the last call of [`Problem::take_products`](super::problem::Problem::take_products).
     pub(super) products: u64,
@@ -50,6 +52,7 @@ impl Operators {
             excess: None,
             self_influence: xx.max(yy),
             a0: xx.max(yy),
+            unit: unit_of(xx),
             threads: threads.suited_to(WORK * grid.len()),
             products: 0,
         }
@@ -142,7 +145,7 @@ impl Operators {
 
     /// The unit of the coefficients, a power of two.
     pub fn unit(&self) -> f64 {
-        unit_of(self.tangential.at(0.0, 0.0)[0])
+        self.unit
     }
 
     /// Whether directions are multiplied in single precision.

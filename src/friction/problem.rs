@@ -30,6 +30,9 @@ const FIELDS: &str = "tangential fields";
 /// A product in single precision leaves a residual far below this.
 const SINGLE: f64 = 1e-6;
 
+/// Elements that creepages move by less than this part of the most do not bound where creepages lie.
+const LEAST_WEIGHT: f64 = 1e-6;
+
 /// What residuals are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
@@ -62,8 +65,10 @@ pub struct Problem {
     pub rigid: Vec<Vector>,
     /// w, but for `offset`: the rigid slip less u'.
     pub slip: Vec<Vector>,
-    /// What is to be added to both on C: found where forces are given.
+    /// What is to be added to both on C, times the weights: found where forces are given.
     pub offset: Vector,
+    /// How much of a creepage reaches each element; none: all of it.
+    pub weights: Vec<Vector>,
     /// In steady rolling: what the slip by spin gains a step ahead.
     pub ahead: Vector,
     /// What residuals are compared with.
@@ -134,6 +139,7 @@ impl Problem {
             rigid: blank(n, [f64::NAN; 2], FIELDS)?,
             slip: blank(n, [f64::NAN; 2], FIELDS)?,
             offset: [0.0; 2],
+            weights: Vec::new(),
             ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             extension: None,
@@ -201,8 +207,29 @@ impl Problem {
     /// `s = w + u` of element i.
     #[inline]
     pub fn slip_at(&self, i: usize, u: &[Vector]) -> Vector {
-        let (w, u) = (self.slip[i], u[i]);
-        [w[0] + self.offset[0] + u[0], w[1] + self.offset[1] + u[1]]
+        let (w, offset, u) = (self.slip[i], self.weighted(i, self.offset), u[i]);
+        [w[0] + offset[0] + u[0], w[1] + offset[1] + u[1]]
+    }
+
+    /// What creepages c make of the slip of element i; and what its tractions add to the forces that go with them.
+    #[inline]
+    pub fn weighted(&self, i: usize, c: Vector) -> Vector {
+        match self.weights.get(i) {
+            Some(weight) => [weight[0] * c[0], weight[1] * c[1]],
+            None => c,
+        }
+    }
+
+    /// Creepages that move every element by 1, or nearly so where some hardly move.
+    pub fn farthest_creepage(&self) -> f64 {
+        let sizes = || self.weights.iter().flatten().map(|weight| weight.abs());
+        let most = sizes().fold(0.0, f64::max);
+        let least = sizes().filter(|weight| *weight > LEAST_WEIGHT * most).fold(most, f64::min);
+        if least > 0.0 {
+            1.0 / least
+        } else {
+            1.0
+        }
     }
 
     /// What residuals are compared with, of the rms of the rigid slip and of the displacements.
@@ -224,12 +251,12 @@ impl Problem {
 
     /// rms over C of w.
     pub fn rms_slip(&self) -> f64 {
-        self.rms(|i| add(self.slip[i], self.offset))
+        self.rms(|i| add(self.slip[i], self.weighted(i, self.offset)))
     }
 
     /// rms over C of the rigid slip.
     pub fn rms_rigid(&self) -> f64 {
-        self.rms(|i| add(self.rigid[i], self.offset))
+        self.rms(|i| add(self.rigid[i], self.weighted(i, self.offset)))
     }
 
     /// q feasible to the last bit, and u = A q by a fresh product.
@@ -261,6 +288,8 @@ impl Problem {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.operators.bytes() + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
+        self.operators.bytes()
+            + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
+            + size_of_val(&self.weights[..])
     }
 }

@@ -134,7 +134,7 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     let beta = if steps.energy > 0.0 { (-along_last / steps.energy).max(0.0) } else { 0.0 };
     discs.choose_direction(problem, (beta, steps.held_back));
     let [energy, gain] = discs.multiply(problem);
-    let length = choose_length(gain / energy, energy, steps);
+    let (length, next) = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
     let mut sums = discs.go(&problem.places, &threads, length, steps);
     problem.update = discs.own_traction(problem.rms_of(sums.moved));
@@ -142,21 +142,25 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
         discs.pay(problem);
         sums = discs.predict(&problem.places, &threads);
     }
-    steps.held_back = length.clamp(LEAST_HELD_BACK, 1.0);
+    steps.held_back = next.clamp(LEAST_HELD_BACK, 1.0);
     sums
 }
 
-/// How far to go along the chord.
-fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> f64 {
+/// How far to go along the chord, and how far the next step is held back.
+fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> (f64, f64) {
     let f = steps.held_back;
     steps.energy = energy;
     if length >= 0.25 * f && length <= 4.0 * f {
-        return length;
+        return (length, length);
     }
     steps.energy = 0.0;
-    if length > 0.0 && length < 0.25 * f {
-        length.max(0.1 * f)
+    if length > 4.0 * f {
+        // Else steps that want to be long would stay short for ever.
+        (f, 4.0 * f)
+    } else if length > 0.0 {
+        let length = length.max(0.1 * f);
+        (length, length)
     } else {
-        f
+        (f, f)
     }
 }

@@ -172,7 +172,7 @@ impl Solver {
             report.products += self.take_products();
         }
         self.write(friction, pressure, window, &mut report);
-        report.missing = missing(friction, &report);
+        report.missing = self.missing(friction, &report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
@@ -297,17 +297,24 @@ impl Solver {
             products: problem.take_products() as f64,
         }
     }
-}
 
-/// See [`Report::missing`].
-fn missing(friction: &Friction<'_>, report: &Report) -> f64 {
-    let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
-        Prescribed::Force(force) => report.force[k] - force,
-        Prescribed::Creepage(_) => 0.0,
-    });
-    if report.carried > 0.0 {
-        x.hypot(y) / report.carried
-    } else {
-        0.0
+    /// See [`Report::missing`].
+    fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
+        let carried = |k: usize| match friction.weights {
+            None => report.force[k],
+            Some(weights) => {
+                let terms = self.solution.traction.iter().zip(weights[k]).map(|(q, weight)| weight * q[k]);
+                in_blocks(terms) * self.grid.element_area()
+            }
+        };
+        let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
+            Prescribed::Force(force) => carried(k) - force,
+            Prescribed::Creepage(_) => 0.0,
+        });
+        if report.carried > 0.0 {
+            x.hypot(y) / report.carried
+        } else {
+            0.0
+        }
     }
 }

@@ -166,7 +166,8 @@ pub fn step(
     };
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| {
-        let left = plus(tangent.driving[i], -1.0, tangent.project_inside(i, add(product[i], by)));
+        let left =
+            plus(tangent.driving[i], -1.0, tangent.project_inside(i, add(product[i], system.problem.weighted(i, by))));
         plus(left, -tangent.curvature[i], along[i])
     });
     fields.give(along);

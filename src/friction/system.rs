@@ -46,7 +46,8 @@ impl<'a> TangentSystem<'a> {
                 continue;
             }
             let mut unit = fields.take(n)?;
-            vectors::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, e));
+            let weighted = |i: usize| system.problem.weighted(i, e);
+            vectors::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, weighted(i)));
             let mut column = fields.take(n)?;
             system.precondition_field(&unit, &mut column);
             fields.give(unit);
@@ -102,7 +103,7 @@ impl<'a> TangentSystem<'a> {
         let tangent = self.tangent;
         let mut h = fields.take(product.len())?;
         vectors::fill(self.problem.threads(), &mut h, |i| {
-            let pushed = tangent.project_inside(i, add(product[i], z.border));
+            let pushed = tangent.project_inside(i, add(product[i], self.problem.weighted(i, z.border)));
             plus(pushed, tangent.curvature[i], z.field[i])
         });
         let border = if self.forces.any() { self.forces.only_given(sum_of(self.problem, &z.field)) } else { [0.0; 2] };

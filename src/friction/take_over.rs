@@ -15,7 +15,7 @@ use super::Vector;
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
-use crate::memory::{blank, unwritten, zeros};
+use crate::memory::{blank, collected, unwritten, zeros};
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -96,6 +96,14 @@ impl Solver {
                 *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }
         });
+        problem.weights = match friction.weights {
+            None => Vec::new(),
+            Some([x, y]) => {
+                let place = |k: usize| window.row(&self.grid, k / width).start + k % width;
+                let of = (0..problem.grid.len()).map(place).map(|i| [x[i], y[i]]);
+                collected(of, "the weights of creepages")?
+            }
+        };
         problem.operators.excess = match friction.compliance {
             Coefficient::Uniform(_) => None,
             Coefficient::PerElement(of) => {
@@ -217,10 +225,18 @@ impl Solver {
 /// The creepage of tractions to start from: with it what sticks does not slip in the mean. 0 where all slips.
 fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
     let sticks = |i: usize| problem.bound[i] > 0.0 && !is_on_circle(state.q[i], problem.bound[i]);
-    let terms = |i: usize| if sticks(i) { [problem.slip[i][k] + state.u[i][k], 1.0] } else { [0.0; 2] };
-    let [slip, count] = vectors::sum(problem.threads(), problem.bound.len(), terms);
-    if count > 0.0 {
-        -slip / count
+    let terms = |i: usize| {
+        let weight = problem.weighted(i, [1.0; 2])[k];
+        let slip = problem.slip[i][k] + state.u[i][k];
+        if sticks(i) {
+            [weight * slip, weight * weight]
+        } else {
+            [0.0; 2]
+        }
+    };
+    let [slip, weights] = vectors::sum(problem.threads(), problem.bound.len(), terms);
+    if weights > 0.0 {
+        -slip / weights
     } else {
         0.0
     }

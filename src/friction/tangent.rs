@@ -162,7 +162,7 @@ impl Tangent {
                     if square(q) > g * g {
                         excess += (square(q).sqrt() - g).powi(2);
                     }
-                    rigid += square(add(problem.rigid[i], problem.offset));
+                    rigid += square(add(problem.rigid[i], problem.weighted(i, problem.offset)));
                     displaced += square(u[i]);
                     let seen = look((q, s), g, (rho, inverse_rho));
                     squares += seen.rest;

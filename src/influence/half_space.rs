@@ -271,11 +271,19 @@ fn line(k: f64, d: f64, y: f64) -> f64 {
 
 /// Integral of `f` over an interval of length `d` about `centre`.
 pub(crate) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let pairs: f64 = GAUSS[1..]
-        .iter()
-        .map(|&(node, weight)| weight * (f(centre + 0.5 * d * node) + f(centre - 0.5 * d * node)))
-        .sum();
-    0.5 * d * (pairs + GAUSS[0].1 * f(centre))
+    let [integral] = gauss_each(centre, d, |x| [f(x)]);
+    integral
+}
+
+/// The same of several functions at once.
+pub(crate) fn gauss_each<const N: usize>(centre: f64, d: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
+    let mut pairs = [0.0; N];
+    for &(node, weight) in &GAUSS[1..] {
+        let (right, left) = (f(centre + 0.5 * d * node), f(centre - 0.5 * d * node));
+        pairs = std::array::from_fn(|k| pairs[k] + weight * (right[k] + left[k]));
+    }
+    let middle = f(centre);
+    std::array::from_fn(|k| 0.5 * d * (pairs[k] + GAUSS[0].1 * middle[k]))
 }
 
 /// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.

@@ -31,8 +31,8 @@ pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Trans
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub(crate) use extremes::SYMMETRY;
-pub(crate) use half_space::gauss;
 pub use half_space::HalfSpace;
+pub(crate) use half_space::{gauss, gauss_each};
 pub use patches::Patches;
 pub use periodic::Periodic;
 pub use row_tables::RowTables;

@@ -80,6 +80,7 @@ impl Push {
             && friction.previous == Previous::None
             && friction.spin == 0.0
             && friction.initial.is_none()
+            && friction.weights.is_none()
             && friction.rigid_slip.is_none()
             && friction.influence.is_none()
             && friction.compliance == Coefficient::Uniform(0.0)

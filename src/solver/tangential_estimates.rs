@@ -69,8 +69,8 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
     let &Solved { state, outline, curvature, friction, alike, .. } = solved;
     let count = state.contact_count();
     let chord = outline.chord(count);
-    let has_layer = friction.compliance != Coefficient::Uniform(0.0);
-    if has_layer || count == 0 || !(chord >= LEAST_CHORD) || !(curvature.depth > 0.0) {
+    let is_plain = friction.compliance == Coefficient::Uniform(0.0) && friction.weights.is_none();
+    if !is_plain || count == 0 || !(chord >= LEAST_CHORD) || !(curvature.depth > 0.0) {
         return unknown;
     }
     let Some(parts) = solved.parts else { return unknown };

@@ -151,3 +151,18 @@ fn what_does_not_move_carries_no_force() {
         }
     }
 }
+
+/// Gradients went on by a fifth of their way at a time once a step had been held back by that much: 40 products.
+#[test]
+fn a_shift_of_a_line_contact_takes_few_products() {
+    for m in [30, 92, 200] {
+        let grid = Grid::new(m, 1, 2.2 / m as f64, 100.0).unwrap();
+        let place = |i: usize| (i as f64 + 0.5) * grid.dx - 1.1;
+        let g: Vec<f64> = (0..m).map(|i| (1.0 - place(i).powi(2)).max(0.0).sqrt()).collect();
+        let prescribed = [Prescribed::Creepage(-1.1), Prescribed::Creepage(0.0)];
+        let friction = Friction { prescribed, spin: 0.03, ..Friction::new(1.0) };
+        let (report, _) = run(&mut solver(&grid, 0.28), &g, &friction, TOLERANCE);
+        assert!(report.products <= 25.0, "{m}: {} products", report.products);
+        assert!(report.certificate.stick_count > m / 4 && report.certificate.slip_count > m / 10, "{report:?}");
+    }
+}

@@ -32,5 +32,6 @@ mod threads;
 mod unlike;
 mod unlike_at_limit;
 mod unlike_sensitivities;
+mod weights;
 mod wheel_on_rail;
 mod wheel_rail;

@@ -151,7 +151,7 @@ fn tables_of_unlike_half_spaces_give_what_these_give() {
 }
 
 #[test]
-fn a_handle_notices_other_tables() {
+fn a_handle_refuses_other_tables_until_it_is_given_them() {
     let (grid, h) = ball(20, 18);
     let (tables, half) = (tables(&grid, 1.0), tables(&grid, 2.0));
     let scene = |tables| Scene {
@@ -161,6 +161,9 @@ fn a_handle_notices_other_tables() {
     let options = Options::default();
     let mut handle = Solver::new(&scene(&tables), &options).unwrap();
     handle.solve(&scene(&tables), &options, None, None).unwrap();
+    let refused = handle.solve(&scene(&half), &options, None, None).map(|_| ());
+    assert!(matches!(&refused, Err(Error::InfluenceChanged(_))), "{refused:?}");
+    handle.set_tangential_influence(scene(&half).friction.as_ref().unwrap()).unwrap();
     handle.solve(&scene(&half), &options, None, None).unwrap();
     let (fresh, ..) = solve(&scene(&half), &options).unwrap();
     let (first, ..) = solve(&scene(&tables), &options).unwrap();
@@ -216,7 +219,7 @@ fn tables_that_are_none_are_refused_by_name() {
     }
     let rolling = Friction { motion: Motion::TransientRolling, ..pushed() };
     for (direction, distance, words) in
-        [(0.3, 0.06, "whole elements"), (0.0, 0.07, "whole elements"), (0.0, 0.18, "of a step of rolling: 23")]
+        [(0.3, 0.06, "whole elements"), (0.0, 0.07, "whole elements"), (0.0, 0.18, "a step of rolling ask for 23")]
     {
         let friction = Friction { rolling_direction: direction, rolling_distance: distance, ..rolling };
         refused(of(&good, &as_it_is, friction, STEEL), words);

@@ -45,7 +45,7 @@ impl<T: Real> Discs<T> {
         over(problem.threads(), blocks, |_, (((part, bound), slip), ((direction, chord), product))| {
             for ((i, g), w) in part.on_grid().zip(bound.iter_mut()).zip(slip.iter_mut()) {
                 *g = problem.bound[i] / traction;
-                *w = add(problem.slip[i], problem.offset).map(|w| by * w);
+                *w = add(problem.slip[i], problem.weighted(i, problem.offset)).map(|w| by * w);
             }
             for field in [direction, chord, product] {
                 field.fill([T::zero(); 2]);

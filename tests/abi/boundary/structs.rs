@@ -14,7 +14,7 @@ const SIZES: [(&str, i64); 13] = [
     ("period", 16),
     ("patches", 32),
     ("row_tables", 32),
-    ("friction", 232),
+    ("friction", 248),
     ("options", 96),
     ("cycle", 32),
     ("fields", 80),

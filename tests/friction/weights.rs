@@ -1,0 +1,89 @@
+//! Weights of creepages: surfaces that are inclined within the contact area. A creepage moves an element by its weight, and the force that
+//! goes with it is the sum of weights times tractions.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+
+use super::scenes::Ellipse;
+use super::support::{residual, run, solver};
+
+/// Cosines of inclinations up to about a right angle, and beyond it for `reversed`.
+fn cosines(grid: &Grid, reversed: bool) -> [Vec<f64>; 2] {
+    let most = if reversed { 2.0 } else { 1.2 };
+    let angle = |i: usize| most * (2.0 * (i / grid.mx) as f64 / (grid.my - 1) as f64 - 1.0);
+    [vec![1.0; grid.len()], (0..grid.len()).map(|i| angle(i).cos()).collect()]
+}
+
+#[test]
+fn forces_are_sums_of_weighted_tractions() {
+    for seed in 0..8 {
+        for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+            for part in [0.2, 0.6, 0.9] {
+                let case = Ellipse::random(seed, 20, true);
+                let weights = cosines(&case.grid, seed % 2 == 1);
+                let views = weights.each_ref().map(|weights| &weights[..]);
+                let area = case.grid.element_area();
+                let along = [0.6f64, -0.8];
+                let reach = |i: usize| (weights[0][i] * along[0]).hypot(weights[1][i] * along[1]);
+                let most: f64 = (0..case.grid.len()).map(|i| case.bound[i] * reach(i) * area).sum();
+                let force = along.map(|along| part * most * along);
+                let prescribed = force.map(Prescribed::Force);
+                let friction = Friction { motion, prescribed, weights: Some(views), spin: 0.0, ..case.friction };
+                let mut solver = solver(&case.grid, case.nu);
+                let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
+                let none = vec![[0.0; 2]; case.grid.len()];
+                let place = (&case.grid, case.nu);
+                let left = residual(place, &case.bound, &friction, &none, (&report, &solution));
+                // The tolerance, and round-off of two products.
+                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}: {left}");
+                let carried: f64 = case.bound.iter().sum::<f64>() * area;
+                for k in 0..2 {
+                    let terms = solution.traction.iter().zip(&weights[k]).map(|(q, weight)| weight * q[k]);
+                    let sum = terms.sum::<f64>() * area;
+                    assert!((sum - force[k]).abs() <= 1.001e-6 * carried, "{seed} {motion:?} {part}: {sum} {force:?}");
+                }
+                if motion == Motion::SteadyRolling {
+                    continue;
+                }
+                // A step on from there, by less.
+                let prescribed = force.map(|force| Prescribed::Force(0.7 * force));
+                let next = Friction { previous: Previous::Kept, prescribed, ..friction };
+                let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
+                let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}, the next step: {left}");
+            }
+        }
+    }
+}
+
+#[test]
+fn creepages_that_are_given_are_weighted_too() {
+    let case = Ellipse::random(5, 20, false);
+    let weights = cosines(&case.grid, false);
+    let views = weights.each_ref().map(|weights| &weights[..]);
+    let prescribed = [Prescribed::Creepage(-0.2), Prescribed::Creepage(0.3)];
+    let weighted = Friction { prescribed, weights: Some(views), ..case.friction };
+    // The same as a rigid slip of one's own.
+    let slips = [0, 1].map(|k| weights[k].iter().map(|weight| weight * [-0.2, 0.3][k]).collect::<Vec<f64>>());
+    let own = Some(slips.each_ref().map(|slip| &slip[..]));
+    let rigid = Friction { prescribed: [Prescribed::Creepage(0.0); 2], rigid_slip: own, ..case.friction };
+    let solved = |friction: &Friction<'_>| run(&mut solver(&case.grid, case.nu), &case.bound, friction, 1e-9).1;
+    let (one, other) = (solved(&weighted), solved(&rigid));
+    let largest = case.bound.iter().fold(0.0f64, |most, g| most.max(*g));
+    for (a, b) in one.traction.iter().zip(&other.traction) {
+        assert!((0..2).all(|k| (a[k] - b[k]).abs() <= 1e-7 * largest), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn weights_of_one_are_none() {
+    let case = Ellipse::random(2, 20, true);
+    let ones = vec![1.0; case.grid.len()];
+    let solved = |weights| {
+        let friction = Friction { weights, ..case.friction };
+        run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-8)
+    };
+    let ((plain, one), (weighted, other)) = (solved(None), solved(Some([&ones[..], &ones[..]])));
+    assert_eq!((plain.creepage, plain.force), (weighted.creepage, weighted.force));
+    assert_eq!(one.traction, other.traction);
+}
