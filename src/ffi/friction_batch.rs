@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, optional, required, Regions};
 use super::batch::NotOk;
+use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::contact_normal_options;
 use super::outputs::Buffers;
@@ -79,19 +80,23 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
     results: *mut contact_normal_friction_results,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, pressure, options, n, entries, results, report];
+    let solve = |recording: &mut Recording<'_>| {
         let n = not_negative("n", n)?;
+        let mut buffers = Buffers::default();
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let wanted = unsafe { structs::read(results.cast_const(), "results")? };
         // SAFETY: likewise.
-        let Request { scene: read, options, outputs } = unsafe {
+        let request = unsafe {
             let also = |regions: &mut Regions, elements: usize| {
                 regions.input("pressure", pressure, elements)?;
                 regions.input("entries", entries.cast::<[f64; 3]>(), n)?;
                 wanted.add_to(regions, results, (n, elements))
             };
-            Request::read(scene, options, null_mut(), report, &mut Buffers::default(), also)?
+            Request::read(scene, options, null_mut(), report, &mut buffers, also)
         };
+        recording.keep(&buffers.regions);
+        let Request { scene: read, options, outputs } = request?;
         // SAFETY (both): NULL or arrays of this size, by the conventions of the ABI.
         let (pressure, given) = unsafe {
             let given = if n == 0 { &[][..] } else { required("entries", entries.cast::<[f64; 3]>(), n)? };
@@ -116,7 +121,9 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
             Ok(Conclusion::of(stop, message))
         });
         concluded?.conclude()
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_friction_batch", options, arguments, solve) })
 }
 
 // SAFETY: the pointers are the caller's, who leaves what they point to alone during the call; what is written for one entry no other

@@ -1,6 +1,7 @@
 //! `contact_normal_solve_tangential`: the tangential problem alone, with pressures that are given.
 
-use super::arguments::required;
+use super::arguments::{required, Regions};
+use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
 use super::options::contact_normal_options;
@@ -24,10 +25,16 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
     fields: *mut contact_normal_fields,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, pressure, options, fields, report];
+    let solve = |recording: &mut Recording<'_>| {
+        let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, &mut Buffers::default(), |_, _| Ok(()))? };
+        let request = unsafe {
+            let also = |regions: &mut Regions, elements: usize| regions.input("pressure", pressure, elements);
+            Request::read(scene, options, fields, report, &mut buffers, also)
+        };
+        recording.keep(&buffers.regions);
+        let Request { scene, options, outputs } = request?;
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
         let found = watched(Watcher::of(&options), |progress| {
@@ -37,5 +44,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
             Ok(Conclusion::of(stop, || explain(stop, &report, options.options.method, None)))
         });
         found?.conclude()
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
 }

@@ -102,7 +102,7 @@ impl Solver {
     }
 
     /// A solver like this one, of one thread. It accepts the same options.
-    fn worker(&self) -> Result<Solver> {
+    pub(super) fn worker(&self) -> Result<Solver> {
         Solver::of(self.problem.grid, self.problem.coefficients.clone(), self.set_up.clone(), &Threads::One)
     }
 }
