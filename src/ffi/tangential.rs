@@ -30,7 +30,14 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let request = unsafe {
-            let also = |regions: &mut Regions, elements: usize| regions.input("pressure", pressure, elements);
+            // `fields->pressure` is not written here, and may hold them.
+            let also = |regions: &mut Regions, elements: usize| match regions.at(pressure as usize) {
+                Some(region) if region.name == "pressure" => {
+                    regions.read_too(pressure);
+                    Ok(())
+                }
+                _ => regions.input("pressure", pressure, elements),
+            };
             Request::read(scene, options, fields, report, &mut buffers, also)
         };
         recording.keep(&buffers.regions);
