@@ -65,7 +65,9 @@ module contact_normal
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
     contact_normal_set_row_tables, contact_normal_set_coating, contact_normal_set_friction, &
     contact_normal_set_friction_fields, contact_normal_set_friction_results, contact_normal_set_tangential_influence, &
-    contact_normal_set_cycle, contact_normal_has, contact_normal_solver_query
+    contact_normal_set_cycle, contact_normal_has, contact_normal_solver_query, &
+    contact_normal_constant, contact_normal_set_option, contact_normal_set_cycle_option, contact_normal_set_dump, &
+    contact_normal_solver_product, contact_normal_solver_stiffness
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 

@@ -13,12 +13,15 @@ REALNAME := libcontact_normal.so.$(VERSION)
 
 # Where the built libraries are: a packager (or a test) may have them elsewhere.
 LIBDIR_BUILT ?= $(or $(CARGO_TARGET_DIR),target)/release
+# And the program that reads dumps.
+REPLAY_BUILT ?= $(LIBDIR_BUILT)/contact-normal-replay
 # What the static library needs of the system, as `cargo rustc --release --lib --crate-type staticlib -- --print
 # native-static-libs` says, with the static unwinder of gcc in place of the shared one, so that `cc -static` works, too.
 STATIC_LIBS := -lgcc_eh -lutil -lrt -lpthread -lm -ldl -lc
 
 INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
 LIBDIR := $(DESTDIR)$(PREFIX)/lib
+BINDIR := $(DESTDIR)$(PREFIX)/bin
 SHAREDIR := $(DESTDIR)$(PREFIX)/share/contact-normal
 HEADERS := $(addprefix contact_normal,.h .hpp .f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
 
@@ -29,8 +32,8 @@ filled = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONA
 .PHONY: install uninstall
 
 install:
-	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a || $(MAKE) all
-	$(INSTALL) -d $(INCLUDEDIR) $(LIBDIR)/.debug $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/contact-normal $(SHAREDIR)/include
+	@test -e $(LIBDIR_BUILT)/libcontact_normal.so -a -e $(LIBDIR_BUILT)/libcontact_normal.a -a -e $(REPLAY_BUILT) || $(MAKE) all
+	$(INSTALL) -d $(INCLUDEDIR) $(BINDIR) $(LIBDIR)/.debug $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/contact-normal $(SHAREDIR)/include
 	$(INSTALL) -m 644 $(addprefix include/,$(HEADERS)) $(INCLUDEDIR)
 	# The shared library; debuggers find its debug information in .debug.
 	$(OBJCOPY) --only-keep-debug $(LIBDIR_BUILT)/libcontact_normal.so $(LIBDIR)/.debug/$(REALNAME).debug
@@ -44,6 +47,8 @@ install:
 	$(OBJCOPY) --strip-debug --remove-section=.llvmbc --remove-section=.llvmcmd \
 		$(LIBDIR_BUILT)/libcontact_normal.a $(LIBDIR)/libcontact_normal.a
 	chmod 644 $(LIBDIR)/libcontact_normal.a
+	$(OBJCOPY) --strip-debug $(REPLAY_BUILT) $(BINDIR)/contact-normal-replay
+	chmod 755 $(BINDIR)/contact-normal-replay
 	@$(call filled,contact-normal.pc,$(LIBDIR)/pkgconfig)
 	@$(call filled,contact-normal-shared.pc,$(LIBDIR)/pkgconfig)
 	@$(call filled,contact-normal-config.cmake,$(LIBDIR)/cmake/contact-normal)
@@ -56,6 +61,7 @@ install:
 uninstall:
 	rm -f $(addprefix $(INCLUDEDIR)/,$(HEADERS))
 	rm -f $(LIBDIR)/$(REALNAME) $(LIBDIR)/$(SONAME) $(LIBDIR)/libcontact_normal.so $(LIBDIR)/libcontact_normal.a
+	rm -f $(BINDIR)/contact-normal-replay
 	rm -f $(LIBDIR)/.debug/$(REALNAME).debug $(LIBDIR)/pkgconfig/contact-normal.pc $(LIBDIR)/pkgconfig/contact-normal-shared.pc
 	rm -rf $(LIBDIR)/cmake/contact-normal $(SHAREDIR)
 	rmdir --ignore-fail-on-non-empty $(LIBDIR)/.debug $(LIBDIR)/pkgconfig $(LIBDIR)/cmake

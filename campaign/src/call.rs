@@ -189,6 +189,15 @@ impl Handle {
         })
     }
 
+    /// A p.
+    pub fn product(&mut self, p: &[f64]) -> Vec<f64> {
+        let mut u = vec![SENTINEL; p.len()];
+        // SAFETY: as many values as the grid has elements.
+        let status = unsafe { contact_normal_solver_product(self.0, p.as_ptr(), u.as_mut_ptr()) };
+        assert_eq!(status, CONTACT_NORMAL_OK, "{}", last_error());
+        u
+    }
+
     /// Sets other coefficients: the status.
     pub fn set_influence(&mut self, own: &OwnCoefficients) -> i32 {
         let mut influence = initialised(contact_normal_influence_init);

@@ -8,6 +8,7 @@
 //! cargo run --release -p campaign -- --measured --friction 5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
+//! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
 //! ```
 
 use std::collections::BTreeMap;
@@ -16,6 +17,7 @@ use std::process::ExitCode;
 use campaign::account::Account;
 use campaign::random::Random;
 use campaign::run::{measured, ordinary, Run};
+use contact_normal::ffi::dump::Dump;
 
 fn main() -> ExitCode {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -23,6 +25,9 @@ fn main() -> ExitCode {
         let at = arguments.iter().position(|argument| argument == name);
         at.map(|at| arguments.remove(at)).is_some()
     };
+    if named("--replay") {
+        return dumped(&arguments[0]);
+    }
     let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
     let run = if is_measured { measured } else { ordinary };
@@ -50,6 +55,18 @@ fn end(is_clean: bool) -> ExitCode {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
+    }
+}
+
+/// The scene of a dump.
+fn dumped(path: &str) -> ExitCode {
+    let bytes = std::fs::read(path).map_err(|why| why.to_string());
+    match bytes.and_then(|bytes| Dump::read(&bytes)).and_then(|dump| campaign::replay::run(&dump)) {
+        Ok(run) => replay(&run),
+        Err(why) => {
+            eprintln!("{path}: {why}");
+            ExitCode::FAILURE
+        }
     }
 }
 

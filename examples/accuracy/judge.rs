@@ -217,7 +217,7 @@ pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> V
         let began = std::time::Instant::now();
         let wanted = (Quantity::Force, &TARGETS[..]);
         let scene = surface.scene(start, &[], by_force);
-        let list = cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(1.0), wanted, Some(&mut write))
+        let list = cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(1.0), wanted, Some(&mut write), None)
             .expect("a price list")
             .1;
         let list_seconds = began.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import operator
+import os
 from collections.abc import Mapping
 from ctypes import POINTER, c_double, c_int32
 from typing import TYPE_CHECKING, Any, TypedDict, Union
@@ -40,6 +41,7 @@ class AccuracyOptions(TypedDict, total=False):
     max_cycles: int
     threads: int
     precision: str | int
+    dump: str | os.PathLike[str] | None
 
 
 class SolveOptions(AccuracyOptions, total=False):
@@ -75,6 +77,9 @@ class SolveOptions(AccuracyOptions, total=False):
         Default 1; 0: all cores.
     precision : str or int
         "AUTO" (default), "DOUBLE" or "MIXED".
+    dump : str or path, optional
+        A file into which a call that fails writes what it was given, for `contact-normal-replay`: "failed-%p-%n.dump", where %p is the
+        number of the process and %n that of the dump. docs/dump.md says when.
     """
 
     max_seconds: float
@@ -249,6 +254,11 @@ def options(given: Mapping[str, Any]) -> Any:
     for name, value in given.items():
         if name not in _OPTIONS:
             raise TypeError(f"no option {name}; there are: {', '.join(sorted(_OPTIONS))}")
+        if name == "dump":
+            # The struct keeps the text, which it points to.
+            struct.path = None if value is None else os.fsencode(value)
+            struct.dump = ctypes.cast(ctypes.c_char_p(struct.path), ctypes.c_void_p)
+            continue
         if isinstance(value, str):
             value = _constants.value_of(name, value)
         if name in _CYCLE and not struct.cycle:

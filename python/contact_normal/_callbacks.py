@@ -89,11 +89,13 @@ class Watched:
             self._error = error
             return 1
 
-    def call(self, function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None) -> tuple[int, str]:
+    def call(
+        self, function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, report: Any = None
+    ) -> tuple[int, str]:
         """As `called`. Raises what the callable raised, and closes the bar."""
         status = -1
         try:
-            status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short)
+            status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short, report=report)
         finally:
             if self._bar:
                 self._bar.close(status == OK)

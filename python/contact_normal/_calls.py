@@ -220,24 +220,31 @@ def made(work: Callable[[], T], short: bool = False) -> T:
 
 
 def called(
-    function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False
+    function: Callable[..., int],
+    *arguments: Any,
+    handle: Handle | None = None,
+    keep: Any = None,
+    short: bool = False,
+    report: Any = None,
 ) -> tuple[int, str]:
-    """The status of a function of the library, and its message, which belongs to the thread that calls: with OK and no warnings, of an earlier call.
+    """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` and warns there.
 
     With a handle, its address is the first argument. `keep` lives at least until the function returns.
     """
     if handle is not None:
         handle.wait()
-    return made(partial(_told, function, arguments, handle, keep), short)
+    return made(partial(_told, function, arguments, handle, (keep, report)), short)
 
 
 _NO_HANDLE = nullcontext(())
 
 
-def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, _keep: Any) -> tuple[int, str]:
+def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, kept: tuple[Any, Any]) -> tuple[int, str]:
     with _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
-        return status, last_error()
+        # The message belongs to the thread that calls; after OK it may be one of an earlier call.
+        has_message = status or kept[1] is not None and kept[1].warnings
+        return status, last_error() if has_message else ""
 
 
 def parts(count: int, first: int) -> Iterator[slice]:

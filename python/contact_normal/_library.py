@@ -5,16 +5,18 @@ from __future__ import annotations
 import ctypes
 import ctypes.util
 import os
+import re
 import sys
 from ctypes import POINTER, c_char_p, c_double, c_int32, c_int64, c_void_p
 from pathlib import Path
 from typing import Any
 
-from ._constants import ABI_VERSION
+from ._constants import ABI_VERSION, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH
 from ._structs import (
     KINDS,
     Accuracy,
     Coating,
+    Cycle,
     Fields,
     Friction,
     FrictionResults,
@@ -29,6 +31,9 @@ from ._structs import (
     StressOutputs,
 )
 
+# The version of this package.
+PACKAGE = (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH)
+
 # Result and arguments of every export.
 PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "status_text": (c_char_p, [c_int32]),
@@ -36,6 +41,9 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "version": (c_char_p, []),
     "abi_version": (c_int32, []),
     "has": (c_int32, [c_char_p]),
+    "constant": (c_int32, [c_char_p, POINTER(c_int32)]),
+    "set_option": (c_int32, [POINTER(Options), c_char_p, c_char_p]),
+    "set_cycle_option": (c_int32, [POINTER(Cycle), c_char_p, c_char_p]),
     "release": (c_int32, []),
     "keep": (c_int32, [c_int64]),
     "kept": (c_int32, [POINTER(c_int64), POINTER(c_int32)]),
@@ -54,6 +62,8 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "solver_set_influence": (c_int32, [c_void_p, POINTER(Influence), POINTER(Friction)]),
     "solver_fields": (c_int32, [c_void_p, POINTER(Fields)]),
     "solver_query": (c_int32, [c_void_p, POINTER(SolverInfo)]),
+    "solver_product": (c_int32, [c_void_p, POINTER(c_double), POINTER(c_double)]),
+    "solver_stiffness": (c_int32, [c_void_p, POINTER(c_double), POINTER(c_double)]),
     "solver_free": (c_int32, [c_void_p]),
     "solve_to_accuracy": (
         c_int32,
@@ -117,8 +127,16 @@ def load() -> ctypes.CDLL:
     version = library.contact_normal_abi_version()
     if version < ABI_VERSION:
         raise ImportError(f"{path} has ABI version {version}; this package needs {ABI_VERSION} or newer")
+    # Of the same version of the ABI structs may have grown.
+    library.contact_normal_version.restype = c_char_p
+    text = library.contact_normal_version().decode()
+    if tuple(int(part) for part in re.findall(r"\d+", text)[:3]) < PACKAGE:
+        raise ImportError(f"{path} is version {text} of the library; this package needs {'.'.join(map(str, PACKAGE))} or newer")
     for name, (result, arguments) in PROTOTYPES.items():
-        function = getattr(library, "contact_normal_" + name)
+        try:
+            function = getattr(library, "contact_normal_" + name)
+        except AttributeError:
+            raise ImportError(f"{path}, version {text}, has no contact_normal_{name}: it is no library of this version") from None
         function.restype, function.argtypes = result, arguments
     return library
 
@@ -164,7 +182,7 @@ class ContactNormalError(Exception):
 
 
 def last_error() -> str:
-    """The message of the last call on this thread that did not return OK."""
+    """The message of the last call on this thread that did not return OK, or warned."""
     return str(library.contact_normal_last_error().decode())
 
 

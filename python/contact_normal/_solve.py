@@ -131,7 +131,7 @@ def solve(
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
         library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
-        ctypes.byref(outputs.report), keep=(scene, outputs),
+        ctypes.byref(outputs.report), keep=(scene, outputs), report=outputs.report,
     )
     return Result(check(status, message), message, outputs, outputs.report, scene, units)
 
@@ -248,7 +248,7 @@ def solve_to_accuracy(
         ))
 
     try:
-        status, message = watched.call(partial(handle.set_up, find), keep=(surface, scene))
+        status, message = watched.call(partial(handle.set_up, find), keep=(surface, scene), report=ledger.report)
         if surface:
             surface.finish()
         check(status, message)

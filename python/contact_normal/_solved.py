@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._constants import WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_SPIKE
+from ._grid import centres
 from ._library import library
 from ._structs import names
 from ._units import WithUnits, with_unit
@@ -52,8 +53,6 @@ class Solved(WithUnits):
     """What a solve found, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
-        # A library that solved has a message of this solve where it stopped early or warns; else one of an earlier call.
-        message = message if status or report.warnings else ""
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
@@ -97,12 +96,12 @@ class Solved(WithUnits):
     @property
     def x(self) -> Doubles:
         """x of the centres of the elements, (mx,): from the middle of the grid."""
-        return _centres(self.pressure.shape[1], self.dx, self._centre[0])
+        return centres(self.pressure.shape[1], self.dx, self._centre[0])
 
     @property
     def y(self) -> Doubles:
         """y of the centres of the elements, (my,): from the middle of the grid."""
-        return _centres(self.pressure.shape[0], self.dy, self._centre[1])
+        return centres(self.pressure.shape[0], self.dy, self._centre[1])
 
     @property
     def force(self) -> float:
@@ -271,7 +270,3 @@ class Solved(WithUnits):
 
         xarray()
         write(path, self.to_xarray())
-
-
-def _centres(m: int, d: float, middle: float) -> Doubles:
-    return np.asarray((np.arange(m) + 0.5 - 0.5 * m) * d + middle, dtype=np.float64)

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import Both, SolveOptions, distances, doubles, integer, options, shaped
+from ._arguments import Both, SolveOptions, distances, doubles, integer, options, pointer, shaped
 from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
 from ._calls import called, is_short, parts
 from ._constants import OK
 from ._handle import Handle
-from ._library import check, library
+from ._library import ContactNormalError, check, library
 from ._outputs import Outputs
 from ._friction import friction as friction_of
 from ._result import Result, TangentialResult
@@ -32,6 +32,8 @@ from ._units import checked
 if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
+
+    from ._arguments import Doubles
 
 _Problem = tuple[Scene, Outputs]
 
@@ -144,7 +146,7 @@ class Solver:
         watched = Watched(progress, struct, scene)
         status, message = watched.call(
             library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
-            ctypes.byref(outputs.report), handle=self._handle, keep=(scene, outputs),
+            ctypes.byref(outputs.report), handle=self._handle, keep=(scene, outputs), report=outputs.report,
         )
         return Result(check(status, message), message, outputs, outputs.report, scene, self._units)
 
@@ -215,7 +217,7 @@ class Solver:
         )
         if untouched in statuses:
             check(status, message)
-        messages = _messages(statuses, message if status else "")
+        messages = _messages(statuses, message)
         return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
     def solve_tangential(
@@ -259,6 +261,40 @@ class Solver:
         tables, kept, _ = (None, None, "") if friction is None else friction_of(friction, self._shape)
         structs = [None if struct is None else ctypes.byref(struct) for struct in (effect, tables)]
         check(*called(library.contact_normal_solver_set_influence, *structs, handle=self._handle, keep=(table, kept)))
+
+    def product(self, pressure: npt.ArrayLike) -> Doubles:
+        """The displacements u = A p of pressures of any sign, with all effects of the set-up that A has.
+
+        Parameters
+        ----------
+        pressure : array_like, (my, mx)
+            Pressures.
+
+        Returns
+        -------
+        ndarray, (my, mx)
+            Displacements; the last result of the solver stays.
+        """
+        given = doubles("pressure", pressure, self._shape)
+        found = np.zeros(self._shape)
+        check(*called(library.contact_normal_solver_product, pointer(given), pointer(found), handle=self._handle, keep=(given, found)))
+        return found
+
+    def stiffness(self) -> float:
+        """dF/d approach of the last result, a force per length: while contact area, pressures at their limit and tractions stay.
+
+        Raises
+        ------
+        ContactNormalError
+            If there is no result, or full contact with two periods.
+        """
+        value, residual = ctypes.c_double(), ctypes.c_double()
+        status, message = called(
+            library.contact_normal_solver_stiffness, ctypes.byref(value), ctypes.byref(residual), handle=self._handle, keep=(value, residual)
+        )
+        if check(status, message) != OK:
+            raise ContactNormalError(status, message)
+        return value.value
 
     def close(self) -> None:
         """Frees the handle, at once or when the call that uses it returns; a second call does nothing."""

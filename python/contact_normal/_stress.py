@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._grid import centres
 from ._units import Units, WithUnits
 
 if TYPE_CHECKING:
@@ -58,8 +59,8 @@ class SubsurfaceStress(WithUnits):
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         my, mx = scene.shape
-        self.x: Doubles = (np.arange(mx) + 0.5 - 0.5 * mx) * self.dx
-        self.y: Doubles = (np.arange(my) + 0.5 - 0.5 * my) * self.dy
+        self.x: Doubles = centres(mx, self.dx)
+        self.y: Doubles = centres(my, self.dy)
 
     def place(self, middle: tuple[float, float], units: Units) -> None:
         """Moves the middle of the grid there."""

@@ -189,6 +189,7 @@ class Options(ctypes.Structure):
         ("cycle", POINTER(Cycle)),
         ("max_seconds", c_double),
         ("stop", POINTER(c_int32)),
+        ("dump", c_void_p),
     ]
 
 

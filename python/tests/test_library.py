@@ -50,6 +50,25 @@ class Libraries(unittest.TestCase):
             another = Another(abi_version=lambda: version)
             self.assertIs(loaded(another), another)
 
+    def test_an_older_library_of_the_same_abi(self):
+        for version, serves in ((b"0.2.0", True), (b"0.2.1", True), (b"0.10.0", True), (b"1.0.0-rc1", True), (b"0.1.9", False)):
+            another = Another(version=lambda: version)
+            if serves:
+                self.assertIs(loaded(another), another)
+                continue
+            with self.assertRaisesRegex(ImportError, "is version 0.1.9 of the library; this package needs 0.2.0 or newer"):
+                loaded(another)
+
+    def test_a_library_without_a_function(self):
+        class Without(Another):
+            def __getattr__(self, name):
+                if name == "contact_normal_keep":
+                    raise AttributeError(name)
+                return super().__getattr__(name)
+
+        with self.assertRaisesRegex(ImportError, "has no contact_normal_keep"):
+            loaded(Without())
+
     def test_one_that_is_missing(self):
         with mock.patch.dict(os.environ, {"CONTACT_NORMAL_LIBRARY": "/nowhere/libcontact_normal.so"}):
             self.assertEqual(_library.candidates(), ["/nowhere/libcontact_normal.so"])

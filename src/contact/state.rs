@@ -149,14 +149,30 @@ impl State {
 
     /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.
     pub fn edge_count(&self) -> usize {
+        let [columns, rows, corners] = self.edge_counts();
+        columns + rows - corners
+    }
+
+    /// The same on the first or last column, on the first or last row, and on both.
+    pub fn edge_counts(&self) -> [usize; 3] {
         let Grid { mx, my, .. } = self.grid;
-        let of_row = |(iy, row): (usize, &[bool])| match iy == 0 || iy + 1 == my {
-            true => row.iter().filter(|&&inside| inside).count(),
-            false => usize::from(row[0]) + row[1..].last().map_or(0, |last| usize::from(*last)),
+        let mut counts = [0; 3];
+        let mut count = |touches: &[bool]| {
+            for (iy, row) in touches.chunks_exact(mx).enumerate() {
+                let ends = usize::from(row[0]) + row[1..].last().map_or(0, |last| usize::from(*last));
+                counts[0] += ends;
+                if iy == 0 || iy + 1 == my {
+                    counts[1] += row.iter().filter(|&&inside| inside).count();
+                    counts[2] += ends;
+                }
+            }
         };
-        let of = |touches: &[bool]| touches.chunks_exact(mx).enumerate().map(of_row).sum::<usize>();
+        count(&self.contact);
         // No element is both.
-        of(&self.contact) + if self.has_limited() { of(&self.at_limit) } else { 0 }
+        if self.has_limited() {
+            count(&self.at_limit);
+        }
+        counts
     }
 
     /// `sum of p dx dy`.

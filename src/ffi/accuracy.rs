@@ -3,6 +3,7 @@
 use libc::c_void;
 
 use super::arguments::Regions;
+use super::dump::{given, recorded, Recording};
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
@@ -81,7 +82,8 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     solver: *mut *mut contact_normal_solver,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, options, accuracy, report];
+    let solve = |recording: &mut Recording<'_>| {
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let (mut given, translated, named, outputs) = unsafe {
             (
@@ -92,11 +94,15 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
             )
         };
         let mut regions = Regions::default();
-        named.add_to(&mut regions, scene)?;
+        match given.surface {
+            Some(_) => named.add_without_distance(&mut regions, scene)?,
+            None => named.add_to(&mut regions, scene)?,
+        }
         translated.add_to(&mut regions, options)?;
         outputs.add_to(&mut regions, 0)?;
         regions.output_struct(accuracy, &given)?;
         regions.output("solver", solver, 1)?;
+        recording.keep(&regions);
         regions.check()?;
         // A copy: later grids are refined from it, and callbacks may write into the caller's.
         // SAFETY: as above.
@@ -104,7 +110,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         // SAFETY: as above.
         let scene = unsafe { named.with_distance(&h)? };
         let asked = translate(&given)?;
-        let mut write = surface(&given);
+        let mut write = surface(&given, recording);
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
         let concluded = watched(Watcher::of(&translated), |progress| {
             let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
@@ -126,17 +132,26 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
             Ok(Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings })
         });
         concluded?.conclude()
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) })
 }
 
 /// What writes the caller's surface; none where there is none.
-pub(super) fn surface(given: &contact_normal_accuracy) -> Option<impl FnMut(&Grid, &mut [f64]) -> bool> {
+pub(super) fn surface<'r, 'a>(
+    given: &contact_normal_accuracy,
+    recording: &'r mut Recording<'a>,
+) -> Option<impl FnMut(&Grid, &mut [f64]) -> bool + use<'r, 'a>> {
     let (surface, user) = (given.surface?, given.user);
     Some(move |grid: &Grid, h: &mut [f64]| {
         // SAFETY: the caller's function, on the caller's thread, with room for all values; no lock is held.
-        in_host_environment(|| unsafe {
+        let cancels = in_host_environment(|| unsafe {
             surface(grid.mx as i32, grid.my as i32, grid.dx, grid.dy, h.as_mut_ptr(), user) != 0
-        })
+        });
+        if !cancels {
+            recording.keep_surface(grid.mx, grid.my, h);
+        }
+        cancels
     })
 }
 

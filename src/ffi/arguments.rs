@@ -1,5 +1,8 @@
 //! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
 
+use std::cell::RefCell;
+use std::ops::Range;
+
 use super::status::Refusal;
 use super::structs::{size_of_callers, Rows, Versioned};
 use crate::grid::Grid;
@@ -38,15 +41,61 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
+/// What an array holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Element {
+    Double,
+    Int32,
+}
+
+/// What can stand in an array that is read.
+pub(super) trait Plain {
+    const ELEMENT: Element;
+}
+
+impl Plain for f64 {
+    const ELEMENT: Element = Element::Double;
+}
+
+impl<const N: usize> Plain for [f64; N] {
+    const ELEMENT: Element = Element::Double;
+}
+
+impl Plain for i32 {
+    const ELEMENT: Element = Element::Int32;
+}
+
 /// Memory of the caller's.
 #[derive(Clone, Copy)]
-struct Region {
+pub(super) struct Region {
     start: usize,
     end: usize,
-    name: &'static str,
+    pub name: &'static str,
     /// Of a batch: counted from 0.
     problem: Option<usize>,
     is_output: bool,
+    /// What a call takes from it; not of structs, and not of outputs that are only written.
+    pub is_read: bool,
+    pub element: Element,
+}
+
+impl Region {
+    pub fn bytes(&self) -> usize {
+        self.end - self.start
+    }
+}
+
+thread_local! {
+    /// Where calls on this thread may read and write; none: everywhere.
+    static ALLOWED: RefCell<Option<Vec<Range<usize>>>> = const { RefCell::new(None) };
+}
+
+/// Makes calls which are refused before they read or write beyond these ranges: for what is replayed from a file.
+pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> R {
+    let outer = ALLOWED.replace(Some(ranges));
+    let result = call();
+    ALLOWED.set(outer);
+    result
 }
 
 /// All that one call reads and writes. What it writes may overlap with nothing else.
@@ -76,8 +125,22 @@ impl Regions {
     }
 
     /// `count` values that are only read; none at NULL.
-    pub fn input<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
-        self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)
+    pub fn input<T: Plain>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
+        self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)?;
+        self.read_too(start);
+        Ok(())
+    }
+
+    /// The output that begins here is read, too.
+    pub fn read_too<T: Plain>(&mut self, start: *const T) {
+        for region in self.list.iter_mut().filter(|region| region.start == start as usize) {
+            (region.is_read, region.element) = (true, T::ELEMENT);
+        }
+    }
+
+    /// What begins here; of several the longest.
+    pub fn at(&self, start: usize) -> Option<&Region> {
+        self.list.iter().filter(|region| region.start == start).max_by_key(|region| region.end)
     }
 
     /// A struct that was read from `at`.
@@ -115,12 +178,30 @@ impl Regions {
             let room = (2 * self.list.len()).max(44);
             reserve(&mut self.list, room, "the addresses of the arrays")?;
         }
-        self.list.push(Region { start, end: start.saturating_add(bytes), name, problem: self.problem, is_output });
+        let (end, problem) = (start.saturating_add(bytes), self.problem);
+        let (is_read, element) = (false, Element::Double);
+        self.list.push(Region { start, end, name, problem, is_output, is_read, element });
         Ok(())
+    }
+
+    /// Refuses what is beyond the memory that calls may use.
+    fn check_ranges(&self) -> Result<(), Refusal> {
+        ALLOWED.with_borrow(|ranges| {
+            let Some(ranges) = ranges else { return Ok(()) };
+            let is_inside = |region: &Region| ranges.iter().any(|r| r.start <= region.start && region.end <= r.end);
+            match self.list.iter().find(|region| !is_inside(region)) {
+                Some(region) => {
+                    let (name, bytes) = (region.name, region.bytes());
+                    Err(Refusal::invalid(format!("{name} takes {bytes} bytes; there are less in the file")))
+                }
+                None => Ok(()),
+            }
+        })
     }
 
     /// Refuses outputs that overlap with an output or an input.
     pub fn check(&mut self) -> Result<(), Refusal> {
+        self.check_ranges()?;
         self.list.sort_unstable_by_key(|region| (region.start, region.end));
         // Of what begins before, what ends last.
         let (mut input, mut output): (Option<&Region>, Option<&Region>) = (None, None);

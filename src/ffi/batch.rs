@@ -1,8 +1,10 @@
 //! `contact_normal_solver_solve_batch`: many problems in one call, spread over threads.
 
+use std::ptr::null_mut;
 use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, Regions};
+use super::dump::{Given, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
@@ -69,10 +71,10 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         options.add_to(regions, options_at)?;
         batch.add_to(regions, solver.grid().len())?;
         regions.check()?;
-        let not_ok = Mutex::new(NotOk::default());
+        let (not_ok, n) = (Mutex::new(NotOk::default()), solver.grid().len());
         solver.distribute(count, |i, worker| {
             // SAFETY: each problem is solved by one thread.
-            let outcome = unsafe { batch.solve(i, worker, &options) };
+            let outcome = unsafe { batch.solve(i, worker, (&options, n)) };
             not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
         })?;
         not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("problem").conclude()
@@ -131,8 +133,8 @@ impl Batch {
             let fields = if fields.is_null() { None } else { Some(Array::new(fields, "fields")?) };
             let reports = if reports.is_null() { None } else { Some(Array::new(reports, "reports")?) };
             let outputs_of = |i: usize| {
-                let report = reports.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "report"))?;
-                let fields = fields.as_ref().map_or(Ok(std::ptr::null_mut()), |array| array.at(i, "fields"))?;
+                let report = reports.as_ref().map_or(Ok(null_mut()), |array| array.at(i, "report"))?;
+                let fields = fields.as_ref().map_or(Ok(null_mut()), |array| array.at(i, "fields"))?;
                 Outputs::of(fields, report)
             };
             let outputs = collected((0..count).map(outputs_of), "the outputs of a batch")?;
@@ -143,24 +145,52 @@ impl Batch {
     /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
     fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
-        for (i, outputs) in self.outputs.iter().enumerate() {
+        for i in 0..self.outputs.len() {
             regions.enter_problem(i);
-            if let Ok(outputs) = outputs {
-                outputs.add_to(regions, n)?;
-            }
-            // SAFETY: a scene that declares its size, by the conventions of the ABI.
-            let named = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at))) };
-            match named.and_then(|(named, at)| named.add_to(regions, at)) {
-                Ok(()) => {}
-                Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => return Err(refusal),
-                Err(_) => regions.leave_out_problem(),
+            if !self.add_problem(i, regions, n)? {
+                regions.leave_out_problem();
             }
         }
         Ok(())
     }
 
+    /// Adds what problem `i` reads and writes; false: it is refused for itself.
+    fn add_problem(&self, i: usize, regions: &mut Regions, n: usize) -> Result<bool, Refusal> {
+        if let Ok(outputs) = &self.outputs[i] {
+            outputs.add_to(regions, n)?;
+        }
+        // SAFETY: a scene that declares its size, by the conventions of the ABI.
+        let named = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at))) };
+        match named.and_then(|(named, at)| named.add_to(regions, at)) {
+            Ok(()) => Ok(true),
+            Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => Err(refusal),
+            Err(_) => Ok(false),
+        }
+    }
+
     /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.
-    unsafe fn solve(&self, i: usize, worker: &mut Solver, options: &Translated) -> Conclusion {
+    unsafe fn solve(&self, i: usize, worker: &mut Solver, (options, n): (&Translated, usize)) -> Conclusion {
+        let (fields, report) = self.outputs[i].as_ref().map_or((null_mut(), null_mut()), Outputs::at);
+        // SAFETY: as below.
+        let (scene, given_options) =
+            (unsafe { self.scenes.at(i, "scene") }.unwrap_or(null_mut()), &raw const options.given);
+        let arguments = &[
+            ("scene", scene.given()),
+            ("options", given_options.given()),
+            ("fields", fields.given()),
+            ("report", report.given()),
+        ];
+        // SAFETY: as below.
+        let mut recording = unsafe { Recording::new("contact_normal_solver_solve", given_options, arguments) };
+        if recording.is_wanted() {
+            let mut regions = Regions::default();
+            // What is wrong with it the solve says.
+            let _ = options.add_to(&mut regions, given_options).and_then(|()| self.add_problem(i, &mut regions, n));
+            if let Ok(outputs) = &self.outputs[i] {
+                outputs.add_read(&mut regions, &options.options);
+            }
+            recording.keep_with(&regions, worker, false);
+        }
         let mut solved = || -> Result<Conclusion, Refusal> {
             let outputs = self.outputs[i].as_ref().map_err(Refusal::clone)?;
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
@@ -170,7 +200,8 @@ impl Batch {
                 run(worker, (&scene, None), &options.options, progress, outputs, &mut Buffers::default())
             })
         };
-        let outcome = solved().unwrap_or_else(Conclusion::from);
+        let mut outcome = solved().unwrap_or_else(Conclusion::from);
+        outcome.message += &recording.finish(outcome.status, &outcome.message);
         if !self.statuses.is_null() {
             // SAFETY: not null: room for `count` values.
             unsafe { self.statuses.add(i).write(outcome.status) };

@@ -237,10 +237,13 @@ impl GivenEffect for contact_normal_friction {
             regions.input("friction->initial_traction", self.initial_traction[k], n)?;
             regions.input("friction->creepage_weight", self.creepage_weight[k], n)?;
         }
-        let at = self.influence.into_iter().chain(self.influence_cross);
-        for ((at, table), name) in at.zip(self.tables()?.iter().flatten()).zip(TABLES) {
-            if let Some(table) = table {
-                regions.input_struct(at, table)?;
+        let (at, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
+        let first = tables.and_then(|tables| tables[0]);
+        for ((at, table), name) in at.zip(tables.iter().flatten()).zip(TABLES) {
+            let Some(table) = table else { continue };
+            regions.input_struct(at, table)?;
+            // One of another size than the first is refused, and not read.
+            if first.is_some_and(|first| (first.cx, first.cy) == (table.cx, table.cy)) {
                 regions.input(name, table.coefficients, table.size(name)?.2)?;
             }
         }

@@ -38,8 +38,20 @@ pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> c
 }
 
 fn explain(panic: &(dyn Any + Send)) {
+    set_last_error(&text_of(panic));
+}
+
+fn text_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
-    set_last_error(&format!("internal error: {}; please report it", text.unwrap_or_default()));
+    format!("internal error: {}; please report it", text.unwrap_or_default())
+}
+
+/// A panic that was caught before the guard.
+pub(super) fn refusal_of_panic(panic: Box<dyn Any + Send>) -> Refusal {
+    let refusal = Refusal::new(CONTACT_NORMAL_INTERNAL, text_of(&*panic));
+    // As in the guard.
+    std::mem::forget(panic);
+    refusal
 }
 
 /// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the

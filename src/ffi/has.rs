@@ -5,11 +5,13 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 22] = [
+const NAMES: [&str; 27] = [
     "accuracy",
     "batch",
     "coating",
+    "constant",
     "cycle",
+    "dump",
     "friction",
     "influence",
     "initial_traction",
@@ -20,19 +22,22 @@ const NAMES: [&str; 22] = [
     "period",
     "pressure_limit",
     "price_list",
+    "product",
     "release",
     "row_tables",
     "sensitivities",
+    "set_option",
     "solve_tangential",
     "stick_slip",
+    "stiffness",
     "stop",
     "stress",
     "warnings",
 ];
 
 /// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
-/// calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep",
-/// "release"). Names of later versions are unknown here: 0. Since 0.2.
+/// calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+/// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {
     if name.is_null() {

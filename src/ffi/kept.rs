@@ -15,8 +15,9 @@ pub extern "C" fn contact_normal_release() -> contact_normal_status {
     })
 }
 
-/// How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 512 MiB. What is more is given back at
-/// once. For processes that share a node: `contact_normal_keep(0)`, or as much as each may have. Since 0.2.
+/// How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 64 MiB, which is
+/// enough for solves on 768 x 768 elements: larger ones that each set up anew are 5 to 30 % faster with more, up to 512 MiB for 2048 x 2048.
+/// Solver handles hold their own. What is more is given back at once. Since 0.2.
 #[no_mangle]
 pub extern "C" fn contact_normal_keep(bytes: i64) -> contact_normal_status {
     guard(|| {

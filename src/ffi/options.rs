@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use libc::c_void;
+use libc::{c_char, c_void};
 
 use super::arguments::{count, not_negative, reserved, Regions};
 use super::progress::contact_normal_progress;
@@ -102,6 +102,9 @@ pub struct contact_normal_options {
     pub max_seconds: f64,
     /// An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
     pub stop: *const i32,
+    /// The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes what it was given, for
+    /// `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
+    pub dump: *const c_char,
 }
 
 /// The cycle of the paper's methods.
@@ -130,10 +133,40 @@ versioned! {
 }
 
 versioned! {
-    contact_normal_options, contact_normal_options_init, 96,
+    contact_normal_options, contact_normal_options_init, 104,
     tolerance: Options::default().tolerance,
     max_cycles: Options::default().max_cycles as i32,
     threads: Options::default().threads as i32,
+}
+
+impl contact_normal_options {
+    /// Of options that a handle was set up with, what it goes on using; the cycle is not there.
+    pub(super) fn of_set_up(options: &Options) -> contact_normal_options {
+        let precision = match options.precision {
+            Precision::Auto => CONTACT_NORMAL_PRECISION_AUTO,
+            Precision::Double => CONTACT_NORMAL_PRECISION_DOUBLE,
+            Precision::Mixed => CONTACT_NORMAL_PRECISION_MIXED,
+        };
+        contact_normal_options { precision, threads: options.threads as i32, ..Default::default() }
+    }
+}
+
+impl From<&CycleShape> for contact_normal_cycle {
+    fn from(shape: &CycleShape) -> contact_normal_cycle {
+        contact_normal_cycle {
+            smoother: match shape.smoother {
+                SmootherKind::GaussSeidel => CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL,
+                SmootherKind::RedBlack => CONTACT_NORMAL_SMOOTHER_RED_BLACK,
+                SmootherKind::Jacobi => CONTACT_NORMAL_SMOOTHER_JACOBI,
+                SmootherKind::Fft => CONTACT_NORMAL_SMOOTHER_FFT,
+            },
+            pre_sweeps: shape.pre_sweeps as i32,
+            post_sweeps: shape.post_sweeps as i32,
+            coarsest: shape.coarsest as i32,
+            relaxation: shape.relaxation,
+            ..Default::default()
+        }
+    }
 }
 
 /// Options, and as the caller gave them: with the callback and its user pointer.
@@ -152,6 +185,7 @@ impl Translated {
     /// Adds the struct, which stands at `at`, NULL or not, and its cycle.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_options) -> Result<(), Refusal> {
         regions.input_struct(at, &self.given)?;
+        regions.input("options->stop", self.given.stop, 1)?;
         self.cycle.iter().try_for_each(|cycle| regions.input_struct(self.given.cycle, cycle))
     }
 }

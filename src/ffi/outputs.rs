@@ -56,6 +56,22 @@ impl Outputs {
         Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows })
     }
 
+    /// The caller's structs.
+    pub fn at(&self) -> (*mut contact_normal_fields, *mut contact_normal_report) {
+        (self.fields_at.cast_mut(), self.report)
+    }
+
+    /// Says which of the outputs are read, too.
+    pub fn add_read(&self, regions: &mut Regions, options: &Options) {
+        let given = options.initial_guess == InitialGuess::Given;
+        if given {
+            regions.read_too(self.fields.pressure.cast_const());
+        }
+        if given || options.active_set == ActiveSet::Fixed {
+            regions.read_too(self.fields.contact.cast_const());
+        }
+    }
+
     /// Whether the arrays that are read are there and hold what they must.
     pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
         let fixed = options.active_set == ActiveSet::Fixed;

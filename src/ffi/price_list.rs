@@ -1,13 +1,18 @@
 //! `contact_normal_cost_of_accuracy`: what accuracies cost, before they are paid for.
 
+use std::cell::Cell;
+
 use super::accuracy::{self, contact_normal_accuracy};
 use super::arguments::{count, required, Regions};
+use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::scene::{contact_normal_scene, Named};
 use super::solve::Conclusion;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned, Rows, Versioned};
+use super::watcher::{watched, why, Watcher};
+use crate::grid::Grid;
 use crate::solver::{cost_of_accuracy, Obstacle, Price, Quantity, SurfaceCallback};
 
 /// `quantity`: the force, or the approach where the force is prescribed.
@@ -98,8 +103,8 @@ impl From<&Price> for contact_normal_price {
 /// grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
 /// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
 /// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
-/// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
-/// what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
+/// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
+/// `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,
@@ -110,7 +115,8 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     targets: *const f64,
     rows: *mut contact_normal_price,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, options, accuracy, quantity, n, targets, rows];
+    let predict = |recording: &mut Recording<'_>| {
         let n = count("n", n)?;
         // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
         let (given, translated, named, targets) = unsafe {
@@ -124,39 +130,63 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         // SAFETY: NULL or rows of which the first declares its size.
         let written = unsafe { Rows::of(rows, "rows")? };
         let mut regions = Regions::default();
-        named.add_to(&mut regions, scene)?;
+        match given {
+            Some(contact_normal_accuracy { surface: Some(_), .. }) => {
+                named.add_without_distance(&mut regions, scene)?
+            }
+            _ => named.add_to(&mut regions, scene)?,
+        }
         translated.add_to(&mut regions, options)?;
         if let Some(given) = &given {
             regions.input_struct(accuracy, given)?;
         }
         regions.input("targets", targets.as_ptr(), n)?;
         regions.output_rows("rows", rows, &written, n)?;
+        recording.keep(&regions);
         regions.check()?;
         let given = given.unwrap_or_else(contact_normal_accuracy::defaults);
         // SAFETY: as above.
         let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
         // SAFETY: as above.
         let scene = unsafe { named.with_distance(&h)? };
-        let quantity = match quantity {
-            CONTACT_NORMAL_QUANTITY_FORCE => Quantity::Force,
-            CONTACT_NORMAL_QUANTITY_MAX_PRESSURE => Quantity::MaxPressure,
-            CONTACT_NORMAL_QUANTITY_CONTACT_AREA => Quantity::ContactArea,
-            other => {
-                return Err(Refusal::invalid(format!(
-                    "quantity is {other}; it must be FORCE 0, MAX_PRESSURE 1 or CONTACT_AREA 2"
-                )))
-            }
-        };
+        let quantity = quantity_of(quantity)?;
         let asked = accuracy::translate(&given)?;
-        let mut write = accuracy::surface(&given);
+        let by_surface = Cell::new(false);
+        let mut write = accuracy::surface(&given, recording).map(|mut write| {
+            let by_surface = &by_surface;
+            move |grid: &Grid, h: &mut [f64]| {
+                by_surface.set(write(grid, h));
+                by_surface.get()
+            }
+        });
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
         // A copy: callbacks may write into the caller's.
         let targets = targets.to_vec();
-        let (stop, prices) = cost_of_accuracy(&scene, &translated.options, &asked, (quantity, &targets), surface)?;
-        for (i, price) in prices.iter().enumerate() {
-            // SAFETY: the caller has n rows.
-            unsafe { written.write(i, &price.into()) };
+        let wanted = (quantity, &targets[..]);
+        let concluded = watched(Watcher::without_callback(&translated), |progress| {
+            let (stop, prices) = cost_of_accuracy(&scene, &translated.options, &asked, wanted, surface, progress)?;
+            for (i, price) in prices.iter().enumerate() {
+                // SAFETY: the caller has n rows.
+                unsafe { written.write(i, &price.into()) };
+            }
+            let who = if by_surface.get() { "the surface callback cancelled" } else { why(stop) };
+            Ok(Conclusion::of(stop, || who.into()))
+        });
+        concluded?.conclude()
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) })
+}
+
+fn quantity_of(quantity: i32) -> Result<Quantity, Refusal> {
+    Ok(match quantity {
+        CONTACT_NORMAL_QUANTITY_FORCE => Quantity::Force,
+        CONTACT_NORMAL_QUANTITY_MAX_PRESSURE => Quantity::MaxPressure,
+        CONTACT_NORMAL_QUANTITY_CONTACT_AREA => Quantity::ContactArea,
+        other => {
+            return Err(Refusal::invalid(format!(
+                "quantity is {other}; it must be FORCE 0, MAX_PRESSURE 1 or CONTACT_AREA 2"
+            )))
         }
-        Conclusion { status: stop.into(), message: "the surface callback cancelled".into(), warnings: 0 }.conclude()
     })
 }

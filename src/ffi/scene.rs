@@ -124,9 +124,14 @@ impl Named {
 
     /// Adds all that is read of the scene, which stands at `at`.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
+        regions.input("undeformed_distance", self.scene.undeformed_distance, self.grid.len())?;
+        self.add_without_distance(regions, at)
+    }
+
+    /// The same of a call that takes the undeformed distance from elsewhere.
+    pub fn add_without_distance(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         regions.input_struct(at, scene)?;
-        regions.input("undeformed_distance", scene.undeformed_distance, grid.len())?;
         add(regions, grid, scene.influence, &self.influence)?;
         add(regions, grid, scene.layer, &self.layer)?;
         add(regions, grid, scene.pressure_limit, &self.pressure_limit)?;

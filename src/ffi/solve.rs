@@ -1,6 +1,7 @@
 //! `contact_normal_solve`, and what it shares with the solver handle.
 
 use super::arguments::Regions;
+use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
@@ -11,8 +12,8 @@ use super::status::{contact_normal_status, set_last_error, set_last_text, Refusa
 use super::warnings;
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
-use crate::scene::Scene;
-use crate::solver::{ActiveSet, Method, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::scene::{Previous, Scene};
+use crate::solver::{ActiveSet, InitialGuess, Method, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -22,16 +23,20 @@ pub unsafe extern "C" fn contact_normal_solve(
     fields: *mut contact_normal_fields,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, options, fields, report];
+    let solve = |recording: &mut Recording<'_>| {
         let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(()))? };
+        let request = unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(())) };
+        recording.keep(&buffers.regions);
+        let Request { scene, options, outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
         run_watched(&mut solver, (&scene, Some(lowest)), &options, &outputs, &mut buffers)
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solve", options, arguments, solve) })
 }
 
 /// The arguments of a solve. The core checks the scene.
@@ -75,15 +80,17 @@ impl Request<'_> {
         buffers: &mut Buffers,
         also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
     ) -> Result<Request<'a>, Refusal> {
+        let regions = &mut buffers.regions;
+        regions.clear();
         // SAFETY (all): by the caller.
         unsafe {
-            let (named, translated) = (Named::read(scene)?, options::translate(options)?);
-            let outputs = Outputs::of(fields, report)?;
-            let regions = &mut buffers.regions;
-            regions.clear();
+            let named = Named::read(scene)?;
             named.add_to(regions, scene)?;
+            let translated = options::translate(options)?;
             translated.add_to(regions, options)?;
+            let outputs = Outputs::of(fields, report)?;
             outputs.add_to(regions, named.len())?;
+            outputs.add_read(regions, &translated.options);
             also(regions, named.len())?;
             regions.check()?;
             let scene = match needs {
@@ -93,6 +100,14 @@ impl Request<'_> {
             };
             Ok(Request { scene, options: translated, outputs })
         }
+    }
+}
+
+impl Request<'_> {
+    /// Whether it begins where the handle ended last.
+    pub fn goes_on(&self) -> bool {
+        let continues = self.scene.friction.is_some_and(|friction| friction.previous == Previous::Kept);
+        continues || self.options.options.initial_guess == InitialGuess::Previous
     }
 }
 

@@ -5,6 +5,7 @@ use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arguments::Regions;
+use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
 use super::friction::contact_normal_friction;
 use super::guard::guard;
@@ -81,21 +82,27 @@ pub unsafe extern "C" fn contact_normal_solver_new(
     options: *const contact_normal_options,
     solver: *mut *mut contact_normal_solver,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, options];
+    let set_up = |recording: &mut Recording<'_>| {
         if solver.is_null() {
             return Err(Refusal::null("solver"));
         }
+        let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let Request { scene, options, .. } = unsafe {
+        let request = unsafe {
             let also = |regions: &mut Regions, _| regions.output("solver", solver, 1);
             let (arguments, no_outputs) = ((scene, options), (null_mut(), null_mut()));
-            Request::read_for(Needs::Bodies, arguments, no_outputs, &mut Buffers::default(), also)?
+            Request::read_for(Needs::Bodies, arguments, no_outputs, &mut buffers, also)
         };
+        recording.keep(&buffers.regions);
+        let Request { scene, options, .. } = request?;
         let new = Solver::new(&scene, &options.options)?;
         // SAFETY: not null: room for a pointer.
         unsafe { solver.write(contact_normal_solver::holding(new)) };
         Ok(CONTACT_NORMAL_OK)
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) })
 }
 
 /// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies, layer, period and patches must be those
@@ -111,15 +118,19 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
     fields: *mut contact_normal_fields,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, options, fields, report];
+    let solve = |recording: &mut Recording<'_>| {
         // SAFETY: NULL or a handle of ours.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
-        let Request { scene, options, outputs } =
-            unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(()))? };
+        let request = unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(())) };
+        recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
+        let Request { scene, options, outputs } = request?;
         run_watched(solver, (&scene, None), &options, &outputs, buffers)
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) })
 }
 
 /// From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:

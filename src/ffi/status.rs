@@ -122,6 +122,11 @@ fn keep_message(message: Cow<'static, CStr>) {
     let _ = LAST_ERROR.try_with(|last| last.replace(message));
 }
 
+/// The message of the last call on this thread.
+pub(super) fn last_error_text() -> String {
+    LAST_ERROR.try_with(|last| last.borrow().to_string_lossy().into_owned()).unwrap_or_default()
+}
+
 fn text_of(status: contact_normal_status) -> &'static CStr {
     match status {
         CONTACT_NORMAL_OK => c"solved",

@@ -1,6 +1,7 @@
 //! Stresses below the surface: `contact_normal_subsurface_stress`, `contact_normal_stress_at_points`.
 
 use super::arguments::{not_negative, optional, required, Regions};
+use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
@@ -10,7 +11,6 @@ use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress
 use super::structs;
 use super::watcher::{watched, why, Watcher};
 use crate::effects;
-use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::{Outcome, ProgressCallback};
 use crate::scene::Period;
@@ -35,23 +35,27 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
     options: *const contact_normal_options,
     outputs: *mut contact_normal_stress_outputs,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, body, pressure, traction_x, traction_y, depths, n, options, outputs];
+    let compute = |recording: &mut Recording<'_>| {
         // SAFETY (all): NULL or as the conventions of the ABI say.
         unsafe {
             let load = Load { scene, body, options, arrays: [pressure, traction_x, traction_y] };
-            let (body, loads, options) = load.read()?;
             let n = not_negative("n", n)?;
             let written = structs::read(outputs.cast_const(), "outputs")?;
             let mut regions = Regions::default();
-            load.add_to(&mut regions, &body.grid)?;
+            let elements = load.add_to(&mut regions)?;
             regions.input("depths", depths, n)?;
-            written.add_to(&mut regions, outputs, (n, body.grid.len()))?;
+            written.add_to(&mut regions, outputs, (n, elements))?;
+            recording.keep(&regions);
             regions.check()?;
+            let (body, loads, options) = load.read()?;
             let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
             watched(Watcher::of(&options), |progress| run(&body, &loads, depths, (&options, &written), progress))?
                 .conclude()
         }
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) })
 }
 
 /// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
@@ -71,12 +75,19 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
     options: *const contact_normal_options,
     stress: *mut f64,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, body, pressure, traction_x, traction_y, points, n, options, stress];
+    let compute = |recording: &mut Recording<'_>| {
         // SAFETY (all): NULL or as the conventions of the ABI say.
         unsafe {
             let load = Load { scene, body, options, arrays: [pressure, traction_x, traction_y] };
-            let (body, loads, options) = load.read()?;
             let n = not_negative("n", n)?;
+            let mut regions = Regions::default();
+            load.add_to(&mut regions)?;
+            regions.input("points", points.cast::<[f64; 3]>(), n)?;
+            regions.output("stress", stress.cast::<[f64; 6]>(), n)?;
+            recording.keep(&regions);
+            regions.check()?;
+            let (body, loads, options) = load.read()?;
             if n == 0 {
                 return Ok(CONTACT_NORMAL_OK);
             }
@@ -84,17 +95,14 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
             if stress.is_null() {
                 return Err(Refusal::null("stress"));
             }
-            let mut regions = Regions::default();
-            load.add_to(&mut regions, &body.grid)?;
-            regions.input("points", points.as_ptr(), n)?;
-            regions.output("stress", stress.cast::<[f64; 6]>(), n)?;
-            regions.check()?;
             let mut found = zeros(n, "the stresses of points")?;
             stress::stress_at_points(&body, &loads, points, &Threads::new(options.options.threads)?, &mut found)?;
             std::ptr::copy_nonoverlapping(found.as_ptr(), stress.cast::<[f64; 6]>(), n);
             Ok(CONTACT_NORMAL_OK)
         }
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) })
 }
 
 /// What both exports are given first.
@@ -147,17 +155,16 @@ impl Load {
         }
     }
 
-    /// Adds what is read.
-    unsafe fn add_to(&self, regions: &mut Regions, grid: &Grid) -> Result<(), Refusal> {
-        // SAFETY (all): by the caller; both were read before.
-        unsafe {
-            Named::read(self.scene)?.add_to(regions, self.scene)?;
-            options::translate(self.options)?.add_to(regions, self.options)?;
-        }
+    /// Adds what is read. Returns the number of elements.
+    unsafe fn add_to(&self, regions: &mut Regions) -> Result<usize, Refusal> {
+        // SAFETY (all): by the caller.
+        let (named, options) = unsafe { (Named::read(self.scene)?, options::translate(self.options)?) };
+        named.add_without_distance(regions, self.scene)?;
+        options.add_to(regions, self.options)?;
         for (name, array) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.arrays) {
-            regions.input(name, array, grid.len())?;
+            regions.input(name, array, named.len())?;
         }
-        Ok(())
+        Ok(named.len())
     }
 }
 

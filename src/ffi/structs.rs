@@ -58,7 +58,7 @@ macro_rules! versioned {
 pub(super) use versioned;
 
 /// No struct of ours will ever be larger: a bound for what is read of longer ones.
-const LARGEST: usize = 4096;
+pub(super) const LARGEST: usize = 4096;
 
 /// The declared size of a struct, after a check.
 pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> Result<usize, Refusal> {

@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, optional, required, Regions};
 use super::batch::NotOk;
+use super::dump::{given, recorded, Recording};
 use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
 use super::options::{contact_normal_options, Translated};
@@ -12,7 +13,7 @@ use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
 use super::solve::{explain, Conclusion, Needs, Request};
-use super::solver::{contact_normal_solver, InUse};
+use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs;
 use super::watcher::{watched, Watcher};
@@ -59,7 +60,8 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
     results: *mut contact_normal_friction_results,
     report: *mut contact_normal_report,
 ) -> contact_normal_status {
-    guard(|| {
+    let arguments = given![scene, pressure, options, n, entries, results, report];
+    let solve = |recording: &mut Recording<'_>| {
         let n = not_negative("n", n)?;
         // SAFETY: NULL or a handle of ours.
         let mut in_use = if solver.is_null() { None } else { Some(unsafe { InUse::begin(solver)? }) };
@@ -69,19 +71,25 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
         let results_given = unsafe { structs::read_optional(results.cast_const(), "results")? };
         let wanted = results_given.unwrap_or_default();
+        let mut own = Buffers::default();
         // SAFETY: likewise.
-        let Request { scene: read, options, outputs } = unsafe {
+        let request = unsafe {
             let also = |regions: &mut Regions, elements: usize| {
                 regions.input("pressure", pressure, elements)?;
                 regions.input("entries", entries.cast::<[f64; 3]>(), n)?;
                 results_given.map_or(Ok(()), |given| given.add_to(regions, results, (n, elements)))
             };
             let needs = if pressure.is_null() { Needs::All } else { Needs::NoLoad };
-            let arguments = ((scene, options), (null_mut(), report));
-            let mut own = Buffers::default();
             let buffers = in_use.as_mut().map_or(&mut own, |in_use| &mut in_use.held().buffers);
-            Request::read_for(needs, arguments.0, arguments.1, buffers, also)?
+            Request::read_for(needs, (scene, options), (null_mut(), report), buffers, also)
         };
+        match in_use.as_mut().map(InUse::held) {
+            Some(Held { solver, buffers }) => {
+                recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
+            }
+            None => recording.keep(&own.regions),
+        }
+        let Request { scene: read, options, outputs } = request?;
         // SAFETY (both): NULL or arrays of this size, by the conventions of the ABI.
         let (pressure, given) = unsafe {
             let given = match (n, entries.is_null()) {
@@ -101,7 +109,9 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
                 call.table(solver, pressure, &collected(given.iter().map(entry), "the entries of a table")?)
             }
         }
-    })
+    };
+    // SAFETY: as above.
+    guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
 }
 
 /// What all entries share.

@@ -63,8 +63,6 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
 /// that direction does not count.
 fn is_at_border(scene: &Scene<'_>, state: &State) -> bool {
     let Period { x, y } = scene.period.unwrap_or(Period { x: false, y: false });
-    let (mx, my) = (scene.grid.mx, scene.grid.my);
-    let in_row = |iy: usize| (0..mx).any(|ix| state.contact[iy * mx + ix]);
-    let in_column = |ix: usize| (0..my).any(|iy| state.contact[iy * mx + ix]);
-    (!y && my > 1 && (in_row(0) || in_row(my - 1))) || (!x && mx > 1 && (in_column(0) || in_column(mx - 1)))
+    let [columns, rows, _] = state.edge_counts();
+    (!y && scene.grid.my > 1 && rows > 0) || (!x && scene.grid.mx > 1 && columns > 0)
 }

@@ -102,7 +102,7 @@ impl Solver {
     }
 
     /// A solver like this one, of one thread. It accepts the same options.
-    fn worker(&self) -> Result<Solver> {
+    pub(super) fn worker(&self) -> Result<Solver> {
         let (coefficients, set_up) = (self.problem.coefficients.clone(), self.set_up.clone());
         let worker = Solver::of(self.problem.grid, coefficients, set_up, &Threads::One)?;
         Ok(Solver { own_tables: self.own_tables.clone(), ..worker })

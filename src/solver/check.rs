@@ -7,6 +7,14 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Load, Scene};
 
 impl SetUp {
+    /// Refuses to work where the last table could not be set.
+    pub fn check_table(&self) -> Result<()> {
+        if self.lacks_table {
+            return invalid("influence could not be set the last time: set it again".into());
+        }
+        Ok(())
+    }
+
     /// Refuses a scene, whose distance and load are checked, and options that are not those of the set-up, or not solved together.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
@@ -40,9 +48,7 @@ impl SetUp {
         if !problem.given {
             effects::check_bodies(scene)?;
         }
-        if self.lacks_table {
-            return invalid("influence could not be set the last time: set it again".into());
-        }
+        self.check_table()?;
         self.named.check(scene)
     }
 

@@ -14,6 +14,7 @@ mod estimates;
 mod friction_batch;
 mod iterate;
 mod kept;
+mod linear;
 mod methods;
 mod nested;
 mod normal;
@@ -37,6 +38,7 @@ pub use crate::progress::{
 };
 pub use batch::Problem;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
+pub use linear::Stiffness;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
 pub use refinement::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Quantity, Refinement, SurfaceCallback,
@@ -332,6 +334,27 @@ impl Solver {
     /// Threads that it was set up with; 0: all cores.
     pub fn threads(&self) -> usize {
         self.set_up.options.threads
+    }
+
+    /// The options that it was set up with.
+    pub(crate) fn set_up_options(&self) -> &Options {
+        &self.set_up.options
+    }
+
+    /// The caller's own coefficients, if there are any, as a scene of this grid names them: with the name of the effect.
+    pub(crate) fn own_tables(&self) -> Option<(&'static str, Vec<f64>)> {
+        let kernel = self.influence().kernel();
+        let (mx, my) = (self.grid().mx as i64, self.grid().my as i64);
+        let of_row = move |jy: i64, iy: i64| {
+            // Column -mx is never read.
+            (-mx..mx).map(move |kx| if kx == -mx { 0.0 } else { kernel.between((0, jy), (kx, iy)) })
+        };
+        if self.set_up.has_own_influence {
+            return Some(("influence", (-my..my).flat_map(|ky| of_row(0, ky)).collect()));
+        }
+        let has_row_tables = self.set_up.given;
+        has_row_tables
+            .then(|| ("row_tables", (0..my).flat_map(|jy| (0..my).flat_map(move |iy| of_row(jy, iy))).collect()))
     }
 
     /// Bytes of operators, workspace and results.

@@ -41,6 +41,11 @@ impl Solver {
         Ok(())
     }
 
+    /// The tangential coefficients of the caller's own, if it has some.
+    pub(crate) fn own_tangential_tables(&self) -> Option<&KeptInfluence> {
+        self.own_tables.as_deref()
+    }
+
     /// Refuses tangential coefficients that this solver cannot use.
     pub fn check_tangential_influence(&self, friction: &Friction<'_>) -> Result<()> {
         if friction.influence.is_none() {

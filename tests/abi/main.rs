@@ -3,9 +3,14 @@
 mod bad_handles;
 mod bad_input;
 mod boundary;
+mod by_name;
 mod call;
 mod callbacks;
 mod coating;
+mod dump;
+mod dump_calls;
+mod dump_handles;
+mod dump_scene;
 mod friction_batch;
 mod odd_input;
 mod rows;

@@ -92,3 +92,19 @@ fn one_element_that_carries_more_than_half() {
     }
     assert_eq!(seen, [true; 2]);
 }
+
+/// Elements at their limit are in contact, too.
+#[test]
+fn elements_at_their_limit_reach_the_border() {
+    // A ridge along the first column, which is at its limit.
+    let h: Vec<f64> = (0..M * M).map(|i| 0.02 * (i % M) as f64).collect();
+    let limit = contact_normal_pressure_limit { limit: 10.0, ..Default::default() };
+    let (report, message) = solved(&h, 0.0, |scene, _| {
+        scene.pressure_limit = &limit;
+        scene.load = CONTACT_NORMAL_PRESCRIBED_APPROACH;
+        scene.approach = 0.001;
+    });
+    assert!(report.normal.edge_count > 0);
+    assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_BORDER, 0, "{message}");
+    assert_eq!(report.normal.contact_count, M as i64);
+}

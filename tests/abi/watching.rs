@@ -136,3 +136,28 @@ fn what_is_kept_is_released() {
     // SAFETY: not wanted.
     assert_eq!(unsafe { contact_normal_kept(null_mut(), null_mut()) }, CONTACT_NORMAL_OK);
 }
+
+/// The price list solves on small grids: these are calls, too.
+#[test]
+fn a_price_list_ends_at_its_limit_of_time_and_by_the_integer() {
+    let (mut call, stop) = (Call::new(), 1);
+    let prices = |call: &Call| {
+        let (targets, mut row) = ([1e-2], contact_normal_price::default());
+        let (scene, options) = (&raw const call.scene.known, &raw const call.options.known);
+        // SAFETY: structs with the arrays that they declare.
+        let status = unsafe {
+            let at = targets.as_ptr();
+            contact_normal_cost_of_accuracy(scene, options, std::ptr::null(), 0, 1, at, &mut row)
+        };
+        (status, last_error(), row.target)
+    };
+    assert_eq!(prices(&call).0, CONTACT_NORMAL_OK);
+    call.options.known.max_seconds = 1e-9;
+    let (status, message, target) = prices(&call);
+    assert_eq!((status, &*message, target), (CONTACT_NORMAL_ITERATION_LIMIT, "max_seconds was reached", 1e-2));
+    call.options.known.max_seconds = 1e9;
+    assert_eq!(prices(&call).0, CONTACT_NORMAL_OK);
+    call.options.known.stop = &raw const stop;
+    let (status, message, _) = prices(&call);
+    assert_eq!((status, &*message), (CONTACT_NORMAL_CANCELLED, "options->stop asked for it"));
+}

@@ -108,8 +108,10 @@ program fortran_module
   call hold(contact_normal_solver_fields(solver, none_wanted) == CONTACT_NORMAL_OK, "no fields wanted")
   call hold(contact_normal_solver_query(solver, info) == CONTACT_NORMAL_OK, "what the solver is")
   call hold(info%mx == accuracy%mx .and. info%has_result == 1 .and. info%bytes > 0, "its grid and its result")
+  call products(solver, int(accuracy%mx), int(accuracy%my))
   call contact_normal_solver_free(solver, status)
   call hold(status == CONTACT_NORMAL_OK, "it is freed")
+  call by_name()
   call hold(contact_normal_release() == CONTACT_NORMAL_OK, "a release")
   call hold(contact_normal_kept(bytes=kept) == CONTACT_NORMAL_OK, "how much is kept")
   call hold(kept == 0, "nothing is kept")
@@ -257,6 +259,52 @@ contains
       "a force that friction does not carry")
     call hold(index(contact_normal_last_error_message(), "entry 1: ") == 1, "the entry is named")
     call hold(all(status == [CONTACT_NORMAL_OK, CONTACT_NORMAL_INFEASIBLE, CONTACT_NORMAL_OK]), "the others are solved")
+  end subroutine
+
+  ! A p of the solver's pressures are its displacements, and a larger approach asks for a larger force.
+  subroutine products(solver, mx, my)
+    type(contact_normal_solver), intent(in) :: solver
+    integer, intent(in) :: mx, my
+    type(contact_normal_fields) :: found
+    real(c_double), target, allocatable :: pressure(:, :), displacement(:, :)
+    real(c_double), allocatable :: product(:, :)
+    real(c_double) :: stiffness, residual
+    allocate (pressure(mx, my), displacement(mx, my), product(mx, my))
+    call contact_normal_fields_init(found)
+    call contact_normal_set_fields(found, pressure=pressure, displacement=displacement)
+    call hold(contact_normal_solver_fields(solver, found) == CONTACT_NORMAL_OK, "its pressures")
+    call hold(contact_normal_solver_product(solver, pressure, product) == CONTACT_NORMAL_OK, "a product")
+    call hold(all(abs(product - displacement) <= 1e-12_c_double*maxval(displacement)), "is that of the result")
+    call hold(contact_normal_solver_stiffness(solver, stiffness) == CONTACT_NORMAL_OK, "a stiffness")
+    call hold(contact_normal_solver_stiffness(solver, stiffness, residual) == CONTACT_NORMAL_OK, "with its residual")
+    call hold(stiffness > 0 .and. residual >= 0 .and. residual <= 1e-6_c_double, "both of them")
+  end subroutine
+
+  ! Options and constants as an input file has them, and a dump.
+  subroutine by_name()
+    type(contact_normal_options) :: named
+    type(contact_normal_cycle) :: cycle_named
+    integer(c_int32_t) :: value
+    logical :: is_there
+    call contact_normal_options_init(named)
+    call contact_normal_cycle_init(cycle_named)
+    call hold(contact_normal_set_option(named, "tolerance ", "1d-9") == CONTACT_NORMAL_OK, "an option")
+    call hold(contact_normal_set_option(named, "method", "norm") == CONTACT_NORMAL_OK, "one with a name")
+    call hold(abs(named%tolerance - 1e-9_c_double) < 1e-20_c_double .and. named%method == CONTACT_NORMAL_METHOD_NORM, "set")
+    call hold(contact_normal_set_option(named, "methud", "norm") == CONTACT_NORMAL_INVALID_ARGUMENT, "none of this name")
+    call hold(index(contact_normal_last_error_message(), "is it method?") > 0, "the one that is meant")
+    call hold(contact_normal_set_cycle_option(cycle_named, "smoother", "FFT") == CONTACT_NORMAL_OK, "of a cycle")
+    call hold(cycle_named%smoother == CONTACT_NORMAL_SMOOTHER_FFT, "is set")
+    call hold(contact_normal_constant("METHOD_NORM", value) == CONTACT_NORMAL_OK .and. value == 1, "a constant")
+    named%max_cycles = 1
+    named%tolerance = 1e-14_c_double
+    call contact_normal_set_dump(named, "fortran_module.dump")
+    call hold(contact_normal_solve(scene, named, fields) > 0, "a solve that stops early")
+    inquire (file="fortran_module.dump", exist=is_there)
+    call hold(is_there, "its dump")
+    call contact_normal_set_dump(named, " ")
+    call hold(contact_normal_solve(scene, named, fields) > 0, "without a dump")
+    call hold(index(contact_normal_last_error_message(), "is in") == 0, "there is none")
   end subroutine
 
   subroutine hold(condition, what)

@@ -1,5 +1,5 @@
 //! What is made from the description of the ABI: the functions `_init` of the header, the constants, types and `_init` of the Fortran
-//! module, the structs of the Python package, and the layout of the structs for the tests. Each file is compared with what is made;
+//! module, the structs of the Python package, what the library finds by name, and the layout of the structs for the tests. Each file is compared with what is made;
 //! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes them anew, after the header.
 
 use std::fmt::Write;
@@ -181,6 +181,69 @@ pub fn layout() -> Vec<(&'static str, usize)> {
     text + "    ]\n}\n"
 }
 
+/// The members of a struct with their numbers and those of structs in them: "normal.force", "coating[0]".
+fn leaves(described: &Description, each: &Struct) -> Vec<(String, String, Kind)> {
+    let mut found = Vec::new();
+    for member in &each.members {
+        if let Kind::Struct(name) = &member.kind {
+            let inner = described.structs.iter().find(|inner| inner.name == *name).expect("a struct of the header");
+            for (leaf, offset, kind) in leaves(described, inner) {
+                let before = format!("offset_of!({}, {})", each.name, member.name);
+                found.push((format!("{}.{leaf}", member.name), format!("{before} + {offset}"), kind));
+            }
+            continue;
+        }
+        for k in 0..member.count.unwrap_or(1) {
+            let number = member.count.map_or_else(String::new, |_| format!("[{k}]"));
+            let size = if member.kind == Kind::Int32 { 4 } else { 8 };
+            let beyond = if k == 0 { String::new() } else { format!(" + {}", k * size) };
+            let offset = format!("offset_of!({}, {}){beyond}", each.name, member.name);
+            found.push((format!("{}{number}", member.name), offset, member.kind.clone()));
+        }
+    }
+    found
+}
+
+fn rust_members(described: &Description) -> String {
+    let mut text = "\
+//! The constants, the structs and their members by name. Made from include/contact_normal.h; do not edit.
+
+use std::mem::offset_of;
+
+use super::by_name::{Kind::*, Member, Struct};
+use super::*;
+
+/// Without CONTACT_NORMAL_.
+#[rustfmt::skip]
+pub(super) const CONSTANTS: &[(&str, i32)] = &[
+"
+    .to_owned();
+    for constant in &described.constants {
+        writeln!(text, "    (\"{0}\", CONTACT_NORMAL_{0}),", constant.name).expect("text");
+    }
+    text += "];\n\n#[rustfmt::skip]\npub(super) const STRUCTS: &[Struct] = &[\n";
+    for each in &described.structs {
+        let name = &each.name;
+        writeln!(text, "    Struct {{ name: \"{name}\", members: &[").expect("text");
+        for (leaf, at, kind) in leaves(described, each) {
+            let kind = match kind {
+                Kind::Int32 => "Int32".into(),
+                Kind::Int64 => "Int64".into(),
+                Kind::Double => "Double".into(),
+                Kind::Callback(_) | Kind::Pointer(None) => "OfTheHost".into(),
+                Kind::Pointer(Some(to)) => match *to {
+                    Kind::Struct(name) => format!("Structs(\"{name}\")"),
+                    _ => "Array".into(),
+                },
+                Kind::Struct(_) => unreachable!("its members are told"),
+            };
+            writeln!(text, "        Member {{ name: \"{leaf}\", at: {at}, kind: {kind} }},").expect("text");
+        }
+        text += "    ] },\n";
+    }
+    text + "];\n"
+}
+
 /// The header of this clone.
 pub fn header() -> String {
     std::fs::read_to_string(root().join("include/contact_normal.h")).expect("include/contact_normal.h")
@@ -193,6 +256,7 @@ fn the_committed_files_are_the_generated_ones() {
         ("include/contact_normal_types.inc", fortran_types(&described) + &fortran_public(&described)),
         ("include/contact_normal_inits.inc", fortran_inits(&described)),
         ("python/contact_normal/_structs.py", python_structs(&described)),
+        ("src/ffi/members.rs", rust_members(&described)),
         ("tests/clients/rust_layout.rs", rust_layout(&described)),
     ] {
         let path = root().join(file);

@@ -28,6 +28,7 @@ fn the_committed_header_is_the_generated_one() {
         "report",
         "solve",
         "solver",
+        "linear",
         "tangential",
         "friction_results",
         "batch",
@@ -39,6 +40,7 @@ fn the_committed_header_is_the_generated_one() {
         "log",
         "kept",
         "has",
+        "set_by_name",
     ] {
         builder = builder.with_src(root.join(format!("src/ffi/{file}.rs")));
     }

@@ -45,6 +45,7 @@ fn the_installed_package_is_what_pkg_config_says() {
         let built = format!("LIBDIR_BUILT={}", built.display());
         // Without the job server of a make that may run these tests.
         let mut make = Command::new("make");
+        make.arg(concat!("REPLAY_BUILT=", env!("CARGO_BIN_EXE_contact-normal-replay")));
         make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg(target).arg(built).args(variables);
         run(&mut make)
     };
@@ -75,6 +76,10 @@ fn the_installed_package_is_what_pkg_config_says() {
         let [ours, installed] = [root(), &prefix].map(|from| std::fs::read(from.join(file)).expect("a file"));
         assert!(ours == installed, "{file}");
     }
+
+    // It runs from there; without a file it says how it is used.
+    let replay = Command::new(prefix.join("bin/contact-normal-replay")).output().expect("the program");
+    assert!(String::from_utf8_lossy(&replay.stderr).starts_with("usage: contact-normal-replay FILE"));
 
     let source = folder.join("program.c");
     std::fs::write(&source, PROGRAM).expect("a source file");

@@ -121,6 +121,7 @@ pub fn layout() -> Vec<(&'static str, usize)> {
         ("contact_normal_options.cycle", offset_of!(contact_normal_options, cycle)),
         ("contact_normal_options.max_seconds", offset_of!(contact_normal_options, max_seconds)),
         ("contact_normal_options.stop", offset_of!(contact_normal_options, stop)),
+        ("contact_normal_options.dump", offset_of!(contact_normal_options, dump)),
         ("contact_normal_fields", size_of::<contact_normal_fields>()),
         ("contact_normal_fields.struct_size", offset_of!(contact_normal_fields, struct_size)),
         ("contact_normal_fields.pressure", offset_of!(contact_normal_fields, pressure)),

@@ -198,7 +198,8 @@ fn a_wanted_accuracy_its_price_list_and_stresses() {
             calls == at
         };
         let wanted = (Quantity::Force, &[1e-2, 1e-3][..]);
-        let (stop, _) = cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, Some(&mut cancels)).unwrap();
+        let (stop, _) =
+            cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, Some(&mut cancels), None).unwrap();
         assert!(stop == Outcome::Cancelled && calls == at || calls < at, "{stop:?} {calls} {at}");
     }
     let body = Body { grid, poisson_ratio: 0.3, periodic: false };

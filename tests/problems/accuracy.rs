@@ -152,7 +152,9 @@ fn what_is_not_to_be_had_is_said() {
             false
         };
         let wanted = (quantity, targets);
-        cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, Some(&mut write)).expect("a price list").1
+        cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, Some(&mut write), None)
+            .expect("a price list")
+            .1
     };
     let none = Accuracy::new(1.0);
     let cone = list(&surface("cone"), none, Quantity::MaxPressure, &[1e-2]);
@@ -182,7 +184,7 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
     let h = surface.distance(&grid);
     let scene = Scene::new(grid, &h, BODIES, Load::Approach(surface.approach));
     let wanted = (Quantity::Force, &TARGETS[..]);
-    let list = |surface| cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(1.0), wanted, surface);
+    let list = |surface| cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(1.0), wanted, surface, None);
     let (_, from_array) = list(None).expect("a price list");
     let mut write = |grid: &Grid, h: &mut [f64]| {
         surface.write(grid, h);

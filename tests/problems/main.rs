@@ -36,6 +36,7 @@ mod hertz;
 mod influence;
 mod layer;
 mod line_contact;
+mod linear;
 mod long_rows;
 mod meaningless;
 mod measured_surfaces;

@@ -54,7 +54,7 @@ fn grids_that_are_none_are_refused_everywhere() {
         };
         names(solve_to_accuracy(&scene, &options, &Accuracy::new(0.1), Some(&mut surface), None).map(drop), words);
         let wanted = (Quantity::Force, &[0.1][..]);
-        names(cost_of_accuracy(&scene, &options, &Accuracy::new(0.1), wanted, None).map(drop), words);
+        names(cost_of_accuracy(&scene, &options, &Accuracy::new(0.1), wanted, None, None).map(drop), words);
         names(solve_tangential(&with_friction, &h, &options, None).map(drop), words);
         names(solve_friction_batch(&with_friction, Some(&h), &[], &options, None, |_, _, _| {}).map(drop), words);
         let body = Body { grid, poisson_ratio: 0.3, periodic: false };
@@ -90,7 +90,7 @@ fn tolerances_and_targets_lie_below_1() {
         let words = format!("target is {target}");
         names(solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(target), None, None).map(drop), &words);
         let wanted = (Quantity::MaxPressure, &[0.1, target][..]);
-        names(cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(0.1), wanted, None).map(drop), &words);
+        names(cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(0.1), wanted, None, None).map(drop), &words);
     }
     let high = Accuracy { max_pressure_target: 1.0, ..Accuracy::new(0.1) };
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "max_pressure_target is 1");

@@ -11,7 +11,7 @@ use super::{check, on_grid, scaled, Accuracy, Quantity, Solved, SurfaceCallback}
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::Scene;
-use crate::solver::{Options, Outcome, Progress};
+use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// What keeps an accuracy from being had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,10 +71,13 @@ const MOST_SAMPLES: usize = 12;
 const AGAIN: usize = 3;
 const FOR_TIMES: f64 = 0.5;
 
+/// What a sample asks: the surface, and whether to go on.
+type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'c mut Option<ProgressCallback<'p>>);
+
 /// What became of a sample.
 enum Taken {
     Sample(Sample),
-    /// By the surface.
+    /// By a callback.
     Cancelled,
     Unsolved,
 }
@@ -96,13 +99,15 @@ struct Sample {
 
 /// Predicts what each of the relative errors `targets` of a quantity costs, from solves on small grids over the rectangle of the
 /// scene. Of `accuracy` the limits are read; the rows say which of them is in the way. `surface` as in
-/// [`solve_to_accuracy`](super::solve_to_accuracy).
+/// [`solve_to_accuracy`](super::solve_to_accuracy). Cancelled: by the surface, or by `progress`, which is told of each cycle; the rows then hold what
+/// was known.
 pub fn cost_of_accuracy(
     scene: &Scene<'_>,
     options: &Options,
     accuracy: &Accuracy,
     (quantity, targets): (Quantity, &[f64]),
     mut surface: Option<SurfaceCallback<'_>>,
+    mut progress: Option<ProgressCallback<'_>>,
 ) -> Result<(Outcome, Vec<Price>)> {
     accuracy.check_limits()?;
     check(scene, options, surface.is_some())?;
@@ -120,7 +125,7 @@ pub fn cost_of_accuracy(
     };
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
-        let sample = match Sample::take(scene, &one, (doublings, spare), quantity, &mut surface)? {
+        let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
             Taken::Sample(sample) => sample,
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
             Taken::Unsolved => break,
@@ -139,7 +144,8 @@ pub fn cost_of_accuracy(
     // How much faster more threads are.
     let mut speed_up = 1.0;
     if let Some(last) = samples.last().filter(|last| options.threads != 1 && last.seconds < SECONDS) {
-        match Sample::take(scene, &options, (last.doublings, last.seconds), quantity, &mut surface)? {
+        let callbacks = (&mut surface, &mut progress);
+        match Sample::take(scene, &options, (last.doublings, last.seconds), quantity, callbacks)? {
             Taken::Sample(again) => speed_up = (last.seconds / again.seconds).max(1.0),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
             Taken::Unsolved => {}
@@ -161,16 +167,16 @@ impl Sample {
         options: &Options,
         (doublings, spare): (i32, f64),
         quantity: Quantity,
-        surface: &mut Option<SurfaceCallback<'_>>,
+        (surface, progress): Callbacks<'_, '_, '_>,
     ) -> Result<Taken> {
         let (began, mut spent) = (Instant::now(), 0.0);
-        let mut taken = Sample::take_once(scene, options, doublings, quantity, surface)?;
+        let mut taken = Sample::take_once(scene, options, doublings, quantity, (surface, progress))?;
         for _ in 0..AGAIN {
             let Taken::Sample(best) = &mut taken else { break };
             if spent + 2.0 * best.seconds > spare {
                 break;
             }
-            match Sample::take_once(scene, options, doublings, quantity, surface)? {
+            match Sample::take_once(scene, options, doublings, quantity, (surface, progress))? {
                 Taken::Sample(again) if again.seconds < best.seconds => *best = again,
                 Taken::Cancelled => return Ok(Taken::Cancelled),
                 _ => {}
@@ -185,7 +191,7 @@ impl Sample {
         options: &Options,
         doublings: i32,
         quantity: Quantity,
-        surface: &mut Option<SurfaceCallback<'_>>,
+        (surface, progress): Callbacks<'_, '_, '_>,
     ) -> Result<Taken> {
         let (began, mut reached) = (Instant::now(), Vec::new());
         let elements = scaled(&scene.grid, doublings)?.len();
@@ -193,7 +199,7 @@ impl Sample {
             if told.mx * told.my == elements {
                 reached.push((told.residual, began.elapsed().as_secs_f64()));
             }
-            false
+            progress.as_mut().is_some_and(|progress| progress(told))
         };
         let Solved { solver, report, outlook } =
             match on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)? {

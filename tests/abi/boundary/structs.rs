@@ -15,7 +15,7 @@ const SIZES: [(&str, i64); 13] = [
     ("patches", 32),
     ("row_tables", 32),
     ("friction", 248),
-    ("options", 96),
+    ("options", 104),
     ("cycle", 32),
     ("fields", 80),
     ("report", 704),

@@ -1,0 +1,69 @@
+//! The file of a dump: its name, and how it comes to be.
+
+use std::fs::{remove_file, rename, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::image::Image;
+
+/// Dumps of this process so far.
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
+/// Writes a file under another name, then gives it its own: nobody sees a part of one. Returns its path, or why there is none.
+pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, String> {
+    let number = COUNT.fetch_add(1, Ordering::Relaxed) + 1;
+    let path = expanded(path, number);
+    if image.lacks_memory {
+        return Err("no memory for a copy of what the call was given".into());
+    }
+    let mut name = path.file_name().ok_or_else(|| format!("{} names no file", path.display()))?.to_owned();
+    name.push(format!(".{}.{number}.part", std::process::id()));
+    let part = path.with_file_name(name);
+    let written = write_to(&part, head, image).and_then(|()| rename(&part, &path));
+    written.map(|()| path.display().to_string()).map_err(|why| {
+        // There may be none.
+        let _ = remove_file(&part);
+        format!("{} cannot be written: {why}", path.display())
+    })
+}
+
+fn write_to(path: &Path, head: &str, image: &Image) -> std::io::Result<()> {
+    let mut file = File::create_new(path)?;
+    file.write_all(head.as_bytes())?;
+    file.write_all(image.text.as_bytes())?;
+    file.write_all(format!("data {}\n", image.data.len()).as_bytes())?;
+    file.write_all(&image.data)?;
+    file.sync_all()
+}
+
+/// %p is the number of the process, %n that of the dump, %% a %.
+fn expanded(path: &[u8], number: u64) -> PathBuf {
+    let (mut bytes, mut rest) = (Vec::new(), path);
+    while let Some((&first, after)) = rest.split_first() {
+        let value = match after.first() {
+            Some(b'p') => std::process::id().to_string(),
+            Some(b'n') => number.to_string(),
+            Some(b'%') => "%".into(),
+            _ => String::new(),
+        };
+        if first == b'%' && !value.is_empty() {
+            bytes.extend(value.as_bytes());
+            rest = &after[1..];
+        } else {
+            bytes.push(first);
+            rest = after;
+        }
+    }
+    path_of(bytes)
+}
+
+#[cfg(unix)]
+fn path_of(bytes: Vec<u8>) -> PathBuf {
+    <std::ffi::OsString as std::os::unix::ffi::OsStringExt>::from_vec(bytes).into()
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: Vec<u8>) -> PathBuf {
+    String::from_utf8_lossy(&bytes).into_owned().into()
+}

@@ -1,0 +1,251 @@
+//! `options->dump`: what a call was given, written where it fails, and read again by `contact-normal-replay`.
+//!
+//! Nothing here knows an effect. The structs are written by the list of their members, which is made from the header, and an array is as
+//! long as the call has told [`Regions`], which knows all that is read. So a new effect, or a new member, is in the file without a line
+//! here. docs/dump.md has the format.
+
+mod file;
+mod image;
+mod parse;
+mod read;
+mod replay;
+
+pub use read::Dump;
+pub use replay::Replayed;
+
+use std::ffi::CStr;
+use std::panic::{catch_unwind, AssertUnwindSafe};
+
+use super::arguments::Regions;
+use super::guard::refusal_of_panic;
+use super::influence::contact_normal_influence;
+use super::options::{contact_normal_cycle, contact_normal_options};
+use super::status::{
+    contact_normal_status, last_error_text, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
+};
+use super::structs::{self, Versioned};
+use crate::contact::State;
+use crate::effects::TangentialInfluence;
+use crate::solver::Solver;
+use image::Image;
+
+/// The first line of a file: the format and its version.
+const FIRST_LINE: &str = "contact-normal dump 1";
+
+/// What the tangential coefficients of a handle are called.
+const TANGENTIAL_TABLES: [&str; 5] = [
+    "handle.tangential_xx",
+    "handle.tangential_yy",
+    "handle.tangential_xy",
+    "handle.tangential_xz",
+    "handle.tangential_yz",
+];
+
+/// An argument of a call.
+#[derive(Clone, Copy)]
+pub(super) enum Argument {
+    /// A struct of this name.
+    Struct(&'static str, usize),
+    /// Numbers.
+    Array(usize),
+    Integer(i64),
+}
+
+/// What can be an argument.
+pub(super) trait Given {
+    fn given(self) -> Argument;
+}
+
+impl<T: Versioned> Given for *const T {
+    fn given(self) -> Argument {
+        Argument::Struct(T::NAME, self as usize)
+    }
+}
+
+impl<T: Versioned> Given for *mut T {
+    fn given(self) -> Argument {
+        self.cast_const().given()
+    }
+}
+
+impl Given for *const f64 {
+    fn given(self) -> Argument {
+        Argument::Array(self as usize)
+    }
+}
+
+impl Given for *mut f64 {
+    fn given(self) -> Argument {
+        Argument::Array(self as usize)
+    }
+}
+
+impl Given for i32 {
+    fn given(self) -> Argument {
+        Argument::Integer(self.into())
+    }
+}
+
+/// The arguments of a call, each with its name.
+macro_rules! given {
+    ($($name:ident),+ $(,)?) => {
+        &[$((stringify!($name), $crate::ffi::dump::Given::given($name))),+]
+    };
+}
+pub(super) use given;
+
+/// What a call was given, kept until it is known how the call ends.
+pub(super) struct Recording<'a> {
+    call: &'static str,
+    arguments: &'a [(&'static str, Argument)],
+    /// The path as the caller has it; none: nothing is kept.
+    path: Option<Vec<u8>>,
+    image: Option<Image>,
+}
+
+impl<'a> Recording<'a> {
+    /// `options`: NULL or a struct that declares its size; what is wrong with it the call says.
+    pub unsafe fn new(
+        call: &'static str,
+        options: *const contact_normal_options,
+        arguments: &'a [(&'static str, Argument)],
+    ) -> Recording<'a> {
+        // SAFETY: by the caller.
+        let given = unsafe { structs::read_optional(options, "options") }.ok().flatten();
+        let path = given.map(|given| given.dump).filter(|path| !path.is_null());
+        // SAFETY: not NULL: a text that ends with 0, by the conventions of the ABI.
+        let path = path.map(|path| unsafe { CStr::from_ptr(path) }.to_bytes().to_vec());
+        Recording { call, arguments, path, image: None }
+    }
+
+    /// Whether something is kept.
+    pub fn is_wanted(&self) -> bool {
+        self.path.is_some()
+    }
+
+    /// Keeps what the call was given; `regions` know how long its arrays are. The first time counts.
+    pub fn keep(&mut self, regions: &Regions) {
+        if self.is_wanted() && self.image.is_none() {
+            // SAFETY: the caller's structs and arrays, by the conventions of the ABI.
+            self.image = Some(unsafe { Image::of(self.arguments, regions) });
+        }
+    }
+
+    /// The same, and what matters of the handle that solves: its last result where the call `goes_on` from that.
+    pub fn keep_with(&mut self, regions: &Regions, solver: &Solver, goes_on: bool) {
+        if !self.is_wanted() || self.image.is_some() {
+            return;
+        }
+        self.keep(regions);
+        let Some(image) = &mut self.image else { return };
+        let set_up = solver.set_up_options();
+        let cycle = contact_normal_cycle::from(&set_up.cycle);
+        let options = contact_normal_options { cycle: &cycle, ..contact_normal_options::of_set_up(set_up) };
+        // SAFETY: structs of this function.
+        unsafe { image.add(&[("handle.options", (&raw const options).given())], &Regions::default()) };
+        if let Some((name, table)) = solver.own_tables() {
+            image.add_doubles(&format!("handle.{name}"), &table);
+        }
+        if let Some(kept) = solver.own_tangential_tables() {
+            image.add_tables(&kept.view());
+        }
+        if goes_on {
+            image.add_result(solver);
+        }
+    }
+
+    /// Keeps what the caller's surface has written for a grid.
+    pub fn keep_surface(&mut self, mx: usize, my: usize, h: &[f64]) {
+        if let Some(image) = &mut self.image {
+            image.add_doubles(&format!("surface.{mx}x{my}"), h);
+        }
+    }
+
+    /// Writes the file of a call that failed. Returns what its message says of that; nothing where none is wanted.
+    pub fn finish(&mut self, status: contact_normal_status, message: &str) -> String {
+        let Some(path) = self.path.take() else { return String::new() };
+        if status == CONTACT_NORMAL_OK || status == CONTACT_NORMAL_CANCELLED {
+            return String::new();
+        }
+        self.path = Some(path.clone());
+        // Of what was refused before it was known what there is.
+        self.keep(&Regions::default());
+        let head = format!(
+            "{FIRST_LINE}\nlibrary {}\ncall {}\nstatus {status}\nmessage {}\n",
+            env!("CARGO_PKG_VERSION"),
+            self.call,
+            message.replace('\\', "\\\\").replace('\n', "\\n")
+        );
+        let image = self.image.take().unwrap_or_default();
+        match file::write(&path, &head, &image) {
+            Ok(path) => format!("; what the call was given is in {path}"),
+            Err(why) => format!("; there is no dump: {why}"),
+        }
+    }
+}
+
+impl Image {
+    /// The tangential coefficients of a handle.
+    fn add_tables(&mut self, tables: &TangentialInfluence<'_>) {
+        let values = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten());
+        for (values, name) in values.zip(TANGENTIAL_TABLES) {
+            let table = contact_normal_influence {
+                cx: tables.cx as i32,
+                cy: tables.cy as i32,
+                coefficients: values.as_ptr(),
+                scale: tables.scale,
+                ..Default::default()
+            };
+            let mut regions = Regions::default();
+            if regions.input("the tangential coefficients of the handle", values.as_ptr(), values.len()).is_err() {
+                self.lacks_memory = true;
+            }
+            // SAFETY: a struct of this function, and its array.
+            unsafe { self.add(&[(name, (&raw const table).given())], &regions) };
+        }
+    }
+
+    /// The last result of a handle.
+    fn add_result(&mut self, solver: &Solver) {
+        if solver.has_solved() {
+            let State { p, contact, .. } = solver.state();
+            self.add_doubles("handle.pressure", p);
+            self.add_integers("handle.contact", &mut contact.iter().map(|inside| i32::from(*inside)));
+        }
+        if let Some(solution) = solver.tractions() {
+            for (k, name) in ["handle.traction_x", "handle.traction_y"].into_iter().enumerate() {
+                let traction: Vec<f64> = solution.traction.iter().map(|q| q[k]).collect();
+                self.add_doubles(name, &traction);
+            }
+        }
+    }
+}
+
+/// Runs a call whose `arguments` may be written: see [`Recording`]. A panic is a failure, too.
+pub(super) unsafe fn recorded(
+    call: &'static str,
+    options: *const contact_normal_options,
+    arguments: &[(&'static str, Argument)],
+    body: impl FnOnce(&mut Recording<'_>) -> Result<contact_normal_status, Refusal>,
+) -> Result<contact_normal_status, Refusal> {
+    // SAFETY: by the caller.
+    let mut recording = unsafe { Recording::new(call, options, arguments) };
+    if !recording.is_wanted() {
+        return body(&mut recording);
+    }
+    let ended = catch_unwind(AssertUnwindSafe(|| body(&mut recording)));
+    match ended.unwrap_or_else(|panic| Err(refusal_of_panic(panic))) {
+        Ok(status) => {
+            let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error_text() };
+            let more = recording.finish(status, &message);
+            if !more.is_empty() {
+                set_last_error(&(message + &more));
+            }
+            Ok(status)
+        }
+        Err(mut refusal) => {
+            refusal.message += &recording.finish(refusal.status, &refusal.message);
+            Err(refusal)
+        }
+    }
+}

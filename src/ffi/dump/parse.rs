@@ -1,0 +1,185 @@
+//! The text of a dump. Nothing in it is trusted: what is odd is an error that says in which line.
+
+use super::image::UNREAD;
+use super::FIRST_LINE;
+use crate::ffi::by_name::{structure, Kind, Member, Struct};
+
+/// What a pointer of a file points to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Target {
+    Null,
+    /// Something that is not in the file.
+    Unread,
+    /// The item of this index.
+    Item(usize),
+}
+
+/// The value of a member.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Value {
+    Int32(i32),
+    Int64(i64),
+    Double(f64),
+    Pointer(Target),
+    /// Whether the host had given something.
+    OfTheHost(bool),
+}
+
+/// What has a number in a file.
+#[derive(Debug)]
+pub(super) enum Item {
+    Struct {
+        kind: &'static Struct,
+        room: usize,
+        members: Vec<(&'static Member, Value)>,
+    },
+    /// So many values of so many bytes, which begin at this byte of the data.
+    Array {
+        size: usize,
+        count: usize,
+        at: usize,
+    },
+    /// Bytes that the call writes.
+    Output {
+        bytes: usize,
+    },
+}
+
+/// A dump as its text says it.
+#[derive(Debug, Default)]
+pub(super) struct Parsed {
+    pub library: String,
+    pub call: String,
+    pub status: i32,
+    pub message: String,
+    pub arguments: Vec<(String, Target)>,
+    pub integers: Vec<(String, i64)>,
+    pub items: Vec<Item>,
+    /// Bytes of the arrays that were told so far.
+    data: usize,
+}
+
+/// Reads the text; returns the bytes behind it, too.
+pub(super) fn parse(bytes: &[u8]) -> Result<(Parsed, &[u8]), String> {
+    let (mut parsed, mut rest, mut number) = (Parsed::default(), bytes, 0);
+    loop {
+        number += 1;
+        let end = rest.iter().position(|byte| *byte == b'\n').ok_or("the text has no end: it is no dump")?;
+        let line = std::str::from_utf8(&rest[..end]).map_err(|_| format!("line {number} is no text"))?;
+        rest = &rest[end + 1..];
+        if number == 1 {
+            if line != FIRST_LINE {
+                return Err(format!("it does not begin with \"{FIRST_LINE}\""));
+            }
+            continue;
+        }
+        let refuse = |why: String| format!("line {number}: {why}");
+        let (word, said) = line.split_once(' ').ok_or_else(|| refuse("a word alone".into()))?;
+        if word == "data" {
+            let told = said.parse().map_err(|_| refuse("no number of bytes".into()))?;
+            if parsed.data != told || rest.len() != told {
+                let (arrays, found) = (parsed.data, rest.len());
+                return Err(format!("the arrays take {arrays} bytes, the text says {told}, and there are {found}"));
+            }
+            return Ok((parsed, rest));
+        }
+        parsed.take(word, said).map_err(refuse)?;
+    }
+}
+
+/// `number`-th word of a line, as what is asked for.
+fn word<T: std::str::FromStr>(said: &str, number: usize) -> Result<T, String> {
+    let word = said.split(' ').nth(number).ok_or("a word is missing")?;
+    word.parse().map_err(|_| format!("what is \"{word}\"?"))
+}
+
+fn target(said: &str, number: usize) -> Result<Target, String> {
+    match word::<String>(said, number)?.as_str() {
+        "NULL" => Ok(Target::Null),
+        UNREAD => Ok(Target::Unread),
+        _ => match word::<usize>(said, number)? {
+            0 => Err("items are counted from 1".into()),
+            item => Ok(Target::Item(item - 1)),
+        },
+    }
+}
+
+impl Parsed {
+    fn take(&mut self, first: &str, said: &str) -> Result<(), String> {
+        match first {
+            "library" => self.library = said.into(),
+            "call" => self.call = said.into(),
+            "status" => self.status = word(said, 0)?,
+            "message" => self.message = unescaped(said),
+            "argument" => self.arguments.push((word(said, 0)?, target(said, 1)?)),
+            "integer" => self.integers.push((word(said, 0)?, word(said, 1)?)),
+            "struct" | "array" | "output" => {
+                let item = self.item(first, said)?;
+                // In order: so each has one.
+                if word::<usize>(said, 0)? != self.items.len() + 1 {
+                    return Err(format!("it must be number {}", self.items.len() + 1));
+                }
+                self.items.push(item);
+            }
+            _ => return self.member(first, said),
+        }
+        Ok(())
+    }
+
+    fn item(&mut self, first: &str, said: &str) -> Result<Item, String> {
+        let name: String = word(said, 1)?;
+        match first {
+            "struct" => {
+                let kind = structure(&name).ok_or_else(|| format!("this library knows no struct {name}"))?;
+                Ok(Item::Struct { kind, room: word(said, 2)?, members: Vec::new() })
+            }
+            "output" => Ok(Item::Output { bytes: word(said, 1)? }),
+            _ => {
+                let size: usize = match name.as_str() {
+                    "double" => 8,
+                    "int32" => 4,
+                    _ => return Err(format!("what is an array of {name}?")),
+                };
+                let (count, at) = (word(said, 2)?, self.data);
+                let bytes = size.checked_mul(count).and_then(|bytes| bytes.checked_next_multiple_of(8));
+                self.data = bytes.and_then(|bytes| at.checked_add(bytes)).ok_or("an array without end")?;
+                Ok(Item::Array { size, count, at })
+            }
+        }
+    }
+
+    fn member(&mut self, first: &str, said: &str) -> Result<(), String> {
+        let name: String = word(said, 0)?;
+        let Some(Item::Struct { kind, members, .. }) = self.items.last_mut() else {
+            return Err(format!("what is \"{first}\"?"));
+        };
+        let known = kind.members.iter().find(|member| member.name == name);
+        let member = known.ok_or_else(|| format!("this library knows no member {name} of {}", kind.name))?;
+        let value = match (first, member.kind) {
+            ("int32", Kind::Int32) => Value::Int32(word(said, 1)?),
+            ("int64", Kind::Int64) => Value::Int64(word(said, 1)?),
+            ("double", Kind::Double) => {
+                let bits: String = word(said, 1)?;
+                let bits = u64::from_str_radix(&bits, 16).map_err(|_| "no bits of a double")?;
+                Value::Double(f64::from_bits(bits))
+            }
+            ("host", Kind::OfTheHost) => Value::OfTheHost(word::<String>(said, 1)? == "given"),
+            ("pointer", Kind::Array | Kind::Structs(_)) => Value::Pointer(target(said, 1)?),
+            (first, kind) => return Err(format!("{name} is no {first} but {kind:?}")),
+        };
+        members.push((member, value));
+        Ok(())
+    }
+}
+
+/// A message of several lines stands in one.
+fn unescaped(said: &str) -> String {
+    let (mut text, mut characters) = (String::new(), said.chars());
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => text.push(if characters.next() == Some('n') { '\n' } else { '\\' }),
+            _ => text.push(character),
+        }
+    }
+    text
+}

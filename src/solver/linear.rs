@@ -1,0 +1,105 @@
+//! What the operator of a solver gives beside solutions: products with pressures of the caller's, and the stiffness of a result.
+
+use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
+use crate::contact::Survey;
+use crate::error::{invalid, Error, Result};
+use crate::memory::zeros;
+use crate::progress::Monitor;
+use crate::scene::{Bodies, Load, Scene};
+use crate::sums::in_blocks;
+
+/// Relative residual at which the equations of a stiffness are solved.
+const TOLERANCE: f64 = 1e-10;
+/// And that which is enough where round-off is in the way.
+const ENOUGH: f64 = 1e-6;
+
+/// dF/d approach of a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stiffness {
+    /// A force per length.
+    pub value: f64,
+    /// Relative residual of the equations that it was found by, over the contact area: 2-norms. The relative error of the value is about that.
+    pub residual: f64,
+}
+
+impl Solver {
+    /// `displacement = A pressure`, both `[my][mx]`: pressures of any sign, with all effects of the set-up that A has. The last result stays.
+    pub fn product(&mut self, pressure: &[f64], displacement: &mut [f64]) -> Result<()> {
+        self.set_up.check_table()?;
+        let grid = self.problem.grid;
+        for (name, length) in [("pressure", pressure.len()), ("displacement", displacement.len())] {
+            if length != grid.len() {
+                return invalid(format!("{name} has {length} values; the grid has {} elements", grid.len()));
+            }
+        }
+        if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
+            let (element, p) = (grid.element(i), pressure[i]);
+            return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
+        }
+        self.problem.displace(pressure, displacement)?;
+        // No product of a solve.
+        self.problem.take_products();
+        if let Some(compressible) = self.set_up.compressible.as_ref().filter(|of| of.is_without == Some(true)) {
+            let by = compressible.by(in_blocks(pressure.iter().copied()));
+            displacement.iter_mut().for_each(|u| *u += by);
+        }
+        Ok(())
+    }
+
+    /// dF/d approach of the last result: by how much the force grows with the approach while the contact area, pressures at their limit and
+    /// tractions stay. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`; 0 without contact. Where the value could not
+    /// be had, the outcome says why. The last result stays. The first call sets up another solver of one thread, which is kept.
+    pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
+        if !self.has_result {
+            return invalid("solver has no result: no solve with it had a status >= 0".into());
+        }
+        self.set_up.check_table()?;
+        if !self.state.contact.contains(&true) {
+            return Ok((Outcome::Converged, Stiffness::default()));
+        }
+        if self.workers.is_empty() {
+            self.workers.push(None);
+        }
+        if self.workers[0].is_none() {
+            self.workers[0] = Some(self.worker()?);
+        }
+        let Solver { workers, state, set_up, .. } = self;
+        let options = Options {
+            method: Method::Auto,
+            active_set: ActiveSet::Fixed,
+            initial_guess: InitialGuess::None,
+            tolerance: TOLERANCE,
+            estimates: false,
+            ..set_up.options
+        };
+        match &mut workers[0] {
+            Some(worker) => worker.stiffness_of(&state.contact, &options),
+            None => unreachable!("it was set up"),
+        }
+    }
+
+    /// The same of a contact area; this solver's own result is lost.
+    fn stiffness_of(&mut self, contact: &[bool], options: &Options) -> Result<(Outcome, Stiffness)> {
+        let (grid, own) = (self.problem.grid, self.problem.self_influence());
+        // Pressures of about 1, whatever the units are; a power of two loses no digit.
+        let unit = if own > 0.0 { own.log2().floor().exp2() } else { 1.0 };
+        let load = Load::Approach(unit);
+        self.suit(load)?;
+        if self.problem.coefficients.is_mean_free() && !contact.contains(&false) {
+            let message = "contact is full, and with two periods no force changes the approach: there is no stiffness";
+            return Err(Error::Infeasible(message.into()));
+        }
+        let h: Vec<f64> = zeros(grid.len(), "distances of a stiffness")?;
+        let p: Vec<f64> = zeros(grid.len(), "pressures of a stiffness")?;
+        let guess = Some(Guess { pressure: &p, contact });
+        // Only grid, distance and load are asked for: effects and bodies are in the coefficients.
+        let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
+        let mut monitor = Monitor::new(None, Vec::new(), false);
+        let (stop, _) = self.solve_normal((&scene, 0.0), options, guess, &mut monitor)?;
+        let sum = in_blocks(self.state.p.iter().copied());
+        let residual = Survey::of(&self.state).certificate().residual;
+        let stiffness = Stiffness { value: sum * grid.element_area() / unit, residual };
+        let stop = if residual <= ENOUGH { Outcome::Converged } else { stop };
+        Ok((stop, stiffness))
+    }
+}

@@ -1,0 +1,139 @@
+//! Dumps of what a handle solves, and files that are not what a dump is.
+
+use std::ptr::{null, null_mut};
+
+use contact_normal::ffi::dump::Dump;
+use contact_normal::ffi::*;
+
+use crate::dump::{files, folder, text};
+use crate::dump_scene::{last_error, Everything};
+
+#[test]
+fn a_handle_goes_on_from_what_is_in_the_file() {
+    for effects in ["", "influence", "row_tables", "friction"] {
+        let path = folder(&format!("handle_{effects}")).join("failed");
+        let path_text = text(&path);
+        let mut scene = Everything::new(effects);
+        let mut handle = null_mut();
+        // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
+        unsafe {
+            assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+            let solve = |scene: &Everything| {
+                let mut report = contact_normal_report::default();
+                (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
+            };
+            assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
+            let mut before = vec![f64::NAN; 30];
+            let mut fields = contact_normal_fields { pressure: before.as_mut_ptr(), ..Default::default() };
+            assert_eq!(contact_normal_solver_fields(handle, &mut fields), CONTACT_NORMAL_OK);
+            // The handle has them.
+            (scene.scene.influence, scene.scene.row_tables) = (null(), null());
+            scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+            (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-18);
+            scene.scene.approach *= 1.1;
+            if effects == "friction" {
+                scene.friction.previous_traction = [null(); 2];
+                scene.friction.continues = 1;
+            }
+            scene.options.dump = path_text.as_ptr();
+            let (status, _) = solve(&scene);
+            assert!(status > 0, "{effects}: {status}: {}", last_error());
+            let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+            assert_eq!(dump.doubles("handle.pressure"), Some(before), "{effects}");
+            assert_eq!(dump.doubles("handle.traction_x").is_some(), effects == "friction");
+            assert_eq!(
+                dump.doubles(&format!("handle.{effects}")).is_some(),
+                effects.contains("_") || effects == "influence"
+            );
+            let again = dump.replay().expect("a call");
+            assert_eq!(again.status, status, "{effects}: {}", last_error());
+            contact_normal_solver_free(handle);
+        }
+    }
+}
+
+#[test]
+fn a_batch_leaves_the_scenes_that_fail() {
+    let folder = folder("batch");
+    let path_text = text(&folder.join("%n"));
+    let (good, mut bad) = (Everything::new(""), Everything::new(""));
+    bad.h[3] = f64::NAN;
+    let scenes = [good.scene, bad.scene, good.scene];
+    let mut options = good.options;
+    options.dump = path_text.as_ptr();
+    let mut handle = null_mut();
+    // SAFETY: structs with the arrays that they declare, and a handle of this test.
+    unsafe {
+        assert_eq!(contact_normal_solver_new(&good.scene, &options, &mut handle), CONTACT_NORMAL_OK);
+        let status =
+            contact_normal_solver_solve_batch(handle, 3, scenes.as_ptr(), &options, null_mut(), null_mut(), null_mut());
+        contact_normal_solver_free(handle);
+        assert_eq!(status, CONTACT_NORMAL_NOT_FINITE);
+    }
+    assert!(last_error().contains("problem 1: ") && last_error().contains("is in "), "{}", last_error());
+    let names = files(&folder);
+    assert_eq!(names.len(), 1, "{names:?}");
+    let dump = Dump::read(&std::fs::read(folder.join(&names[0])).expect("a dump")).expect("a dump that can be read");
+    assert_eq!(dump.call(), "contact_normal_solver_solve");
+    assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_NOT_FINITE);
+}
+
+/// What is wrong with a file is an error, and a call with wrong lengths is refused: whatever the file says.
+#[test]
+fn files_that_were_changed_are_read_without_harm() {
+    let path = folder("changed").join("failed");
+    let path_text = text(&path);
+    let mut scene = Everything::new("layer pressure_limit patches");
+    scene.options.dump = path_text.as_ptr();
+    (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-13);
+    scene.solve();
+    let bytes = std::fs::read(&path).expect("a dump");
+    let mut state = 12345u64;
+    let mut random = |n: usize| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize % n
+    };
+    let (mut read, mut refused) = (0, 0);
+    for _ in 0..2000 {
+        let mut changed = bytes.clone();
+        for _ in 0..1 + random(3) {
+            // Mostly of the text.
+            let at = random(changed.len());
+            match random(4) {
+                0 => changed[at] = random(256) as u8,
+                1 => changed[at] = b"0123456789-NULL \n"[random(17)],
+                2 => drop(changed.drain(at..(at + random(40)).min(bytes.len().min(changed.len())).max(at))),
+                _ => changed.insert(at, b'9'),
+            }
+        }
+        match Dump::read(&changed) {
+            Err(why) => assert!(!why.is_empty()),
+            Ok(dump) if dump.options().is_some_and(|options| options.max_cycles <= 1) => {
+                read += 1;
+                refused += i32::from(dump.replay().is_ok_and(|again| again.status < 0));
+            }
+            Ok(_) => read += 1,
+        }
+    }
+    assert!(read > 20 && refused > 0, "{read} read, {refused} refused");
+}
+
+#[test]
+fn a_file_that_says_more_than_it_holds_is_refused() {
+    let path = folder("lies").join("failed");
+    let path_text = text(&path);
+    let mut scene = Everything::new("");
+    scene.options.dump = path_text.as_ptr();
+    (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-13);
+    scene.solve();
+    let bytes = std::fs::read(&path).expect("a dump");
+    let find = |what: &[u8]| bytes.windows(what.len()).position(|bytes| bytes == what).expect("a line");
+    let mut larger = bytes.clone();
+    // 6 elements in x: 9 of them.
+    larger[find(b"int32 mx 6") + 9] = b'9';
+    let dump = Dump::read(&larger).expect("a dump that can be read");
+    assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(last_error().contains("there are less in the file"), "{}", last_error());
+    assert!(Dump::read(&bytes[..bytes.len() - 8]).is_err());
+    assert!(Dump::read(b"").is_err() && Dump::read(b"contact-normal dump 2\n").is_err());
+}
