@@ -202,14 +202,19 @@
 #define CONTACT_NORMAL_KIND_SOLVER_INFO 21
 
 /*
+ `load`: that one of `approach` and `force` is given which is set; both or none is refused.
+ */
+#define CONTACT_NORMAL_PRESCRIBED_UNSET 0
+
+/*
  `load`: the approach of the bodies is given.
  */
-#define CONTACT_NORMAL_PRESCRIBED_APPROACH 0
+#define CONTACT_NORMAL_PRESCRIBED_APPROACH 1
 
 /*
  `load`: the normal force is given, the approach is found.
  */
-#define CONTACT_NORMAL_PRESCRIBED_FORCE 1
+#define CONTACT_NORMAL_PRESCRIBED_FORCE 2
 
 /*
  `motion`: sideways and about the normal, without rolling.
@@ -767,7 +772,7 @@ typedef struct contact_normal_scene {
    */
   double poisson_ratio[2];
   /*
-   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
+   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE: that one is read, the other is not. Default UNSET: the one that is set.
    */
   int32_t load;
   /*
@@ -775,11 +780,11 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
+   Prescribed approach (indentation, penetration): a length. Default NaN: not set.
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
+   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
    */
   double force;
   /*
@@ -1761,7 +1766,7 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
 /*
  Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
  precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
- valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+ valid, but each solve takes its own; no load needs to be set. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
  Since 0.1.
  */
 contact_normal_status contact_normal_solver_new(const struct contact_normal_scene *scene,
@@ -1812,7 +1817,7 @@ contact_normal_status contact_normal_solver_free(struct contact_normal_solver *s
 
 /*
  Solves the tangential problem of `scene->friction` with the caller's pressures, `[my][mx]`: those that are not positive count as no
- contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load are checked but not
+ contact. For programs that have a normal solver of their own. The undeformed distance (not NULL) and the load, if one is set, are checked but not
  used, and tractions do not change the pressures: of unlike bodies this is one turn of two. `fields->traction`, `slip` and
  `stick_slip` are written, no other; of the report what speaks of friction, `force`, `max_pressure` and `contact_count`. Since 0.2.
  */

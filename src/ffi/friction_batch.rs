@@ -9,7 +9,7 @@ use super::guard::guard;
 use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
-use super::scene::contact_normal_scene;
+use super::scene::{contact_normal_scene, Named};
 use super::solve::{explain, Conclusion, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
@@ -90,7 +90,9 @@ pub unsafe extern "C" fn contact_normal_friction_batch(
                 regions.input("entries", entries.cast::<[f64; 3]>(), n)?;
                 wanted.add_to(regions, results, (n, elements))
             };
-            Request::read(scene, options, null_mut(), report, &mut Buffers::default(), also)?
+            let named = Named::read(scene)?;
+            let named = if pressure.is_null() { named } else { named.load_or_none() };
+            Request::of((named, scene), options, null_mut(), report, &mut Buffers::default(), also)?
         };
         // SAFETY (both): NULL or arrays of this size, by the conventions of the ABI.
         let (pressure, given) = unsafe {

@@ -52,9 +52,22 @@ impl Request<'_> {
         buffers: &mut Buffers,
         also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
     ) -> Result<Request<'a>, Refusal> {
+        // SAFETY (both): by the caller.
+        unsafe { Request::of((Named::read(scene)?, scene), options, fields, report, buffers, also) }
+    }
+
+    /// The same of a scene that was read, with its place.
+    pub unsafe fn of<'a>(
+        (named, scene): (Named, *const contact_normal_scene),
+        options: *const contact_normal_options,
+        fields: *mut contact_normal_fields,
+        report: *mut contact_normal_report,
+        buffers: &mut Buffers,
+        also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
+    ) -> Result<Request<'a>, Refusal> {
         // SAFETY (all): by the caller.
         unsafe {
-            let (named, translated) = (Named::read(scene)?, options::translate(options)?);
+            let translated = options::translate(options)?;
             let outputs = Outputs::of(fields, report)?;
             let regions = &mut buffers.regions;
             regions.clear();

@@ -11,7 +11,7 @@ use super::influence::contact_normal_influence;
 use super::options::contact_normal_options;
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
-use super::scene::contact_normal_scene;
+use super::scene::{contact_normal_scene, Named};
 use super::solve::{run_watched, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned, Versioned};
@@ -72,7 +72,7 @@ impl Drop for InUse<'_> {
 
 /// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
 /// precision and threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` must be
-/// valid, but each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+/// valid, but each solve takes its own; no load needs to be set. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
 /// Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_new(
@@ -87,7 +87,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, .. } = unsafe {
             let also = |regions: &mut Regions, _| regions.output("solver", solver, 1);
-            Request::read(scene, options, null_mut(), null_mut(), &mut Buffers::default(), also)?
+            let named = Named::read(scene)?.load_or_none();
+            Request::of((named, scene), options, null_mut(), null_mut(), &mut Buffers::default(), also)?
         };
         let new = Solver::new(&scene, &options.options)?;
         // SAFETY: not null: room for a pointer.
