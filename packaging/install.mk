@@ -20,7 +20,7 @@ STATIC_LIBS := -lgcc_eh -lutil -lrt -lpthread -lm -ldl -lc
 INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
 LIBDIR := $(DESTDIR)$(PREFIX)/lib
 SHAREDIR := $(DESTDIR)$(PREFIX)/share/contact-normal
-HEADERS := $(addprefix contact_normal,.h .hpp .f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
+HEADERS := $(notdir $(wildcard include/*.hpp)) $(addprefix contact_normal,.h .f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
 
 # $(call filled,template,file): a template of packaging/ with its names filled in.
 filled = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONAME@|$(SONAME)|' \

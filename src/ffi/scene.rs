@@ -90,9 +90,9 @@ fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
     match (approach.is_nan(), force.is_nan()) {
         (false, true) => Ok(Load::Approach(approach)),
         (true, false) => Ok(Load::Force(force)),
-        (true, true) => {
-            Err(Refusal::invalid("the scene has no load: set scene->approach or scene->force (both are NaN)".to_owned()))
-        }
+        (true, true) => Err(Refusal::invalid(
+            "the scene has no load: set scene->approach or scene->force (both are NaN)".to_owned(),
+        )),
         (false, false) => {
             let rule = "leave one of them NaN, or set scene->load to PRESCRIBED_APPROACH (1) or PRESCRIBED_FORCE (2)";
             Err(Refusal::invalid(format!("the scene has two loads, approach {approach} and force {force}: {rule}")))

@@ -27,9 +27,9 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
     guard(|| {
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
         let Request { scene, options, outputs } = unsafe {
-                let named = Named::read(scene)?.load_or_none();
-                Request::of((named, scene), options, fields, report, &mut Buffers::default(), |_, _| Ok(()))?
-            };
+            let named = Named::read(scene)?.load_or_none();
+            Request::of((named, scene), options, fields, report, &mut Buffers::default(), |_, _| Ok(()))?
+        };
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, scene.grid.len())? };
         let found = watched(Watcher::of(&options), |progress| {

@@ -113,8 +113,9 @@ fn what_uses_no_load_needs_none() {
     call.use_friction();
     let pressures = vec![1.0; call.h.len()];
     // SAFETY: structs that declare their size, and one pressure per element.
-    let status =
-        unsafe { contact_normal_solve_tangential(&call.scene.known, pressures.as_ptr(), null(), null_mut(), null_mut()) };
+    let status = unsafe {
+        contact_normal_solve_tangential(&call.scene.known, pressures.as_ptr(), null(), null_mut(), null_mut())
+    };
     assert_eq!(status, CONTACT_NORMAL_OK);
 }
 

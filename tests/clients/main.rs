@@ -1,6 +1,7 @@
 //! The library as C, C++, Fortran and Python programs use it: header, symbols, the installed package, clients, hosts.
 
 mod c;
+mod cxx;
 mod description;
 mod exported_symbols;
 mod fortran;
