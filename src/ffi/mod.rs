@@ -20,6 +20,7 @@ mod init;
 mod kept;
 mod ledger;
 mod log;
+mod marks;
 mod options;
 mod outputs;
 mod price_list;

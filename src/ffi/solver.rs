@@ -123,7 +123,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 
 /// From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
 /// `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
-/// changes nothing. Since 0.2.
+/// changes nothing. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_set_influence(
     solver: *mut contact_normal_solver,

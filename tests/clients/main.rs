@@ -14,6 +14,8 @@ mod papers;
 mod python;
 mod python_names;
 mod python_versions;
+mod readmes;
 mod rust_layout;
+mod since;
 mod stored_headers;
 mod support;
