@@ -177,7 +177,7 @@
 #define CONTACT_NORMAL_KIND_STRESS_MAXIMUM 16
 
 /*
- `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+ `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.2.
  */
 #define CONTACT_NORMAL_KIND_LEDGER_ROW 17
 
@@ -187,7 +187,7 @@
 #define CONTACT_NORMAL_KIND_PRICE 18
 
 /*
- `kind`: `contact_normal_hertz_solution`. Since 0.1.
+ `kind`: `contact_normal_hertz_solution`. Since 0.2.
  */
 #define CONTACT_NORMAL_KIND_HERTZ_SOLUTION 19
 
@@ -1789,7 +1789,7 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
 /*
  From here on the solver uses these coefficients: all later solves, and the scale. Only for a solver that was set up with
  `scene->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS may start from. What is refused
- changes nothing. Since 0.2.
+ changes nothing. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence);
@@ -2137,7 +2137,7 @@ static inline void contact_normal_stress_maximum_init(contact_normal_stress_maxi
 }
 
 /*
- Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.1.
+ Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.2.
  */
 static inline void contact_normal_ledger_row_init(contact_normal_ledger_row *ledger_row)
 {
@@ -2153,7 +2153,7 @@ static inline void contact_normal_price_init(contact_normal_price *price)
 }
 
 /*
- Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.1.
+ Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.2.
  */
 static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solution *hertz_solution)
 {
