@@ -15,6 +15,7 @@ pub const NOT_POSITIVE: i32 = CONTACT_NORMAL_NOT_POSITIVE_DEFINITE;
 pub const INF: f64 = f64::INFINITY;
 pub const NAN: f64 = f64::NAN;
 pub const UNSET: i32 = CONTACT_NORMAL_PRESCRIBED_UNSET;
+pub const APPROACH: i32 = CONTACT_NORMAL_PRESCRIBED_APPROACH;
 pub const FORCE: i32 = CONTACT_NORMAL_PRESCRIBED_FORCE;
 /// Factors of two patches.
 pub const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
