@@ -47,21 +47,6 @@ template <class Call> static contact_normal_status thrown_by(Call call, const ch
     return CONTACT_NORMAL_OK;
 }
 
-static void loads()
-{
-    const std::vector<double> h = ball(GRID, 0.01);
-    cn::scene scene(GRID, STEEL);
-    scene.undeformed_distance(h);
-    expect(thrown_by([&] { cn::solve(scene); }, "no load: set") == CONTACT_NORMAL_INVALID_ARGUMENT, "a scene needs a load");
-    cn::result found;
-    expect(cn::solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT && found.pressure == std::vector<double>(h.size()), "without exceptions, too");
-    cn::solver solver(scene); // needs none
-    expect(solver.solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT, "nor does a handle guess it");
-    const double force = solver.solve(scene.approach(0.01)).report.normal.force;
-    const double approach = solver.solve(scene.force(force)).report.normal.approach;
-    expect(std::abs(approach / 0.01 - 1.0) < 1e-5, "the one that is set last");
-}
-
 static void fields_of_a_result()
 {
     const std::vector<double> h = ball(GRID, 0.01);
@@ -294,7 +279,6 @@ static void the_library()
 
 int main()
 {
-    loads();
     fields_of_a_result();
     batches();
     accuracies();
