@@ -145,7 +145,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->spin", "inf"], NOT_FINITE, |c| c.use_friction().spin = INF),
     (&["friction->spin_centre[1]", "NaN"], NOT_FINITE, |c| c.use_friction().spin_centre[1] = NAN),
     (&["friction->spin_offset", "NaN"], NOT_FINITE, |c| c.use_friction().spin_offset = NAN),
-    (&["friction->force[0]", "inf"], NOT_FINITE, |c| { let f = c.use_friction(); (f.prescribed[0], f.force[0]) = (FORCE, INF); }),
+    (&["friction->force[0]", "inf"], NOT_FINITE, |c| { let f = c.use_friction(); (f.prescribed[0], f.force[0]) = (CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE, INF); }),
     (&["friction->rolling_distance", "-1"], INVALID, |c| c.use_friction().rolling_distance = -1.0),
     (&["friction->rolling_direction", "7"], INVALID, |c| c.use_friction().rolling_direction = 7.0),
     (&["previous_traction"], NULL, |c| { let each = c.each.as_ptr(); c.use_friction().previous_traction[1] = each; }),
