@@ -38,7 +38,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = G;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = NU;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 100.0;
     coating.thickness = THICKNESS;
     coating.poisson_ratio = NU;

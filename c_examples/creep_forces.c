@@ -31,7 +31,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 82000.0;
     scene.friction = &friction;
     friction.coefficient = 0.3;

@@ -28,7 +28,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 1000.0;
     friction.coefficient = 0.3;
     friction.prescribed[0] = friction.prescribed[1] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;

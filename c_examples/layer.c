@@ -27,7 +27,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 1000.0;
     scene.layer = &layer;
     printf("compliance   approach  max pressure  contact area\n");

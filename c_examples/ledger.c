@@ -41,7 +41,6 @@ int main(int argc, char **argv)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_APPROACH;
     scene.approach = 0.1091;
 
     contact_normal_fields_init(&fields);
@@ -54,8 +53,8 @@ int main(int argc, char **argv)
 
     contact_normal_hertz_solution_init(&exact);
     ok = solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")
-         && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
-                                        scene.approach, &exact),
+         && solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio,
+                                        CONTACT_NORMAL_PRESCRIBED_APPROACH, scene.approach, &exact),
                    "contact_normal_hertz");
     if (ok) {
         printf("Hertz contact: what was known on each grid, estimated errors, true errors\n");

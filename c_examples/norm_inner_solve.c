@@ -146,7 +146,6 @@ int main(int argc, char **argv)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_APPROACH;
 
     /* The table of an existing program would come from there; here it is the library's. */
     contact_normal_influence_init(&influence);

@@ -47,7 +47,6 @@ int main(void)
     scene.poisson_ratio[0] = 0.28;
     scene.shear_modulus[1] = 20000.0;
     scene.poisson_ratio[1] = 0.2;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 500.0;
     friction.coefficient = 0.3;
     friction.creepage[0] = -1.2e-3;

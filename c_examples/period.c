@@ -30,7 +30,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     period.x = period.y = 1;
     scene.period = &period;
     full = sqrt(2.0) * pi * (82000.0 / (1.0 - 0.28)) * d / length;

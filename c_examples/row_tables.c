@@ -30,7 +30,6 @@ int main(void)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 20000.0;
     if (!solved(contact_normal_influence_half_space(M, M, scene.dx, scene.dy, scene.shear_modulus, scene.poisson_ratio,
                                                     &plane[0][0]),

@@ -69,7 +69,6 @@ int main(int argc, char **argv)
     scene.undeformed_distance = h;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     contact_normal_fields_init(&fields);
     contact_normal_report_init(&cold);
     contact_normal_report_init(&warm);

@@ -55,7 +55,6 @@ int main(int argc, char **argv)
     scene.dy = 12.0 / 16;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
-    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 82000.0;
 
     contact_normal_options_init(&options);
@@ -69,8 +68,8 @@ int main(int argc, char **argv)
     report.ledger = rows;
     report.ledger_capacity = 16;
     contact_normal_hertz_solution_init(&exact);
-    if (!solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio, scene.load,
-                                     scene.force, &exact),
+    if (!solved(contact_normal_hertz(curvature_x, curvature_y, scene.shear_modulus, scene.poisson_ratio,
+                                     CONTACT_NORMAL_PRESCRIBED_FORCE, scene.force, &exact),
                 "contact_normal_hertz")
         || !solved(contact_normal_solve_to_accuracy(&scene, &options, &accuracy, &solver, &report),
                    "contact_normal_solve_to_accuracy"))

@@ -47,7 +47,6 @@ static int read_case(const char *path, struct wheel_rail *reference)
     scene->undeformed_distance = reference->h;
     scene->shear_modulus[0] = scene->shear_modulus[1] = shear_modulus;
     scene->poisson_ratio[0] = scene->poisson_ratio[1] = poisson_ratio;
-    scene->load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     ok = 1;
 done:
     if (!ok) fprintf(stderr, "%s: not a wheel-rail case\n", path);

@@ -28,7 +28,6 @@ program coating_example
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 80000
   scene%poisson_ratio = 0.3_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 100
   print '(a)', "G of coating   approach  max pressure  contact area   compliance at 1/mm"
   do i = 1, size(MODULI)

@@ -35,7 +35,6 @@ program creep_forces
   scene%dy = D
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_dp
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 82000
   call contact_normal_set_friction(scene, friction, coefficient=MU)
   friction%motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING

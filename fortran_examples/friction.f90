@@ -1,7 +1,8 @@
 ! Effect friction and tang_solve: a steel ball on a steel plate is pushed sideways and back, step by step, and then rolls.
 program friction
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
-  use contact_normal, only: contact_normal_hertz, contact_normal_hertz_solution, contact_normal_hertz_solution_init, tang_solve
+  use contact_normal, only: contact_normal_hertz, contact_normal_hertz_solution, contact_normal_hertz_solution_init, &
+    CONTACT_NORMAL_PRESCRIBED_FORCE, tang_solve
   implicit none
   integer, parameter :: dp = c_double
   integer(c_int32_t), parameter :: M = 48
@@ -14,7 +15,7 @@ program friction
 
   ! Hertz' pressures of 1000 N on h = r^2/100.
   call contact_normal_hertz_solution_init(hertz)
-  ierror = contact_normal_hertz(0.01_dp, 0.01_dp, G, NU, 1, 1000.0_dp, hertz)
+  ierror = contact_normal_hertz(0.01_dp, 0.01_dp, G, NU, CONTACT_NORMAL_PRESCRIBED_FORCE, 1000.0_dp, hertz)
   if (ierror /= 0) error stop "no Hertz solution"
   do iy = 1, M
     do ix = 1, M

@@ -22,7 +22,6 @@ program hertz
   scene%dy = 12.0_c_double/M
   scene%shear_modulus = 82000        ! N/mm2
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
   scene%approach = 0.1091_c_double
   do iy = 1, M
     do ix = 1, M
@@ -39,8 +38,8 @@ program hertz
   call contact_normal_report_init(report)
   call check(contact_normal_solve(scene, options, fields, report))
   call contact_normal_hertz_solution_init(exact)
-  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
-                                  scene%approach, exact))
+  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, &
+                                  CONTACT_NORMAL_PRESCRIBED_APPROACH, scene%approach, exact))
 
   print '(a, i0, a, i0, a)', "Hertz contact on ", M, " x ", M, " elements"
   print '(a)', "                          computed       exact"

@@ -28,7 +28,6 @@ program layer_example
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 1000
   print '(a)', "compliance   approach  max pressure  contact area"
   do i = 1, size(COMPLIANCES)

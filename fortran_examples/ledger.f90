@@ -21,7 +21,6 @@ program ledger_example
   scene%dy = 12.0_c_double/M
   scene%shear_modulus = 82000        ! N/mm2
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
   scene%approach = 0.1091_c_double
   do iy = 1, M
     do ix = 1, M
@@ -36,8 +35,8 @@ program ledger_example
   call contact_normal_set_ledger(report, ledger)
   call check(contact_normal_solve(scene, fields=fields, report=report))
   call contact_normal_hertz_solution_init(exact)
-  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
-                                  scene%approach, exact))
+  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, &
+                                  CONTACT_NORMAL_PRESCRIBED_APPROACH, scene%approach, exact))
 
   print '(a)', "     grid    work     force N   estimated error  true error"
   do i = 1, int(report%ledger_rows)

@@ -51,7 +51,6 @@ program own_tables
     scene%undeformed_distance = c_loc(h)
     scene%shear_modulus = G
     scene%poisson_ratio = NU
-    scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
     scene%force = 500
     call contact_normal_set_friction(scene, friction, coefficient=0.3_dp)
     friction%creepage = [-1.2e-3_dp, 0.0_dp]

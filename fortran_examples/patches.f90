@@ -33,7 +33,6 @@ program patches_example
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 1000
   print '(a)', "factor  approach  max pressure  contact area"
   do i = 1, size(FACTORS)

@@ -30,7 +30,6 @@ program period_example
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   call contact_normal_set_period(scene, period, x=.true., y=.true.)
   full = sqrt(2.0_c_double)*PI*(82000/(1 - 0.28_c_double))*D/LENGTH
   print '(a)', "mean pressure/p*  part in contact  approach/d"

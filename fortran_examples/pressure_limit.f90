@@ -30,7 +30,6 @@ program pressure_limit_example
   call contact_normal_set_fields(fields, contact=contact, deformed_distance=e)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   call contact_normal_set_pressure_limit(scene, limit, limit=1200.0_c_double)
   print '(a)', "   force  max pressure  contact area  at the limit      dent"
   do i = 1, size(FORCES)

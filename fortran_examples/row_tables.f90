@@ -30,7 +30,6 @@ program row_tables_example
   call contact_normal_set_undeformed_distance(scene, h)
   scene%shear_modulus = 82000
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 20000
   if (contact_normal_influence_half_space(M, M, scene%dx, scene%dy, scene%shear_modulus, scene%poisson_ratio, plane) &
       /= CONTACT_NORMAL_OK) call stop_with_message()

@@ -50,7 +50,6 @@ program to_accuracy
   scene%dy = 12.0_c_double/16
   scene%shear_modulus = 82000        ! N/mm2
   scene%poisson_ratio = 0.28_c_double
-  scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
   scene%approach = 0.1091_c_double
 
   call contact_normal_options_init(options)
@@ -63,8 +62,8 @@ program to_accuracy
   call contact_normal_set_ledger(report, rows)
   call check(contact_normal_solve_to_accuracy(scene, options, accuracy, solver, report))
   call contact_normal_hertz_solution_init(exact)
-  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, scene%load, &
-                                  scene%approach, exact))
+  call check(contact_normal_hertz(CURVATURE_X, CURVATURE_Y, scene%shear_modulus, scene%poisson_ratio, &
+                                  CONTACT_NORMAL_PRESCRIBED_APPROACH, scene%approach, exact))
 
   ! The arrays of the last grid, whose size is known only now.
   allocate (pressure(accuracy%mx, accuracy%my), contact(accuracy%mx, accuracy%my))

@@ -71,11 +71,28 @@ module contact_normal
 
   procedure(contact_normal_log_callback), pointer, save :: log_target => null()
 
+  ! Places in the lists of src/ffi/marks.rs: what was wrong, and in a call of which procedure.
+  integer(c_int32_t), parameter :: WRONG_BODY = 1, NOT_ASSOCIATED = 2, WRONG_SHAPE = 3
+  integer(c_int32_t), parameter :: SET_UNDEFORMED_DISTANCE = 1, SET_INFLUENCE = 2, SET_LAYER = 3, SET_PRESSURE_LIMIT = 4, &
+    SET_PERIOD = 5, SET_PATCHES = 6, SET_ROW_TABLES = 7, SET_COATING = 8, SET_CYCLE = 9, SET_FRICTION = 10, &
+    SET_TANGENTIAL_INFLUENCE = 11, SET_FRICTION_FIELDS = 12, SET_FRICTION_RESULTS = 13, SET_FIELDS = 14, &
+    SET_STRESS_OUTPUTS = 15, SET_LEDGER = 16, SOLVER_SOLVE_BATCH = 17
+
+  interface attach
+    procedure attach_doubles, attach_integers
+  end interface
+
 contains
 
   include 'contact_normal_inits.inc'
 
   include 'contact_normal_procedures.inc'
+
+  include 'contact_normal_setters.inc'
+
+  include 'contact_normal_setters_friction.inc'
+
+  include 'contact_normal_setters_outputs.inc'
 
   include 'contact_normal_norm_solve.inc'
 

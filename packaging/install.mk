@@ -23,7 +23,8 @@ INCLUDEDIR := $(DESTDIR)$(PREFIX)/include
 LIBDIR := $(DESTDIR)$(PREFIX)/lib
 BINDIR := $(DESTDIR)$(PREFIX)/bin
 SHAREDIR := $(DESTDIR)$(PREFIX)/share/contact-normal
-HEADERS := $(addprefix contact_normal,.h .hpp .f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc)
+MODULE := contact_normal.f90 $(notdir $(wildcard include/*.inc))
+HEADERS := contact_normal.h $(notdir $(wildcard include/*.hpp)) $(MODULE)
 
 # $(call filled,template,file): a template of packaging/ with its names filled in.
 filled = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONAME@|$(SONAME)|' \
@@ -55,7 +56,7 @@ install:
 	@$(call filled,contact-normal-config-version.cmake,$(LIBDIR)/cmake/contact-normal)
 	# The Fortran module as a package of fpm, and the licences.
 	$(INSTALL) -m 644 fpm.toml LICENSE-MIT LICENSE-APACHE THIRD_PARTY_NOTICES $(SHAREDIR)
-	$(INSTALL) -m 644 $(addprefix include/contact_normal,.f90 _types.inc _exports.inc _inits.inc _procedures.inc _norm_solve.inc _tang_solve.inc) $(SHAREDIR)/include
+	$(INSTALL) -m 644 $(addprefix include/,$(MODULE)) $(SHAREDIR)/include
 
 # What `make install` of this version with the same PREFIX and DESTDIR has written.
 uninstall:

@@ -199,7 +199,7 @@ fn handles_of_the_c_abi_solve_again_without_allocating() {
     (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, 0.25, 0.2);
     (scene.shear_modulus, scene.poisson_ratio) = (STEEL.shear_modulus, STEEL.poisson_ratio);
     scene.undeformed_distance = surfaces[0].as_ptr();
-    (scene.approach, scene.force) = (0.02, 2000.0);
+    (scene.load, scene.approach, scene.force) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.02, 2000.0);
     let (mut p, mut u, mut e, mut contact) = (vec![0.0; M * M], vec![0.0; M * M], vec![0.0; M * M], vec![0; M * M]);
     let mut rows = vec![contact_normal_ledger_row::default(); 16];
     let mut fields = initialised(contact_normal_fields_init);

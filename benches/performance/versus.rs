@@ -79,6 +79,11 @@ impl Library {
         (!address.is_null()).then(|| unsafe { std::mem::transmute_copy(&address) })
     }
 
+    fn is_abi_2(&self) -> bool {
+        // SAFETY: any symbol will do, it is not called.
+        unsafe { self.find::<unsafe extern "C" fn()>("contact_normal_init") }.is_some()
+    }
+
     /// A struct as this library begins it: that of ABI 2 is told its kind and its size, one of ABI 1 has a function for each struct, fills
     /// less of it, and accepts the rest if that is zero.
     ///
@@ -106,10 +111,8 @@ impl Library {
     /// # Safety
     /// The library is one of this project.
     unsafe fn options(&self, threads: i32) -> Vec<u64> {
-        // SAFETY: any symbol will do, it is not called.
-        let is_abi_2 = unsafe { self.find::<unsafe extern "C" fn()>("contact_normal_init") }.is_some();
         // In words of 8 bytes: in ABI 1 `max_cycles` and `threads` share word 8.
-        if is_abi_2 {
+        if self.is_abi_2() {
             // SAFETY: the struct of this header.
             let mut options: contact_normal_options =
                 unsafe { self.initialised("options", CONTACT_NORMAL_KIND_OPTIONS) };
@@ -145,9 +148,14 @@ pub fn call(library: &str, name: &str, m: usize, load: &str, threads: usize) {
         )
     };
     (scene.mx, scene.my, scene.dx, scene.dy) = (m as i32, m as i32, case.grid.dx, case.grid.dy);
-    (scene.undeformed_distance, scene.approach, scene.force) = (case.h.as_ptr(), approach, force);
+    scene.undeformed_distance = case.h.as_ptr();
     (scene.shear_modulus, scene.poisson_ratio) = (case.bodies.shear_modulus, case.bodies.poisson_ratio);
-    scene.load = i32::from(load == "force");
+    // ABI 1 has no UNSET: there a load of 0 is an approach, and of 1 a force.
+    match (load, library.is_abi_2()) {
+        ("force", true) => scene.force = force,
+        ("force", false) => (scene.load, scene.force) = (1, force),
+        _ => scene.approach = approach,
+    }
     let mut p = vec![0.0; m * m];
     fields.pressure = p.as_mut_ptr();
     let mut once = || {

@@ -52,7 +52,10 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     let mut scene = initialised(contact_normal_scene_init);
     (scene.mx, scene.my, scene.dx, scene.dy) = (mx, my, unit, unit);
     (scene.shear_modulus, scene.poisson_ratio) = (shear_modulus, poisson_ratio);
-    (scene.approach, scene.force, scene.load) = (approach, force, i32::from(by_force));
+    match by_force {
+        true => scene.force = force,
+        false => scene.approach = approach,
+    }
     let mut accuracy = initialised(contact_normal_accuracy_init);
     (accuracy.target, accuracy.max_elements) = (random.decades(1e-4, 0.1), MOST);
     accuracy.surface = Some(write);

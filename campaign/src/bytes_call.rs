@@ -60,7 +60,7 @@ impl Call {
         (scene.dx, scene.dy) = (bytes.sometimes(0.5), bytes.sometimes(0.25));
         scene.shear_modulus = [bytes.sometimes(1.0), bytes.sometimes(f64::INFINITY)];
         scene.poisson_ratio = [bytes.sometimes(0.3), bytes.sometimes(0.0)];
-        (scene.load, scene.reserved) = (bytes.integer(2), i32::from(bytes.byte() == 77));
+        (scene.load, scene.reserved) = (bytes.integer(2).wrapping_add(1), i32::from(bytes.byte() == 77));
         (scene.approach, scene.force) = (bytes.number(), bytes.number());
         call.set_options(bytes);
         let n = if call.has_room() { (call.scene.mx * call.scene.my) as usize } else { 0 };
@@ -244,7 +244,12 @@ impl Call {
     fn case(&self, fixed: &[i32]) -> Case {
         let (scene, options) = (&self.scene, &self.options);
         let grid = Grid { mx: scene.mx as usize, my: scene.my as usize, dx: scene.dx, dy: scene.dy };
-        let load = if scene.load == 0 { Load::Approach(scene.approach) } else { Load::Force(scene.force) };
+        // One of them is always a number that is read: with no `load` named the other is NaN.
+        let by_approach = match scene.load {
+            CONTACT_NORMAL_PRESCRIBED_UNSET => scene.force.is_nan(),
+            load => load == CONTACT_NORMAL_PRESCRIBED_APPROACH,
+        };
+        let load = if by_approach { Load::Approach(scene.approach) } else { Load::Force(scene.force) };
         let is_fixed = options.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
         let how = How {
             method: options.method,

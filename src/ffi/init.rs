@@ -55,11 +55,11 @@ pub const CONTACT_NORMAL_KIND_FRICTION_RESULTS: i32 = 14;
 pub const CONTACT_NORMAL_KIND_STRESS_OUTPUTS: i32 = 15;
 /// `kind`: `contact_normal_stress_maximum`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_STRESS_MAXIMUM: i32 = 16;
-/// `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+/// `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.2.
 pub const CONTACT_NORMAL_KIND_LEDGER_ROW: i32 = 17;
 /// `kind`: `contact_normal_price`, of the first row of an array. Since 0.2.
 pub const CONTACT_NORMAL_KIND_PRICE: i32 = 18;
-/// `kind`: `contact_normal_hertz_solution`. Since 0.1.
+/// `kind`: `contact_normal_hertz_solution`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
 /// `kind`: `contact_normal_cycle`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_CYCLE: i32 = 20;

@@ -23,6 +23,7 @@ mod kept;
 mod ledger;
 mod linear;
 mod log;
+mod marks;
 mod members;
 mod options;
 mod outputs;

@@ -13,10 +13,12 @@ use crate::grid::Grid;
 use crate::memory::collected;
 use crate::scene::{Bodies, Coating, Load, Scene};
 
+/// `load`: that one of `approach` and `force` is given which is set; both or none is refused.
+pub const CONTACT_NORMAL_PRESCRIBED_UNSET: i32 = 0;
 /// `load`: the approach of the bodies is given.
-pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 0;
+pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 1;
 /// `load`: the normal force is given, the approach is found.
-pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 1;
+pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 2;
 
 /// What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
 /// system of units.
@@ -39,13 +41,13 @@ pub struct contact_normal_scene {
     pub shear_modulus: [f64; 2],
     /// nu of the two bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],
-    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
+    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE: that one is read, the other is not. Default UNSET: the one that is set.
     pub load: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
+    /// Prescribed approach (indentation, penetration): a length. Default NaN: not set.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
+    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
     pub force: f64,
     /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
@@ -65,7 +67,7 @@ pub struct contact_normal_scene {
     pub friction: *const contact_normal_friction,
 }
 
-versioned! { contact_normal_scene, contact_normal_scene_init, 168 }
+versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
 
 /// The load that the constants and values of the boundary mean.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {
@@ -73,8 +75,27 @@ pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refu
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
         CONTACT_NORMAL_PRESCRIBED_FORCE => Ok(Load::Force(force)),
         other => {
-            let rule = "it must be PRESCRIBED_APPROACH (0) or PRESCRIBED_FORCE (1)";
+            let rule = "it must be PRESCRIBED_APPROACH (1) or PRESCRIBED_FORCE (2)";
             Err(Refusal::invalid(format!("load is {other}; {rule}")))
+        }
+    }
+}
+
+/// The load of a scene: the one that `load` names or, where it names none, the one that is set.
+fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
+    let (approach, force) = (scene.approach, scene.force);
+    if scene.load != CONTACT_NORMAL_PRESCRIBED_UNSET {
+        return load_of(scene.load, approach, force);
+    }
+    match (approach.is_nan(), force.is_nan()) {
+        (false, true) => Ok(Load::Approach(approach)),
+        (true, false) => Ok(Load::Force(force)),
+        (true, true) => Err(Refusal::invalid(
+            "the scene has no load: set scene->approach or scene->force (both are NaN)".to_owned(),
+        )),
+        (false, false) => {
+            let rule = "leave one of them NaN, or set scene->load to PRESCRIBED_APPROACH (1) or PRESCRIBED_FORCE (2)";
+            Err(Refusal::invalid(format!("the scene has two loads, approach {approach} and force {force}: {rule}")))
         }
     }
 }
@@ -115,6 +136,15 @@ impl Named {
                 scene,
             })
         }
+    }
+
+    /// The same for a call that uses no load: none needs to be set.
+    pub fn load_or_none(mut self) -> Named {
+        let scene = &mut self.scene;
+        if scene.load == CONTACT_NORMAL_PRESCRIBED_UNSET && scene.approach.is_nan() && scene.force.is_nan() {
+            scene.approach = 0.0;
+        }
+        self
     }
 
     /// Elements of the grid.
@@ -163,7 +193,7 @@ impl Named {
 
     /// The same with another undeformed distance.
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
-        let load = load_of(self.scene.load, self.scene.approach, self.scene.force)?;
+        let load = load_of_scene(&self.scene)?;
         // SAFETY: by the caller.
         unsafe { self.with_load(undeformed_distance, load) }
     }

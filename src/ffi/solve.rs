@@ -96,6 +96,7 @@ impl Request<'_> {
             let scene = match needs {
                 Needs::NoLoad => named.without_load()?,
                 Needs::Bodies if !named.has_distance() => named.without_load()?,
+                Needs::Bodies => named.load_or_none().translate()?,
                 _ => named.translate()?,
             };
             Ok(Request { scene, options: translated, outputs })

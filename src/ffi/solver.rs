@@ -73,8 +73,8 @@ impl Drop for InUse<'_> {
 }
 
 /// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
-/// precision and threads of `options` (NULL: the defaults). The undeformed distance may be NULL; where it is given, it and the load of
-/// `scene` must be valid. Each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+/// precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
+/// set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
 /// Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_new(
@@ -136,7 +136,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 /// From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
 /// its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
 /// up with `scene->influence`, with `friction->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
-/// `continues` may start from. What is refused changes nothing. Since 0.2.
+/// `continues` may start from. What is refused changes nothing. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_set_influence(
     solver: *mut contact_normal_solver,

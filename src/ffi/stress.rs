@@ -117,7 +117,7 @@ impl Load {
     unsafe fn read<'a>(&self) -> Result<(Body, Loads<'a>, Translated), Refusal> {
         // SAFETY (all): by the caller.
         unsafe {
-            let named = Named::read(self.scene)?;
+            let named = Named::read(self.scene)?.load_or_none();
             let scene = named.with_distance(&[])?;
             let options = options::translate(self.options)?;
             effects::check_effects(&scene)?;

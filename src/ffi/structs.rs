@@ -3,6 +3,7 @@
 
 use std::mem::size_of;
 
+use super::marks;
 use super::status::Refusal;
 
 /// A struct of the ABI.
@@ -70,6 +71,9 @@ pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> 
     let refuse = |rule: &str| {
         Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}: call {}_init", T::NAME)))
     };
+    if let Some(fault) = marks::read(declared) {
+        return Err(Refusal::invalid(fault));
+    }
     let Ok(size) = usize::try_from(declared) else { return refuse("it must be positive") };
     if size < T::FIRST_SIZE {
         return refuse(&format!("it must be at least {}", T::FIRST_SIZE));

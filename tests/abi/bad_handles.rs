@@ -223,22 +223,22 @@ fn closed_forms_refuse_bad_input() {
         assert!(words.iter().all(|word| last_error().contains(word)), "{words:?}: {}", last_error());
     };
     let (g, nu) = (g.as_ptr(), nu.as_ptr());
-    hertz(1.0, 2.0, null(), nu, 0, 0.1, &["shear_modulus"], NULL);
-    hertz(1.0, 2.0, g, null(), 0, 0.1, &["poisson_ratio"], NULL);
-    hertz(1.0, 2.0, [1.0, NAN].as_ptr(), nu, 0, 0.1, &["shear_modulus[1]", "NaN"], NOT_FINITE);
-    hertz(1.0, 2.0, [INF, INF].as_ptr(), nu, 0, 0.1, &["shear_modulus"], INVALID);
-    hertz(1.0, 2.0, g, [0.6, 0.3].as_ptr(), 0, 0.1, &["poisson_ratio[0]", "0.6"], INVALID);
-    hertz(0.0, 2.0, g, nu, 0, 0.1, &["curvature_x", "0"], INVALID);
-    hertz(1.0, -2.0, g, nu, 0, 0.1, &["curvature_y", "-2"], INVALID);
-    hertz(NAN, 2.0, g, nu, 0, 0.1, &["curvature_x", "NaN"], NOT_FINITE);
-    hertz(1.0, INF, g, nu, 1, 0.1, &["curvature_y", "inf"], NOT_FINITE);
-    hertz(1.0, 2.0, g, nu, 2, 0.1, &["load", "2"], INVALID);
-    hertz(1.0, 2.0, g, nu, 0, -0.1, &["amount", "approach", "-0.1"], INVALID);
-    hertz(1.0, 2.0, g, nu, 1, 0.0, &["amount", "force", "0"], INVALID);
-    hertz(1.0, 2.0, g, nu, 1, NAN, &["amount", "force", "NaN"], NOT_FINITE);
-    hertz(1e-300, 1e300, g, nu, 1, 1e300, &["curvature_x", "curvature_y", "range"], INVALID);
+    hertz(1.0, 2.0, null(), nu, APPROACH, 0.1, &["shear_modulus"], NULL);
+    hertz(1.0, 2.0, g, null(), APPROACH, 0.1, &["poisson_ratio"], NULL);
+    hertz(1.0, 2.0, [1.0, NAN].as_ptr(), nu, APPROACH, 0.1, &["shear_modulus[1]", "NaN"], NOT_FINITE);
+    hertz(1.0, 2.0, [INF, INF].as_ptr(), nu, APPROACH, 0.1, &["shear_modulus"], INVALID);
+    hertz(1.0, 2.0, g, [0.6, 0.3].as_ptr(), APPROACH, 0.1, &["poisson_ratio[0]", "0.6"], INVALID);
+    hertz(0.0, 2.0, g, nu, APPROACH, 0.1, &["curvature_x", "0"], INVALID);
+    hertz(1.0, -2.0, g, nu, APPROACH, 0.1, &["curvature_y", "-2"], INVALID);
+    hertz(NAN, 2.0, g, nu, APPROACH, 0.1, &["curvature_x", "NaN"], NOT_FINITE);
+    hertz(1.0, INF, g, nu, FORCE, 0.1, &["curvature_y", "inf"], NOT_FINITE);
+    hertz(1.0, 2.0, g, nu, UNSET, 0.1, &["load", "0"], INVALID);
+    hertz(1.0, 2.0, g, nu, APPROACH, -0.1, &["amount", "approach", "-0.1"], INVALID);
+    hertz(1.0, 2.0, g, nu, FORCE, 0.0, &["amount", "force", "0"], INVALID);
+    hertz(1.0, 2.0, g, nu, FORCE, NAN, &["amount", "force", "NaN"], NOT_FINITE);
+    hertz(1e-300, 1e300, g, nu, FORCE, 1e300, &["curvature_x", "curvature_y", "range"], INVALID);
     // SAFETY: as above, and a NULL result.
-    let status = unsafe { contact_normal_hertz(1.0, 2.0, g, nu, 0, 0.1, null_mut()) };
+    let status = unsafe { contact_normal_hertz(1.0, 2.0, g, nu, APPROACH, 0.1, null_mut()) };
     assert_eq!((status, last_error().contains("solution")), (NULL, true));
 
     let table = |cx, cy, dx, dy, g: *const f64, nu: *const f64, words: &[&str], expected: i32| {

@@ -130,7 +130,7 @@ impl Call {
         let scene = &mut call.scene.known;
         (scene.mx, scene.my, scene.dx, scene.dy) = (MX as i32, MY as i32, 0.5, 0.25);
         (scene.shear_modulus, scene.poisson_ratio) = ([82000.0; 2], [0.28; 2]);
-        (scene.approach, scene.force) = (0.03, 100.0);
+        (scene.load, scene.approach, scene.force) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.03, 100.0);
         scene.undeformed_distance = call.h.as_ptr();
         let (g, nu) = (scene.shear_modulus.as_ptr(), scene.poisson_ratio.as_ptr());
         let (cx, cy) = (CX as i32, CY as i32);

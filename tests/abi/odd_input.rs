@@ -1,6 +1,6 @@
 //! Input that looks odd but is allowed; elements at their limit, batches with friction, and fixed areas.
 
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use crate::call::{initialised, Call, Through, CX, CY};
 use crate::rows::*;
@@ -72,7 +72,7 @@ const ACCEPTED: &[Change] = &[
     ("one rigid body", |c| c.scene.known.shear_modulus[1] = INF),
     ("incompressible", |c| c.scene.known.poisson_ratio = [0.5; 2]),
     ("a force that is not the load", |c| c.scene.known.force = NAN),
-    ("an approach that is not the load", |c| (c.scene.known.load, c.scene.known.approach) = (1, NAN)),
+    ("an approach that is not the load", |c| (c.scene.known.load, c.scene.known.approach) = (FORCE, NAN)),
     ("a table larger than the grid", |c| { c.use_table(); }),
     ("a layer of nothing", |c| { c.use_layer(); }),
     ("a layer, and a uniform one that is not read", |c| { c.set_compliance(0, 0.0); c.layer.known.compliance = NAN; }),
@@ -106,14 +106,46 @@ fn what_is_allowed_is_solved() {
     }
 }
 
+/// `load` needs to be named only where both amounts are numbers.
+#[test]
+fn the_load_is_the_one_that_is_set() {
+    let pressures = |load: i32, approach: f64, force: f64| {
+        let mut call = Call::new();
+        (call.scene.known.load, call.scene.known.approach, call.scene.known.force) = (load, approach, force);
+        assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
+        call.pressure.clone()
+    };
+    let by_approach = pressures(CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.03, 100.0);
+    let by_force = pressures(FORCE, 0.03, 100.0);
+    assert!(by_approach != by_force);
+    assert!(pressures(UNSET, 0.03, NAN) == by_approach && pressures(UNSET, NAN, 100.0) == by_force);
+}
+
+/// The set-up of a handle, and the tangential problem of given pressures.
+#[test]
+fn what_uses_no_load_needs_none() {
+    let mut call = Call::new();
+    (call.scene.known.load, call.scene.known.approach, call.scene.known.force) = (UNSET, NAN, NAN);
+    let handle = call.new_handle();
+    // SAFETY: a handle that nothing uses.
+    assert_eq!(unsafe { contact_normal_solver_free(handle) }, CONTACT_NORMAL_OK);
+    call.use_friction();
+    let pressures = vec![1.0; call.h.len()];
+    // SAFETY: structs that declare their size, and one pressure per element.
+    let status = unsafe {
+        contact_normal_solve_tangential(&call.scene.known, pressures.as_ptr(), null(), null_mut(), null_mut())
+    };
+    assert_eq!(status, CONTACT_NORMAL_OK);
+}
+
 #[test]
 fn no_contact_is_no_error() {
     #[rustfmt::skip]
     let scenes: [Change; 4] = [
         ("bodies apart", |c| c.scene.known.approach = -0.5),
-        ("no force", |c| (c.scene.known.load, c.scene.known.force) = (1, 0.0)),
+        ("no force", |c| (c.scene.known.load, c.scene.known.force) = (FORCE, 0.0)),
         ("no surface, approach prescribed", |c| c.h.fill(INF)),
-        ("no surface, no force", |c| { c.h.fill(INF); (c.scene.known.load, c.scene.known.force) = (1, 0.0); }),
+        ("no surface, no force", |c| { c.h.fill(INF); (c.scene.known.load, c.scene.known.force) = (FORCE, 0.0); }),
     ];
     for (name, change) in scenes {
         for method in [CONTACT_NORMAL_METHOD_AUTO, CONTACT_NORMAL_METHOD_NORM, CONTACT_NORMAL_METHOD_MULTIGRID] {

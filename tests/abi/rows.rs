@@ -14,6 +14,9 @@ pub const UNSUPPORTED: i32 = CONTACT_NORMAL_UNSUPPORTED;
 pub const NOT_POSITIVE: i32 = CONTACT_NORMAL_NOT_POSITIVE_DEFINITE;
 pub const INF: f64 = f64::INFINITY;
 pub const NAN: f64 = f64::NAN;
+pub const UNSET: i32 = CONTACT_NORMAL_PRESCRIBED_UNSET;
+pub const APPROACH: i32 = CONTACT_NORMAL_PRESCRIBED_APPROACH;
+pub const FORCE: i32 = CONTACT_NORMAL_PRESCRIBED_FORCE;
 /// Factors of two patches.
 pub const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
 
@@ -60,14 +63,15 @@ pub const SET_UP: &[Row] = &[
     }),
     (&["load", "7"], INVALID, |c| c.scene.known.load = 7),
     (&["load", "-1"], INVALID, |c| c.scene.known.load = -1),
+    (&["two loads", "approach 0.03", "force 100", "PRESCRIBED_FORCE"], INVALID, |c| c.scene.known.load = UNSET),
     (&["reserved", "3"], INVALID, |c| c.scene.known.reserved = 3),
     (&["approach", "NaN"], NOT_FINITE, |c| c.scene.known.approach = NAN),
     (&["approach", "inf"], NOT_FINITE, |c| c.scene.known.approach = INF),
-    (&["force", "-5"], INVALID, |c| (c.scene.known.load, c.scene.known.force) = (1, -5.0)),
-    (&["force", "NaN"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (1, NAN)),
-    (&["force", "inf"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (1, INF)),
+    (&["force", "-5"], INVALID, |c| (c.scene.known.load, c.scene.known.force) = (FORCE, -5.0)),
+    (&["force", "NaN"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (FORCE, NAN)),
+    (&["force", "inf"], NOT_FINITE, |c| (c.scene.known.load, c.scene.known.force) = (FORCE, INF)),
     (&["force", "100", "undeformed_distance"], INFEASIBLE, |c| {
-        c.scene.known.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
+        c.scene.known.load = FORCE;
         c.h.fill(INF);
     }),
 
@@ -92,7 +96,7 @@ pub const SET_UP: &[Row] = &[
     (&["pressure_limit->limits", "(2, 0)", "-3"], INVALID, |c| c.set_limit(2, -3.0)),
     (&["pressure_limit->limits", "(0, 1)", "NaN"], NOT_FINITE, |c| c.set_limit(MX, NAN)),
     // 30 elements of 0.5 by 0.25 at 2: 7.5
-    (&["force", "100", "pressure_limit", "7.5"], INFEASIBLE, |c| { c.scene.known.load = 1; c.use_limit().limit = 2.0; }),
+    (&["force", "100", "pressure_limit", "7.5"], INFEASIBLE, |c| { c.scene.known.load = FORCE; c.use_limit().limit = 2.0; }),
     (&["period->x", "2"], INVALID, |c| c.use_period(2, 0)),
     (&["period->y", "-1"], INVALID, |c| c.use_period(1, -1)),
     (&["period->x", "period->y", "0"], INVALID, |c| c.use_period(0, 0)),
@@ -141,7 +145,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->spin", "inf"], NOT_FINITE, |c| c.use_friction().spin = INF),
     (&["friction->spin_centre[1]", "NaN"], NOT_FINITE, |c| c.use_friction().spin_centre[1] = NAN),
     (&["friction->spin_offset", "NaN"], NOT_FINITE, |c| c.use_friction().spin_offset = NAN),
-    (&["friction->force[0]", "inf"], NOT_FINITE, |c| { let f = c.use_friction(); (f.prescribed[0], f.force[0]) = (1, INF); }),
+    (&["friction->force[0]", "inf"], NOT_FINITE, |c| { let f = c.use_friction(); (f.prescribed[0], f.force[0]) = (CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE, INF); }),
     (&["friction->rolling_distance", "-1"], INVALID, |c| c.use_friction().rolling_distance = -1.0),
     (&["friction->rolling_direction", "7"], INVALID, |c| c.use_friction().rolling_direction = 7.0),
     (&["previous_traction"], NULL, |c| { let each = c.each.as_ptr(); c.use_friction().previous_traction[1] = each; }),
@@ -207,6 +211,9 @@ pub const SET_UP: &[Row] = &[
 /// Outputs and initial guesses: refused by a solve, with or without a handle.
 #[rustfmt::skip]
 pub const SOLVES: &[Row] = &[
+    (&["no load", "set scene->approach or scene->force"], INVALID, |c| {
+        (c.scene.known.load, c.scene.known.approach, c.scene.known.force) = (UNSET, NAN, NAN);
+    }),
     (&["ledger", "ledger_capacity"], NULL, |c| c.report.known.ledger = null_mut()),
     (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
     (&["contact", "FIXED"], NULL, |c| { c.fix_contact(); c.fields.known.contact = null_mut(); }),

@@ -101,6 +101,21 @@ static void scenes()
     expect(std::abs(own.report.normal.approach / found.report.normal.approach - 1.0) < 1e-5, "own coefficients, those of the half-space");
 }
 
+static void loads()
+{
+    const std::vector<double> h = ball(0.01);
+    cn::scene scene(GRID, STEEL);
+    scene.undeformed_distance(h);
+    expect(thrown_by([&] { cn::solve(scene); }, "no load: set") == CONTACT_NORMAL_INVALID_ARGUMENT, "a scene needs a load");
+    cn::result found;
+    expect(cn::solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT && found.pressure == std::vector<double>(h.size()), "without exceptions, too");
+    cn::solver solver(scene); // needs none
+    expect(solver.solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT, "nor does a handle guess it");
+    const double force = solver.solve(scene.approach(0.01)).report.normal.force;
+    const double approach = solver.solve(scene.force(force)).report.normal.approach;
+    expect(std::abs(approach / 0.01 - 1.0) < 1e-5, "the one that is set last");
+}
+
 static void refusals()
 {
     const std::vector<double> h = ball(0.01), half(h.begin(), h.begin() + 100);
@@ -159,7 +174,7 @@ static void frictions()
     const std::vector<double> h = ball(0.01);
     cn::scene scene(GRID, STEEL);
     scene.undeformed_distance(h).force(500.0);
-    expect(cn::solve(scene).stick_slip == std::vector<std::int32_t>(h.size(), 0), "no friction: nothing adheres");
+    expect(!cn::solve(scene).holds(cn::fields::stick_slip), "no friction: nothing adheres or slips");
 
     const double creepage[2] = {-1e-3, 2e-4}, spin = 1e-4;
     const cn::friction moved = cn::friction(0.3).motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).creepage(0, creepage[0]).creepage(1, creepage[1]).spin(spin);
@@ -240,6 +255,7 @@ static void stresses_below_the_surface()
 int main()
 {
     scenes();
+    loads();
     frictions();
     refusals();
     handles();

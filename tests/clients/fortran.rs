@@ -176,6 +176,49 @@ fn the_wrappers_of_the_module_work() {
     assert_eq!(run_linked(&program, &[], &folder), format!("{}\nall hold\n", env!("CARGO_PKG_VERSION")));
 }
 
+/// And of programs whose default kinds are wider, which compile the module so, too.
+#[test]
+fn the_module_works_with_other_default_kinds() {
+    let wide = ["-fdefault-integer-8", "-fdefault-real-8", "-fdefault-double-8"];
+    for (i, flags) in [&wide[..1], &wide[1..], &wide[..]].into_iter().enumerate() {
+        for name in ["hertz", "coating", "creep_forces", "own_tables"] {
+            let folder = scratch(&format!("fortran_kinds_{name}_{i}"));
+            let program = compile(&format!("fortran_examples/{name}.f90"), flags, &folder);
+            let arguments: &[&str] = if name == "hertz" { &["arrays.txt"] } else { &[] };
+            let output = without_times(&run_linked(&program, arguments, &folder));
+            let expected = std::fs::read_to_string(root().join(format!("fortran_examples/{name}.expected")));
+            assert_eq!(output, expected.expect("expected"), "{name} {flags:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_attached_wrong_is_said() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_setters_{i}"));
+        let program = compile("tests/clients/fortran_setters.f90", flags, &folder);
+        assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
+    }
+}
+
+/// A part of an array with gaps would be copied, and the copy would be gone when the library reads it.
+#[test]
+fn arrays_with_gaps_are_refused_at_compile_time() {
+    let folder = scratch("fortran_gaps");
+    let source = |part: &str| {
+        format!(
+            "program attach\n  use contact_normal\n  use iso_c_binding\n  real(c_double), target :: h(4, 4)\n  \
+             type(contact_normal_scene) :: scene\n  call contact_normal_set_undeformed_distance(scene, {part})\nend program\n"
+        )
+    };
+    for (part, compiles) in [("h", true), ("h(:, 2:3)", true), ("h(::2, :)", false), ("(h)", false), ("2*h", false)] {
+        std::fs::write(folder.join("attach.f90"), source(part)).expect("a source");
+        let mut gfortran = Command::new("gfortran");
+        gfortran.arg("-c").arg(root().join("include/contact_normal.f90")).arg("attach.f90").current_dir(&folder);
+        assert_eq!(gfortran.output().expect("gfortran").status.success(), compiles, "{part}");
+    }
+}
+
 /// An array that is no target might be kept in registers while the library writes it: the compiler refuses to attach
 /// it.
 #[test]

@@ -1,6 +1,7 @@
 //! The library as C, C++, Fortran and Python programs use it: header, symbols, the installed package, clients, hosts.
 
 mod c;
+mod cxx;
 mod description;
 mod exported_symbols;
 mod fortran;
@@ -13,6 +14,8 @@ mod papers;
 mod python;
 mod python_names;
 mod python_versions;
+mod readmes;
 mod rust_layout;
+mod since;
 mod stored_headers;
 mod support;

@@ -153,7 +153,7 @@ fn what_is_written_overlaps_with_nothing() {
         let mut patches = initialised(contact_normal_patches_init);
         (patches.count, patches.patch, patches.factors) = (1, patch.as_ptr(), at(factor, &mut places));
         let mut scene = initialised(contact_normal_scene_init);
-        (scene.mx, scene.my, scene.dx, scene.dy) = (3, 1, 1.0, 1.0);
+        (scene.mx, scene.my, scene.dx, scene.dy, scene.approach) = (3, 1, 1.0, 1.0, 0.0);
         (scene.shear_modulus, scene.undeformed_distance) = ([1.0; 2], at(h, &mut places));
         scene.patches = &patches;
         let mut fields = initialised(contact_normal_fields_init);

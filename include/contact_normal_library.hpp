@@ -1,0 +1,129 @@
+// contact_normal.hpp: the library itself, its log and its memory; closed forms and tables of coefficients.
+#ifndef CONTACT_NORMAL_LIBRARY_HPP
+#define CONTACT_NORMAL_LIBRARY_HPP
+
+#include <contact_normal_arrays.hpp>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace contact_normal {
+
+/// The version of the library, as "0.2.0".
+inline std::string version() { return contact_normal_version(); }
+
+/// That of its ABI: at least CONTACT_NORMAL_ABI_VERSION of the header.
+inline std::int32_t abi_version() noexcept { return contact_normal_abi_version(); }
+
+/// Whether the library has what is called so; see `contact_normal_has`.
+inline bool has(const std::string &name) { return contact_normal_has(name.c_str()) != 0; }
+
+/// A short text for a status.
+inline std::string status_text(contact_normal_status status) { return contact_normal_status_text(status); }
+
+/// Gives back to the system what the library keeps for later calls.
+inline void release() { check(contact_normal_release()); }
+
+/// How many bytes of solves that are over are kept at most, in the process.
+inline void keep(std::int64_t bytes) { check(contact_normal_keep(bytes)); }
+
+/// What is kept now.
+struct memory {
+    std::int64_t bytes;
+    std::int32_t threads;
+};
+inline memory kept()
+{
+    memory found{};
+    check(contact_normal_kept(&found.bytes, &found.threads));
+    return found;
+}
+
+/// Called with a level, CONTACT_NORMAL_LOG_..., and a message, on the thread that called the library. What it throws is dropped.
+using log_callback = std::function<void(std::int32_t, const std::string &)>;
+
+/// Sends log messages up to a level to a callback as long as it lives; then there are none. For the whole process, so one at a time,
+/// which no other thread that is inside the library outlives.
+class [[nodiscard]] log {
+public:
+    log(std::int32_t level, log_callback callback) : callback_(std::move(callback))
+    {
+        check(contact_normal_set_log(on_message, level, this));
+    }
+    ~log() { contact_normal_set_log(nullptr, CONTACT_NORMAL_LOG_OFF, nullptr); }
+    // The library has its address.
+    log(const log &) = delete;
+    log &operator=(const log &) = delete;
+
+private:
+    static void on_message(std::int32_t level, const char *message, void *user) noexcept
+    {
+        try {
+            static_cast<log *>(user)->callback_(level, message);
+        } catch (...) {
+            // No exception may pass through the library.
+        }
+    }
+
+    log_callback callback_;
+};
+
+namespace detail {
+
+/// Two bodies as the C ABI takes them.
+struct pair_of_bodies {
+    double shear_modulus[2], poisson_ratio[2];
+
+    pair_of_bodies(const body &one, const body &other)
+        : shear_modulus{one.shear_modulus, other.shear_modulus}, poisson_ratio{one.poisson_ratio, other.poisson_ratio}
+    {
+    }
+};
+
+} // namespace detail
+
+/// The value of the constant that is called so, with or without CONTACT_NORMAL_.
+inline std::int32_t constant(const std::string &name)
+{
+    std::int32_t value = 0;
+    check(contact_normal_constant(name.c_str(), &value));
+    return value;
+}
+
+/// The exact contact of h = curvature_x x^2 + curvature_y y^2 for a prescribed approach or force (`load`).
+inline contact_normal_hertz_solution hertz(double curvature_x, double curvature_y, const body &one, const body &other,
+                                           std::int32_t load, double amount)
+{
+    const detail::pair_of_bodies both(one, other);
+    contact_normal_hertz_solution exact;
+    contact_normal_hertz_solution_init(&exact);
+    check(contact_normal_hertz(curvature_x, curvature_y, both.shear_modulus, both.poisson_ratio, load, amount, &exact));
+    return exact;
+}
+
+/// The influence coefficients of the half-space for elements dx by dy over offsets -cx..cx-1 by -cy..cy-1: 2 cy * 2 cx values, as
+/// `scene::influence` takes them.
+inline std::vector<double> influence_half_space(std::int32_t cx, std::int32_t cy, double dx, double dy, const body &one, const body &other)
+{
+    const detail::pair_of_bodies both(one, other);
+    std::vector<double> coefficients(4 * detail::count(cx) * detail::count(cy));
+    check(contact_normal_influence_half_space(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, coefficients.data()));
+    return coefficients;
+}
+
+/// What a body with a coating of this thickness and material gives way to a pressure wave: see `contact_normal_coating_compliance`.
+inline double coating_compliance(double thickness, const body &material, const body &below, double wave_number)
+{
+    contact_normal_coating coating;
+    contact_normal_coating_init(&coating);
+    coating.thickness = thickness, coating.shear_modulus = material.shear_modulus, coating.poisson_ratio = material.poisson_ratio;
+    double compliance = 0.0;
+    check(contact_normal_coating_compliance(&coating, below.shear_modulus, below.poisson_ratio, wave_number, &compliance));
+    return compliance;
+}
+
+} // namespace contact_normal
+
+#endif // CONTACT_NORMAL_LIBRARY_HPP

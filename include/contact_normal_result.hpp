@@ -1,0 +1,164 @@
+// contact_normal.hpp: what a solve found.
+#ifndef CONTACT_NORMAL_RESULT_HPP
+#define CONTACT_NORMAL_RESULT_HPP
+
+#include <contact_normal_arrays.hpp>
+#include <contact_normal_scene.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace contact_normal {
+
+/// Arrays of a result: `fields::pressure | fields::contact` are two of them.
+enum class fields : std::uint32_t {
+    none = 0,
+    pressure = 1,
+    deformed_distance = 2,
+    displacement = 4,
+    contact = 8,
+    traction = 16,
+    slip = 32,
+    stick_slip = 64,
+    ledger = 128, // the estimated errors, too
+    all = 255
+};
+constexpr fields operator|(fields a, fields b) noexcept
+{
+    return static_cast<fields>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr fields operator&(fields a, fields b) noexcept
+{
+    return static_cast<fields>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
+}
+constexpr fields operator-(fields a, fields b) noexcept
+{
+    return static_cast<fields>(static_cast<std::uint32_t>(a) & ~static_cast<std::uint32_t>(b));
+}
+
+namespace detail {
+struct outputs;
+constexpr fields of_friction = fields::traction | fields::slip | fields::stick_slip;
+} // namespace detail
+
+/// What a solve found. The arrays have my * mx values, x fastest; those that it does not hold are empty.
+struct result {
+    contact_normal_status status = CONTACT_NORMAL_OK;
+    std::string message; // why, if the status is not OK, and what report.warnings mean
+    std::vector<double> pressure, deformed_distance, displacement;
+    std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
+    std::array<std::vector<double>, 2> traction, slip; // in x and y; with friction only
+    std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip; with friction only
+    contact_normal_report report;
+    std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
+
+    /// A result for `solve_into`, which asks for these arrays. Each costs a copy; the ledger costs an estimate of the errors, and is
+    /// not among the defaults.
+    explicit result(fields of = fields::all - fields::ledger) : asked(of) { contact_normal_report_init(&report); }
+
+    /// What the next solve into it writes, but for what friction alone has if there is none.
+    fields asked;
+    /// Whether the last solve wrote all of these.
+    bool holds(fields which) const noexcept { return (held_ & which) == which; }
+    /// True if the contact conditions hold to the tolerance.
+    explicit operator bool() const noexcept { return status == CONTACT_NORMAL_OK; }
+
+private:
+    friend struct detail::outputs;
+    fields held_ = fields::none;
+};
+
+namespace detail {
+
+// One row per grid, each with half the elements in a direction: mx and my are 32-bit.
+constexpr std::size_t ledger_room = 32;
+
+/// Where the library writes what a result asks for.
+struct outputs {
+    contact_normal_fields written;
+    std::array<contact_normal_ledger_row, ledger_room> rows; // begun only if the ledger is asked for
+    fields writes;
+
+    /// Points to the arrays of `found`. Where the start is given, pressures (and the contact area, if there is one) are read. Returns
+    /// what is wrong with it.
+    std::string begin(const scene &of, result &found, const contact_normal_options &how)
+    {
+        const std::size_t size = of.size();
+        const bool is_given = how.initial_guess == CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
+        const bool is_fixed = how.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
+        if (is_given && found.pressure.size() != size) return wrong_size("found.pressure, the start,", found.pressure.size(), size);
+        const bool has_contact = found.contact.size() == size;
+        if (is_fixed && !has_contact) return wrong_size("found.contact, which is fixed,", found.contact.size(), size);
+        fields reads = is_given ? fields::pressure : fields::none;
+        if (is_fixed || (is_given && has_contact)) reads = reads | fields::contact;
+        writes = of.has_friction() ? found.asked : found.asked - of_friction;
+        if (is_given && !has_contact && has(writes, fields::contact)) {
+            found.contact.clear();
+            for (double p : found.pressure) found.contact.push_back(p > 0.0);
+        }
+        point(found, writes | reads, size);
+        return {};
+    }
+
+    /// Points to arrays of this size, and begins the report.
+    void point(result &found, fields which, std::size_t size)
+    {
+        contact_normal_fields_init(&written);
+        written.pressure = room(found.pressure, has(which, fields::pressure), size);
+        written.contact = room(found.contact, has(which, fields::contact), size);
+        written.deformed_distance = room(found.deformed_distance, has(which, fields::deformed_distance), size);
+        written.displacement = room(found.displacement, has(which, fields::displacement), size);
+        for (std::size_t k : {0u, 1u}) {
+            written.traction[k] = room(found.traction[k], has(which, fields::traction), size);
+            written.slip[k] = room(found.slip[k], has(which, fields::slip), size);
+        }
+        written.stick_slip = room(found.stick_slip, has(which, fields::stick_slip), size);
+        contact_normal_report_init(&found.report);
+        if (has(which, fields::ledger)) {
+            contact_normal_ledger_row_init(rows.data());
+            found.report.ledger = rows.data(), found.report.ledger_capacity = ledger_room;
+        }
+    }
+
+    /// Notes how it ended. A refused solve has written nothing.
+    void end(result &found, contact_normal_status status, const char *message) const
+    {
+        found.status = status;
+        found.message = message;
+        found.held_ = status < 0 ? fields::none : writes;
+        found.ledger.assign(rows.data(), rows.data() + (found.holds(fields::ledger) ? found.report.ledger_rows : 0));
+        found.report.ledger = nullptr, found.report.ledger_capacity = 0;
+    }
+    /// Of the last call on this thread.
+    void end(result &found, contact_normal_status status) const
+    {
+        const bool is_silent = status == CONTACT_NORMAL_OK && found.report.warnings == 0;
+        end(found, status, is_silent ? "" : contact_normal_last_error());
+    }
+
+    /// Adds the rows of a ledger to a result that was written otherwise.
+    static void add_ledger(result &found, fields asked, const std::vector<contact_normal_ledger_row> &rows)
+    {
+        if (!has(asked, fields::ledger)) return;
+        found.ledger.assign(rows.data(), rows.data() + std::min<std::int64_t>(found.report.ledger_rows, ledger_room));
+        found.held_ = found.held_ | fields::ledger;
+    }
+
+private:
+    static bool has(fields of, fields one) noexcept { return (of & one) != fields::none; }
+
+    /// The place of an array of this size, if it is wanted.
+    template <class T> static T *room(std::vector<T> &values, bool wanted, std::size_t size)
+    {
+        values.resize(wanted ? size : 0);
+        return wanted ? values.data() : nullptr;
+    }
+};
+
+} // namespace detail
+
+} // namespace contact_normal
+
+#endif // CONTACT_NORMAL_RESULT_HPP

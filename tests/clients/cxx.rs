@@ -1,0 +1,210 @@
+//! The C++ header, contact_normal.hpp: what its classes promise, what it does not compile, and what it costs beside C.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::c::{compile, compiler};
+use crate::description::Description;
+use crate::generated::header;
+use crate::support::{finished, root, run, run_linked, run_under_valgrind, scratch};
+
+/// Strict users' flags for the header.
+fn strict(standard: &str) -> Command {
+    let mut strict = compiler("g++", standard);
+    strict.arg("-Wshadow");
+    strict
+}
+
+#[test]
+fn the_cxx_header_keeps_its_promises() {
+    let folder = scratch("cxx_header");
+    for standard in ["c++17", "c++20"] {
+        for (source, expected) in [("cxx_header", "0 of 50 checks failed\n"), ("cxx_rest", "0 of 63 checks failed\n")] {
+            let program = compile(strict(standard), &format!("tests/clients/{source}.cpp"), &folder);
+            assert_eq!(run_under_valgrind(&program, &[], &folder), expected, "{source}, {standard}");
+        }
+    }
+    let program = compile(compiler("g++", "c++17"), "cxx_examples/hertz.cpp", &folder);
+    let expected = std::fs::read_to_string(root().join("cxx_examples/hertz.expected")).expect("hertz.expected");
+    assert_eq!(run_linked(&program, &[], &folder), expected);
+}
+
+/// The names of the header's parts.
+fn parts() -> Vec<String> {
+    let files = std::fs::read_dir(root().join("include")).expect("include/");
+    let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
+    let mut parts: Vec<String> = names.filter(|name| name.ends_with(".hpp")).collect();
+    parts.sort();
+    assert!(parts.len() > 5, "{parts:?}");
+    parts
+}
+
+#[test]
+fn each_part_of_the_cxx_header_can_be_included_alone() {
+    let folder = scratch("cxx_parts");
+    for part in parts() {
+        let source = folder.join("part.cpp");
+        std::fs::write(&source, format!("#include <{part}>\nint main() {{}}\n")).expect("a source");
+        run(strict("c++17").arg("-fsyntax-only").arg(&source));
+    }
+}
+
+/// C++ calls all that C can call, and sets every member of the structs that it does not hand out as they are.
+#[test]
+fn the_cxx_header_has_every_function_and_member_of_the_header() {
+    let read = |name: &String| std::fs::read_to_string(root().join("include").join(name)).expect("a part");
+    let wrapper: String = parts().iter().map(read).collect();
+    let header = header();
+    let as_they_are = [
+        "options",
+        "cycle",
+        "report",
+        "accuracy",
+        "price",
+        "progress",
+        "hertz",
+        "ledger",
+        "solver_info",
+        "stress_maximum",
+    ];
+    for each in Description::of(&header).structs {
+        if as_they_are.iter().any(|name| each.short_name().starts_with(name)) {
+            continue;
+        }
+        for member in each.members.iter().map(|member| &member.name) {
+            let is_set = [".", "->"].iter().any(|before| wrapper.contains(&format!("{before}{member}")));
+            assert!(is_set || ["struct_size", "reserved"].contains(&member.as_str()), "{}: {member}", each.name);
+        }
+    }
+    let words = header.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '('));
+    let names = words.filter_map(|word| word.split_once('(').map(|(name, _)| name));
+    let functions: Vec<&str> = names.filter(|name| name.starts_with("contact_normal_")).collect();
+    assert!(functions.contains(&"contact_normal_solver_solve_batch") && functions.len() > 40, "{functions:?}");
+    for name in functions {
+        // `contact_normal_init` is what the `_init` of the header call.
+        assert!(name == "contact_normal_init" || wrapper.contains(name), "{name} is not wrapped");
+    }
+}
+
+/// What stands before the line that is tried.
+const BEGINNING: &str = "#include <contact_normal.hpp>
+#include <array>
+#include <vector>
+namespace cn = contact_normal;
+std::vector<double> made();
+const std::vector<double> made_const();
+std::vector<std::int32_t> made_integers();
+cn::scene made_scene();
+";
+
+/// In a function with these parameters.
+const PARAMETERS: &str = "cn::scene &scene, cn::options &how, const std::vector<double> &h, \
+const std::vector<std::int32_t> &integers, const cn::stop_flag &flag, const cn::cycle &cycle, cn::solver &solver";
+
+/// Lines that keep a pointer to something that lives on, the same with a temporary, and what is deleted then.
+const LINES: &[(&str, &str, &str)] = &[
+    ("scene.undeformed_distance(h);", "scene.undeformed_distance(made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.undeformed_distance(h);", "scene.undeformed_distance(made_const());", "borrowed<T>::borrowed(C&&)"),
+    (
+        "scene.undeformed_distance(h);",
+        "scene.undeformed_distance(std::array<double, 1>{1.0});",
+        "borrowed<T>::borrowed(C&&)",
+    ),
+    (
+        "scene.undeformed_distance(cn::borrowed<double>(h));",
+        "scene.undeformed_distance(cn::view<double>(made()));",
+        "borrowed<T>::borrowed(C&&)",
+    ),
+    ("made_scene().undeformed_distance(h);", "made_scene().undeformed_distance(made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.influence(4, 4, h);", "scene.influence(4, 4, made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.row_tables(4, h);", "scene.row_tables(4, made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.layer(h);", "scene.layer(made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.pressure_limit(h);", "scene.pressure_limit(made());", "borrowed<T>::borrowed(C&&)"),
+    ("scene.patches(1, integers, h);", "scene.patches(1, made_integers(), h);", "borrowed<T>::borrowed(C&&)"),
+    ("scene.patches(1, integers, h);", "scene.patches(1, integers, made());", "borrowed<T>::borrowed(C&&)"),
+    ("cn::friction mu(h);", "cn::friction mu(made());", "borrowed<T>::borrowed(C&&)"),
+    (
+        "cn::friction(0.3).previous_traction(h, h);",
+        "cn::friction(0.3).previous_traction(h, made());",
+        "borrowed<T>::borrowed(C&&)",
+    ),
+    ("cn::friction(0.3).rigid_slip(h, h);", "cn::friction(0.3).rigid_slip(made(), h);", "borrowed<T>::borrowed(C&&)"),
+    (
+        "cn::friction(0.3).influence(4, 4, h, h, h);",
+        "cn::friction(0.3).influence(4, 4, h, made(), h);",
+        "borrowed<T>::borrowed(C&&)",
+    ),
+    (
+        "cn::friction(0.3).influence_cross(h, h);",
+        "cn::friction(0.3).influence_cross(h, made());",
+        "borrowed<T>::borrowed(C&&)",
+    ),
+    ("cn::loads on{h, h, h};", "cn::loads on{h, made(), h};", "borrowed<T>::borrowed(C&&)"),
+    ("auto named = scene.get();", "auto named = made_scene().get();", "get() const &&"),
+    ("auto named = scene.layer(1.0).get();", "auto named = made_scene().layer(1.0).get();", "get() const &&"),
+    ("auto *handle = solver.get();", "auto *handle = cn::solver(scene).get();", "get() const &&"),
+    ("how.stop_by(flag);", "how.stop_by(cn::stop_flag());", "stop_by(const contact_normal::stop_flag&&)"),
+    ("how.stop = flag.get();", "how.stop = cn::stop_flag().get();", "get() const &&"),
+    ("how.use_cycle(cycle);", "how.use_cycle(cn::cycle());", "use_cycle(const contact_normal_cycle&&)"),
+];
+
+fn tried(line: &str, folder: &Path) -> Output {
+    let source = folder.join("line.cpp");
+    std::fs::write(&source, format!("{BEGINNING}void f({PARAMETERS});\nvoid f({PARAMETERS})\n{{\n    {line}\n}}\n"))
+        .expect("a source");
+    let mut gxx = Command::new("g++");
+    finished(gxx.args(["-std=c++17", "-fsyntax-only", "-I"]).arg(root().join("include")).arg(source))
+}
+
+#[test]
+fn what_would_dangle_does_not_compile() {
+    let folder = scratch("cxx_dangling");
+    let good: Vec<String> = LINES.iter().map(|(good, ..)| format!("{{ {good} }}")).collect();
+    let output = tried(&good.join("\n    "), &folder);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for (_, bad, deleted) in LINES {
+        let output = tried(bad, &folder);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success(), "{bad} compiles");
+        let errors: Vec<&str> = said.lines().filter(|line| line.contains("error:")).collect();
+        assert_eq!(errors.len(), 1, "{bad}:\n{said}");
+        assert!(errors[0].contains("use of deleted function") && errors[0].contains(deleted), "{bad}:\n{said}");
+    }
+}
+
+/// What is read during a call only may be a temporary, and so may a span of what lives on.
+#[test]
+fn what_does_not_dangle_compiles() {
+    let folder = scratch("cxx_temporaries");
+    let source = folder.join("temporaries.cpp");
+    let line = "cn::subsurface_stress(scene, 1, {h}, made()); solver.set_influence(1, 1, made()); \
+                cn::solve_tangential(scene, made()); cn::cost_of_accuracy(scene, made()); \
+                const cn::scene &lives = made_scene().layer(1.0).force(2.0); auto named = lives.get(); (void)named; \
+                scene.undeformed_distance(std::span<const double>(h)); scene.undeformed_distance({h.data(), h.size()});";
+    let text = format!("{BEGINNING}#include <span>\nvoid f({PARAMETERS});\nvoid f({PARAMETERS})\n{{\n    {line}\n    (void)how, (void)integers, (void)flag, (void)cycle;\n}}\n");
+    std::fs::write(&source, text).expect("a source");
+    run(strict("c++20").arg("-fsyntax-only").arg(&source));
+}
+
+/// A loop of 50 more solves, by callgrind: instructions.
+fn instructions(program: &Path, kind: &str, folder: &Path) -> u64 {
+    let count = |steps: &str| -> u64 {
+        let mut valgrind = Command::new("valgrind");
+        valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).args([kind, steps]);
+        let output = finished(valgrind.env("LD_LIBRARY_PATH", folder));
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let collected = said.lines().find_map(|line| line.split_once("Collected : ")).expect("a count");
+        collected.1.trim().parse().expect("a number")
+    };
+    count("60") - count("10")
+}
+
+/// A time loop with a handle: what the wrapper adds to the solves.
+#[test]
+fn the_time_loop_takes_no_more_than_that_of_c() {
+    let folder = scratch("cxx_overhead");
+    let program = compile(strict("c++17"), "tests/clients/cxx_time_loop.cpp", &folder);
+    let [cxx, c] = ["cxx", "c"].map(|kind| instructions(&program, kind, &folder));
+    assert!(cxx as f64 <= 1.03 * c as f64, "{cxx} instructions; C takes {c}");
+}
