@@ -107,6 +107,7 @@ class Friction(ctypes.Structure):
         ("initial_traction", POINTER(c_double) * 2),
         ("compliance", c_double),
         ("compliances", POINTER(c_double)),
+        ("creepage_weight", POINTER(c_double) * 2),
     ]
 
 

@@ -182,7 +182,7 @@
 #define CONTACT_NORMAL_KIND_STRESS_MAXIMUM 16
 
 /*
- `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.1.
+ `kind`: `contact_normal_ledger_row`, of the first row of an array. Since 0.2.
  */
 #define CONTACT_NORMAL_KIND_LEDGER_ROW 17
 
@@ -192,7 +192,7 @@
 #define CONTACT_NORMAL_KIND_PRICE 18
 
 /*
- `kind`: `contact_normal_hertz_solution`. Since 0.1.
+ `kind`: `contact_normal_hertz_solution`. Since 0.2.
  */
 #define CONTACT_NORMAL_KIND_HERTZ_SOLUTION 19
 
@@ -207,14 +207,19 @@
 #define CONTACT_NORMAL_KIND_SOLVER_INFO 21
 
 /*
+ `load`: that one of `approach` and `force` is given which is set; both or none is refused.
+ */
+#define CONTACT_NORMAL_PRESCRIBED_UNSET 0
+
+/*
  `load`: the approach of the bodies is given.
  */
-#define CONTACT_NORMAL_PRESCRIBED_APPROACH 0
+#define CONTACT_NORMAL_PRESCRIBED_APPROACH 1
 
 /*
  `load`: the normal force is given, the approach is found.
  */
-#define CONTACT_NORMAL_PRESCRIBED_FORCE 1
+#define CONTACT_NORMAL_PRESCRIBED_FORCE 2
 
 /*
  `motion`: sideways and about the normal, without rolling.
@@ -746,6 +751,11 @@ typedef struct contact_normal_friction {
    That of each element, `[my][mx]`, or NULL (default).
    */
   const double *compliances;
+  /*
+   How much of a creepage in x, in y reaches each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. For surfaces that are
+   inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
+   */
+  const double *creepage_weight[2];
 } contact_normal_friction;
 
 /*
@@ -786,7 +796,7 @@ typedef struct contact_normal_scene {
    */
   double poisson_ratio[2];
   /*
-   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE; default APPROACH.
+   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE: that one is read, the other is not. Default UNSET: the one that is set.
    */
   int32_t load;
   /*
@@ -794,11 +804,11 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (indentation, penetration): a length; default 0. Not read when the force is prescribed.
+   Prescribed approach (indentation, penetration): a length. Default NaN: not set.
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative; default 0. Not read when the approach is prescribed.
+   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
    */
   double force;
   /*
@@ -984,6 +994,11 @@ typedef struct contact_normal_options {
    An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
    */
   const int32_t *stop;
+  /*
+   The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes what it was given, for
+   `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
+   */
+  const char *dump;
 } contact_normal_options;
 
 /*
@@ -1784,8 +1799,8 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
 
 /*
  Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
- precision and threads of `options` (NULL: the defaults). The undeformed distance may be NULL; where it is given, it and the load of
- `scene` must be valid. Each solve takes its own. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
+ precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
+ set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
  Since 0.1.
  */
 contact_normal_status contact_normal_solver_new(const struct contact_normal_scene *scene,
@@ -1809,7 +1824,7 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
  From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
  its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
  up with `scene->influence`, with `friction->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
- `continues` may start from. What is refused changes nothing. Since 0.2.
+ `continues` may start from. What is refused changes nothing. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence,
@@ -1836,6 +1851,28 @@ contact_normal_status contact_normal_solver_query(const struct contact_normal_so
  memory of what is freed for later solvers: see `contact_normal_release`. Since 0.1.
  */
 contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
+
+/*
+ The displacements u = A p of pressures of the caller's, of any sign: `pressure` and `displacement` are `[my][mx]` of the handle's grid, and A
+ has all effects of the set-up that it depends on: own coefficients, coatings, periods, patches, the layer. The last result of the handle
+ stays. NOT_FINITE: a pressure is not. Since 0.2.
+ */
+contact_normal_status contact_normal_solver_product(struct contact_normal_solver *solver,
+                                                    const double *pressure,
+                                                    double *displacement);
+
+/*
+ Writes the `stiffness` dF/d approach of the last result of a handle: a force per length, by how much the force grows with the approach while
+ the contact area, pressures at their limit and tractions stay as they are. `A s = 1` is solved on the contact area, and the stiffness is the sum of
+ `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
+ relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
+ larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. Of a force that follows from the approach by a
+ contact area that changes, this is the derivative but for single elements that come and go. The first call sets up what it needs, of about the size
+ of the handle. Since 0.2.
+ */
+contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solver *solver,
+                                                      double *stiffness,
+                                                      double *residual);
 
 /*
  Solves n tangential problems of `scene->friction`: one with pressures of the caller's own, beside a normal solver of the caller's own, or a
@@ -1923,8 +1960,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
  grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
- and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface; rows hold
- what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
+ and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
+ `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2008,8 +2045,9 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
 contact_normal_status contact_normal_release(void);
 
 /*
- How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 512 MiB. What is more is given back at
- once. For processes that share a node: `contact_normal_keep(0)`, or as much as each may have. Since 0.2.
+ How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 64 MiB, which is
+ enough for solves on 768 x 768 elements: larger ones that each set up anew are 5 to 30 % faster with more, up to 512 MiB for 2048 x 2048.
+ Solver handles hold their own. What is more is given back at once. Since 0.2.
  */
 contact_normal_status contact_normal_keep(int64_t bytes);
 
@@ -2020,10 +2058,34 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
- calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep",
- "release"). Names of later versions are unknown here: 0. Since 0.2.
+ calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+ "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
+
+/*
+ Sets the option that is called `name` to what the text `value` says: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or
+ "METHOD_PROJECTED_CG", or "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8".
+ For hosts that read options from a file. INVALID_ARGUMENT: there is no such option, or the value is none; the message says which there
+ are. Whether a number is allowed the call says that uses it. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
+ */
+contact_normal_status contact_normal_set_option(struct contact_normal_options *options,
+                                                const char *name,
+                                                const char *value);
+
+/*
+ The same of a cycle: "smoother" to "RED_BLACK", "relaxation" to "0.9". Since 0.2.
+ */
+contact_normal_status contact_normal_set_cycle_option(struct contact_normal_cycle *cycle,
+                                                      const char *name,
+                                                      const char *value);
+
+/*
+ Writes the value of the constant that is called `name`, with or without CONTACT_NORMAL_, in upper or lower case: of "METHOD_NORM" 1.
+ INVALID_ARGUMENT: there is none; the message says which are called nearly so. Since 0.2.
+ */
+contact_normal_status contact_normal_constant(const char *name,
+                                              int32_t *value);
 
 #ifdef __cplusplus
 }  // extern "C"
@@ -2158,7 +2220,7 @@ static inline void contact_normal_stress_maximum_init(contact_normal_stress_maxi
 }
 
 /*
- Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.1.
+ Fills a contact_normal_ledger_row with its defaults, as the comments of its members say them. Since 0.2.
  */
 static inline void contact_normal_ledger_row_init(contact_normal_ledger_row *ledger_row)
 {
@@ -2174,7 +2236,7 @@ static inline void contact_normal_price_init(contact_normal_price *price)
 }
 
 /*
- Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.1.
+ Fills a contact_normal_hertz_solution with its defaults, as the comments of its members say them. Since 0.2.
  */
 static inline void contact_normal_hertz_solution_init(contact_normal_hertz_solution *hertz_solution)
 {
