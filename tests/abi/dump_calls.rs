@@ -39,9 +39,27 @@ fn set_ups_and_tangential_problems_are_made_again() {
         let pressure: Vec<f64> = (0..30).map(|i| if i % 6 > 1 { 50.0 + i as f64 } else { 0.0 }).collect();
         let mut report = contact_normal_report::default();
         let at = pressure.as_ptr();
-        let status = contact_normal_solve_tangential(&scene.scene, at, &scene.options, null_mut(), &mut report);
+        let solve = |handle, scene: &Everything, report: *mut _| {
+            let (scene, options) = (&raw const scene.scene, &raw const scene.options);
+            contact_normal_solve_tangential(handle, scene, at, options, 1, null(), null_mut(), report)
+        };
+        let status = solve(null_mut(), &scene, &mut report);
         assert!(status > 0, "{status}: {}", last_error());
         assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
+        // With a handle: from the tractions that it found last, and with its tables where the scene leaves them out.
+        assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+        assert_eq!(solve(handle, &scene, &mut report), status);
+        scene.friction.influence = [null(); 3];
+        scene.friction.influence_cross = [null(); 2];
+        scene.friction.previous_traction = [null(); 2];
+        scene.friction.continues = 1;
+        scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+        let again = solve(handle, &scene, &mut report);
+        assert!(again > 0, "{again}: {}", last_error());
+        let force = report.tangential.force;
+        assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
+        let replayed = Dump::read(&std::fs::read(&path).unwrap()).unwrap().replay().unwrap();
+        assert_eq!((replayed.status, replayed.report.tangential.force), (again, force));
     }
 }
 
@@ -58,10 +76,11 @@ fn tables_of_forces_are_made_again() {
     // SAFETY: structs with the arrays that they declare.
     let status = unsafe {
         let at = entries.as_ptr();
-        contact_normal_friction_batch(&scene.scene, null(), &scene.options, 2, at, &mut results, null_mut())
+        let (scene, options) = (&raw const scene.scene, &raw const scene.options);
+        contact_normal_solve_tangential(null_mut(), scene, null(), options, 2, at, &mut results, null_mut())
     };
     assert_eq!(status, CONTACT_NORMAL_NOT_FINITE, "{}", last_error());
-    assert_eq!(reproduced(&path, "contact_normal_friction_batch"), status);
+    assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
 }
 
 /// A ball, from a callback.

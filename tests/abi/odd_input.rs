@@ -133,7 +133,8 @@ fn what_uses_no_load_needs_none() {
     let pressures = vec![1.0; call.h.len()];
     // SAFETY: structs that declare their size, and one pressure per element.
     let status = unsafe {
-        contact_normal_solve_tangential(&call.scene.known, pressures.as_ptr(), null(), null_mut(), null_mut())
+        let (scene, p) = (&raw const call.scene.known, pressures.as_ptr());
+        contact_normal_solve_tangential(null_mut(), scene, p, null(), 1, null(), null_mut(), null_mut())
     };
     assert_eq!(status, CONTACT_NORMAL_OK);
 }
