@@ -19,7 +19,7 @@ _NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
 _PAIRS = ("creepage", "spin_centre")
 _FLAGS = ("continues", "sensitivities")
 _FIELDS = ("previous_traction", "rigid_slip", "initial_traction", "creepage_weight")
-_KNOWN = ("coefficient", "motion", "force", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
+_KNOWN = ("coefficient", "compliance", "motion", "force", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
@@ -32,7 +32,8 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
         raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
     given = {name: one for name, one in value.items() if one is not None}
     effect = initialised("friction")
-    kept: list[Any] = _coefficient(effect, given.get("coefficient", 0.0), shape)
+    kept = _one_or_each(effect, "coefficient", given.get("coefficient", 0.0), shape)
+    kept += _one_or_each(effect, "compliance", given.get("compliance", 0.0), shape)
     motion = given.get("motion", MOTION_SHIFT)
     effect.motion = value_of("motion", motion) if isinstance(motion, str) else integer("friction['motion']", motion)
     for name in _FLAGS:
@@ -55,13 +56,14 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
     return effect, kept, _IS_LENGTH if is_length else ""
 
 
-def _coefficient(effect: Any, coefficient: Any, shape: tuple[int, int]) -> list[Any]:
-    if np.ndim(coefficient) == 0:
-        effect.coefficient = number("friction['coefficient']", coefficient)
+def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> list[Any]:
+    """A number, or one per element: then the member has an s more."""
+    if np.ndim(value) == 0:
+        setattr(effect, name, number(f"friction['{name}']", value))
         return []
-    coefficients = doubles("friction['coefficient']", coefficient, shape)
-    effect.coefficients = pointer(coefficients)
-    return [coefficients]
+    values = doubles(f"friction['{name}']", value, shape)
+    setattr(effect, f"{name}s", pointer(values))
+    return [values]
 
 
 def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:

@@ -84,7 +84,8 @@ def solve(
     friction : mapping, optional
         Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or
         "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin",
-        "spin_centre", "rolling_distance", "rolling_direction", "spin_offset"; "previous_traction" and "rigid_slip", pairs of (my, mx);
+        "spin_centre", "rolling_distance", "rolling_direction", "spin_offset"; "previous_traction", "rigid_slip", "initial_traction" and "creepage_weight", pairs of
+        (my, mx); "compliance" of a thin elastic layer between the bodies (one, or (my, mx));
         "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
         by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz).

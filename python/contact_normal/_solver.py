@@ -244,7 +244,7 @@ class Solver:
         TangentialResult
         """
         pressures = shaped("pressure", doubles("pressure", pressure), self._shape)
-        scene = self._scene(np.zeros(self._shape), {"approach": 0.0}, None, friction)
+        scene = self._scene(np.zeros(self._shape), {"approach": 0.0, "force": None}, None, friction)
         return of_pressures(scene, pressures, options({**self._given, **given}), progress, self._units, self._handle)
 
     def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:

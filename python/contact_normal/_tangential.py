@@ -106,6 +106,7 @@ def of_pressures(
     outputs, results = Outputs(scene.shape, has_friction=True), initialised("friction_results")
     outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
     outputs.contact[:] = outputs.doubles[0] > 0.0
+    assert outputs.traction is not None and outputs.slip is not None and outputs.stick_slip is not None
     results.traction, results.slip = pointer(outputs.traction), pointer(outputs.slip)
     results.stick_slip = pointer(outputs.stick_slip, c_int32)
     watched = Watched(progress, struct, scene)

@@ -84,7 +84,7 @@ impl Everything {
         friction.rigid_slip = [each(1e-6), each(2e-6)];
         friction.initial_traction = [each(0.2), each(0.1)];
         friction.compliances = each(1e-9);
-        friction.creepage_weight = [each(1.0), each(0.9)];
+        friction.creepage_weight = [each(0.1), each(0.09)];
         let table = half_space();
         let rows = (0..MY * MY).flat_map(|k| table[(CY + k % MY - k / MY) * 2 * CX..][..2 * CX].to_vec()).collect();
         (s.row_tables.cx, s.row_tables.rows, s.row_tables.coefficients) = (CX as i32, MY as i32, array(rows));
