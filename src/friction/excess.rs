@@ -35,11 +35,11 @@ impl Excess {
 
     /// Adds `by` times what q displaces; with a march, in a step of steady rolling.
     pub fn add<T: Real>(&self, q: &[[T; 2]], by: f64, march: Option<&March>, u: &mut [[T; 2]]) {
-        for i in 0..q.len() {
+        for (i, u) in u.iter_mut().enumerate() {
             let here = self.displaced(q, i);
             let there = march.map_or([0.0; 2], |march| self.ahead(q, march, i));
             for k in 0..2 {
-                u[i][k] = T::of(u[i][k].to_double() + by * (here[k] - there[k]));
+                u[k] = T::of(u[k].to_double() + by * (here[k] - there[k]));
             }
         }
     }

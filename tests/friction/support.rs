@@ -92,9 +92,10 @@ pub fn residual(
         count += 1;
         let mut w = friction.rigid_slip_at(grid, i);
         // What was found, where forces are given.
-        for k in 0..2 {
+        let weight = friction.weight_at(i);
+        for (k, w) in w.iter_mut().enumerate() {
             if let Prescribed::Force(_) = friction.prescribed[k] {
-                w[k] += distance * friction.weight_at(i)[k] * report.creepage[k];
+                *w += distance * weight[k] * report.creepage[k];
             }
         }
         let s = [w[0] + u[i][0] - u_before[i][0], w[1] + u[i][1] - u_before[i][1]];

@@ -29,8 +29,8 @@ impl Dump {
         let (parsed, data) = parse(bytes)?;
         let sizes: Vec<usize> = parsed.items.iter().map(room).collect();
         let total = sizes.iter().try_fold(0usize, |total, size| total.checked_add(*size));
-        let data_room = data.len().checked_add(MOST_BYTES).unwrap_or(usize::MAX);
-        if !total.is_some_and(|total| total <= data_room) {
+        let data_room = data.len().saturating_add(MOST_BYTES);
+        if total.is_none_or(|total| total > data_room) {
             return Err(format!("it asks for more than {MOST_BYTES} bytes of results"));
         }
         // Of the system, which gives pages when they are used.
@@ -82,12 +82,14 @@ impl Dump {
     }
 
     /// So many values that a member of a struct points to; none where the file does not hold as many.
+    #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn doubles_at(&self, at: *const f64, count: usize) -> Option<Vec<f64>> {
         // SAFETY: the memory of so many values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
     }
 
     /// The same of integers.
+    #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn integers_at(&self, at: *const i32, count: usize) -> Option<Vec<i32>> {
         // SAFETY: the memory of so many values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
