@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use contact_normal::scene::{Bodies, Friction, Prescribed, Scene};
-use contact_normal::solver::{solve, Options};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
+use contact_normal::solver::{solve, solve_tangential, Options, Solver};
 
 use super::case::{ellipse, rough, Case};
 use super::measure::{cold, in_turns, median, shown};
@@ -69,4 +70,31 @@ fn row(case: &Case, threads: usize) {
     let ratio = (one - alone) / (more - alone_by_more);
     let columns = [alone, one, more].map(shown).join(" | ");
     println!("| {} | {products:.1} | {columns} | {ratio:.2} |", case.name);
+}
+
+/// Calls for pressures that are given, on small grids: a single call and one of a handle, in turns; a shift to a residual of 1e-6.
+pub fn given_pressures() {
+    println!("\n## The tangential problem of given pressures, a shift, 1e-6, one thread: single calls and those of a handle, in turns");
+    println!("| elements | products | single | handle | times faster |");
+    println!("|---|---:|---:|---:|---:|");
+    for (mx, my) in [(1, 1), (10, 10), (19, 19), (33, 33), (30, 1), (92, 1)] {
+        let (dx, dy) = (2.2 / mx as f64, if my > 1 { 2.2 / my as f64 } else { 100.0 });
+        let grid = Grid::new(mx, my, dx, dy).expect("a grid");
+        let place = |k: usize, m: usize| if m > 1 { (k as f64 + 0.5) / m as f64 * 2.2 - 1.1 } else { 0.0 };
+        let squared = |i: usize| place(i % mx, mx).powi(2) + place(i / mx, my).powi(2);
+        let pressure: Vec<f64> = (0..grid.len()).map(|i| 1000.0 * (1.0 - squared(i)).max(0.0).sqrt()).collect();
+        let prescribed = [Prescribed::Creepage(-4e-3), Prescribed::Creepage(0.0)];
+        let friction = Some(Friction { prescribed, spin: 1e-4, ..Friction::new(MU) });
+        let scene = Scene { friction, ..Scene::new(grid, &[], Bodies::same(82000.0, 0.28), Load::Approach(0.0)) };
+        let options = Options { threads: 1, ..Options::default() };
+        let mut handle = Solver::new(&scene, &options).expect("a handle");
+        let (_, _, report) = solve_tangential(&scene, &pressure, &options, None).expect("a solution");
+        let mut single = || _ = solve_tangential(&scene, &pressure, &options, None).expect("a solution");
+        let mut kept = || _ = handle.solve_tangential(&scene, &pressure, &options, None).expect("a solution");
+        let times = in_turns(&mut [&mut single, &mut kept]);
+        let [single, kept] = [0, 1].map(|k| median(&times[k]));
+        let products = report.friction.expect("friction").products;
+        let (of, columns) = (format!("{mx} x {my}"), [single, kept].map(shown).join(" | "));
+        println!("| {of} | {products:.1} | {columns} | {:.1} |", single / kept);
+    }
 }

@@ -92,6 +92,7 @@ fn main() {
     if wanted("friction") {
         measure::by_processor(false);
         friction::shifts(threads, &sizes[..sizes.len().min(3)]);
+        friction::given_pressures();
     }
     if wanted("speedup") && threads > 1 {
         measure::by_processor(false);
