@@ -324,6 +324,8 @@ impl Effect for Friction<'_> {
     // Tangential coefficients of these are not known, unless they are given.
     fn excludes(&self) -> &'static [&'static str] {
         match self.influence {
+            Some(influence) if influence.cross.is_none() => &["period", "patches"],
+            // What couples both problems is a table of offsets alone.
             Some(_) => &["row_tables", "period", "patches", "coating"],
             None => &["influence", "row_tables", "period", "patches", "coating"],
         }

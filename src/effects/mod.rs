@@ -9,7 +9,7 @@
 //! | patches | period | no | those of the set-up |
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
-//! | friction | influence (without tangential tables), row_tables, coating, period, patches | yes | another one for each solve |
+//! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
 //!
 //! A new effect is a file with an `impl Effect`, a field of [`Scene`](crate::scene::Scene), and a line in the list (`list.rs`).
 

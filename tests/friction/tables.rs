@@ -7,9 +7,11 @@ use contact_normal::error::Error;
 use contact_normal::friction::cross::integrals;
 use contact_normal::friction::{Compliance, Solution, Tangential};
 use contact_normal::grid::Grid;
-use contact_normal::influence::{HalfSpace, Kernel, Table};
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene, TangentialInfluence};
-use contact_normal::solver::{solve, Options, Outcome, Solver};
+use contact_normal::influence::{HalfSpace, Kernel, RowTables, Table};
+use contact_normal::scene::{
+    Bodies, Coating, CoatingLayer, Friction, Load, Motion, Prescribed, Previous, Scene, TangentialInfluence,
+};
+use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 /// Columns and rows of the tables beyond those of the grid.
@@ -226,4 +228,42 @@ fn tables_that_are_none_are_refused_by_name() {
     }
     let unlike = Bodies { shear_modulus: [82000.0, 1000.0], poisson_ratio: [0.28, 0.4] };
     refused(of(&good, &as_it_is, pushed(), unlike), "unlike bodies");
+}
+
+/// Tables per row, and a coating, of the normal problem: the tractions are those of the pressures that it has without friction.
+#[test]
+fn own_coefficients_go_with_row_tables_and_coatings() {
+    let (grid, h) = ball(20, 18);
+    let tables = tables(&grid, 1.0);
+    let own = Some(influence(&grid, &tables, 1.0));
+    // By 1 % softer from row to row: a table of offsets has nothing like it.
+    let half_space = HalfSpace::new(grid.dx, grid.dy, STEEL.compliance());
+    let value = |k: usize| {
+        let (x, iy, jy) = ((k % 40) as i64 - 20, (k / 40 % 18) as i64, (k / 720) as i64);
+        (1.0 + 0.005 * (iy + jy) as f64) * half_space.at(x, iy - jy)
+    };
+    let rows: Vec<f64> = (0..18 * 18 * 40).map(value).collect();
+    let plain = Scene::new(grid, &h, STEEL, Load::Force(900.0));
+    let layer = CoatingLayer { thickness: 0.1, shear_modulus: 20000.0, poisson_ratio: 0.3 };
+    let coating = Some(Coating { layers: [Some(layer), None] });
+    let row_tables = Some(RowTables::new(20, 18, &rows, &grid).unwrap());
+    let options = Options { tolerance: 1e-9, ..Options::default() };
+    for scene in [Scene { row_tables, ..plain.clone() }, Scene { coating, ..plain.clone() }] {
+        let (normal, stop, _) = solve(&scene, &options).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        let friction = Friction { influence: own, ..pushed() };
+        let (found, stop, _) = solve(&Scene { friction: Some(friction), ..scene.clone() }, &options).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        assert_eq!(found.state().p, normal.state().p);
+        // The half-space's tractions of these pressures: the tables are its coefficients.
+        let alone = Scene { friction: Some(pushed()), ..plain.clone() };
+        let (stop, expected, _) = solve_tangential(&alone, &normal.state().p, &options, None).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        let largest = expected.traction.iter().flatten().fold(0.0f64, |most, q| most.max(q.abs()));
+        for (a, b) in found.friction().unwrap().traction.iter().zip(&expected.traction) {
+            assert!((0..2).all(|k| (a[k] - b[k]).abs() <= 1e-6 * largest), "{a:?} {b:?}");
+        }
+        let without = Scene { friction: Some(pushed()), ..scene.clone() };
+        assert!(matches!(solve(&without, &options).map(|_| ()), Err(Error::Unsupported(_))));
+    }
 }
