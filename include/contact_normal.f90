@@ -25,6 +25,7 @@ module contact_normal
   type, public :: contact_normal_solver
     private
     type(c_ptr) :: handle = c_null_ptr
+    logical :: has_tables = .false.      ! of tang_solve
   end type
 
   abstract interface

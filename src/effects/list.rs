@@ -98,7 +98,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// The friction of a scene whose pressures are given; refuses what goes not with the bodies.
+    /// The friction of a scene whose pressures are given; refuses tables without `cross` beside unlike bodies.
     pub fn tangential(&self) -> Result<&Friction<'_>> {
         self.grid.check()?;
         let Some(friction) = &self.friction else {

@@ -97,6 +97,17 @@ impl Named {
                 _ => {}
             }
         }
+        // What is left out of this scene is there all the same.
+        for effect in effects(scene) {
+            let left_out = |name: &&&str| self.effects.contains(&Some(**name));
+            if let Some(other) = effect.excludes().iter().find(left_out) {
+                let rule = "this version does not solve them together";
+                return Err(Error::Unsupported(format!(
+                    "{} is given, and this solver has {other}; {rule}",
+                    effect.name()
+                )));
+            }
+        }
         let mut same = Ok(());
         for effect in effects(scene) {
             effect.values(&mut |name, value| {

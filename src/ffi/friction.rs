@@ -84,7 +84,7 @@ pub struct contact_normal_friction {
     /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
     /// y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
     /// even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
-    /// across what is in contact. A solver keeps them: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+    /// across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
     pub influence: [*const contact_normal_influence; 3],
     /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
     /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
@@ -98,7 +98,7 @@ pub struct contact_normal_friction {
     /// those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
     pub initial_traction: [*const f64; 2],
     /// The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
-    /// it. For a third body of thickness h and shear modulus G h/G. Default 0: none. Not read if there are `compliances`.
+    /// it. Of a third body of thickness h and shear modulus G it is h/G. Default 0: none. Not read if there are `compliances`.
     pub compliance: f64,
     /// That of each element, `[my][mx]`, or NULL (default).
     pub compliances: *const f64,

@@ -85,7 +85,10 @@ impl Request<'_> {
         // SAFETY (all): by the caller.
         unsafe {
             let named = Named::read(scene)?;
-            named.add_to(regions, scene)?;
+            match needs {
+                Needs::NoLoad => named.add_without_distance(regions, scene)?,
+                _ => named.add_to(regions, scene)?,
+            }
             let translated = options::translate(options)?;
             translated.add_to(regions, options)?;
             let outputs = Outputs::of(fields, report)?;

@@ -22,8 +22,7 @@ use crate::memory::collected;
 use crate::scene::Scene;
 use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcome, Solver};
 
-/// Solves n tangential problems of `scene->friction`: one with pressures of the caller's own, beside a normal solver of the caller's own, or a
-/// table of creep forces.
+/// Solves tangential problems of `scene->friction`: one, for programs that have a normal solver of their own, or a table of creep forces.
 ///
 /// `solver`: keeps coefficients, operators and the last tractions from call to call, for `friction->continues` and for `initial_guess`
 /// PREVIOUS; `scene` and `options` must be as at its set-up. NULL: nothing is kept.
@@ -32,11 +31,11 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 /// may be left unset. Tractions do not change the pressures: of unlike bodies this is one turn of two. NULL, without a solver: the
 /// normal problem of the scene is solved first, once.
 ///
-/// `report` (NULL: not wanted) is that of the pressures.
+/// `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force)
+/// and the spin. NULL, with n = 1: those of `scene->friction`. With pressures that are given this is one problem: all threads work on
+/// it, `progress` is called for each iteration, and where the call is refused `results` stays as it is.
 ///
-/// `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force) and
-/// the spin. NULL, with n = 1: those of `scene->friction`; then all threads work on it, `report` speaks of friction, too, `progress` is called for
-/// each iteration, and where the call is refused `results` stays as it is.
+/// `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction.
 ///
 /// Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
 /// a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results

@@ -43,6 +43,21 @@ impl Forces {
         if !forces.any() {
             return Ok(forces);
         }
+        for (k, weights) in friction.weights.iter().flatten().enumerate() {
+            if !forces.given[k] {
+                continue;
+            }
+            let greatest = in_blocks((0..grid.len()).map(|i| weights[i].abs() * bound(i)));
+            if greatest == 0.0 && forces.sum[k] == 0.0 {
+                forces.given[k] = false;
+            } else if !(forces.sum[k].abs() < greatest * (1.0 - ROUND_OFF)) {
+                let (name, wanted) = (["x", "y"][k], forces.sum[k].abs() * area);
+                return Err(Error::Infeasible(format!(
+                    "the tangential force in {name} is {wanted}; with this friction and these weights it must be less than {}",
+                    greatest * area
+                )));
+            }
+        }
         let wanted = forces.sum[0].hypot(forces.sum[1]);
         let along = if wanted > 0.0 { forces.sum.map(|sum| sum / wanted) } else { [1.0, 0.0] };
         let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));

@@ -220,7 +220,7 @@ impl Problem {
         }
     }
 
-    /// Creepages that move every element by 1, or nearly so where some hardly move.
+    /// The creepage that moves the element of the least weight by 1; weights below 1e-6 of the largest do not count.
     pub fn farthest_creepage(&self) -> f64 {
         let sizes = || self.weights.iter().flatten().map(|weight| weight.abs());
         let most = sizes().fold(0.0, f64::max);

@@ -248,7 +248,7 @@ impl Solver {
         Ok(end)
     }
 
-    /// The mean of the compliance of what lies between the bodies is one of the coefficients.
+    /// The mean compliance of the layer is added to the coefficient of an element on itself; if it changes, operators are made anew.
     fn set_layer(&mut self, friction: &Friction<'_>) {
         let layer = match friction.compliance {
             Coefficient::Uniform(compliance) => compliance,

@@ -174,7 +174,8 @@ impl Solver {
                 window
                     .elements(&self.grid)
                     .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
-                problem.offset = scales.displacement(self.offset);
+                let found = |k: usize| matches!(request.friction.prescribed[k], Prescribed::Force(_));
+                problem.offset = scales.displacement([0, 1].map(|k| if found(k) { self.offset[k] } else { 0.0 }));
             }
             Start::Given([x, y]) => {
                 window.elements(&self.grid).for_each(|(k, i)| state.q[k] = in_range([x[i], y[i]], &scales));

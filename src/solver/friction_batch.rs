@@ -128,7 +128,6 @@ impl Solver {
         self.set_up.check_options(options)?;
         self.set_up.check_scene(scene, &self.problem)?;
         let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
-        self.keep_tables(scene)?;
         let table = Table::new(scene, friction, pressure, entries, options);
         let began = std::time::Instant::now();
         let threads = self.problem.threads.clone();

@@ -133,16 +133,19 @@ impl Solver {
     /// Sets up operators and grids; of `scene` the grid, the bodies and the effects matter. It may be without an undeformed distance: an empty
     /// one.
     pub fn new(scene: &Scene<'_>, options: &Options) -> Result<Solver> {
-        Ok(Solver::for_scene(scene, options)?.0)
+        Ok(Solver::set_up(scene, options, !scene.undeformed_distance.is_empty())?.0)
     }
 
     /// The same, and the least distance of the scene, which is checked.
     pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
+        Solver::set_up(scene, options, true)
+    }
+
+    fn set_up(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<(Solver, f64)> {
         let began = Instant::now();
         // The scene is refused first; threads that cannot be had, and options that are none, after it.
         let threads = options.check().and_then(|()| Threads::new(options.threads));
-        // A set-up may be without a surface.
-        let lowest = if scene.undeformed_distance.is_empty() {
+        let lowest = if !has_surface {
             scene.check_effects_and_bodies()?;
             f64::INFINITY
         } else {
@@ -163,7 +166,9 @@ impl Solver {
             options: *options,
         };
         let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
-        solver.keep_tables(scene)?;
+        if let Some(given) = scene.friction.as_ref().and_then(|friction| friction.influence) {
+            solver.own_tables = Some(Arc::new(KeptInfluence::new(&given)?));
+        }
         solver.setup_seconds = began.elapsed().as_secs_f64();
         Ok((solver, lowest))
     }
@@ -231,7 +236,6 @@ impl Solver {
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
         self.check_continues(scene)?;
-        self.keep_tables(scene)?;
         let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {

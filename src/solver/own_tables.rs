@@ -9,36 +9,30 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Bodies, Friction, Load, Scene};
 
 impl Solver {
-    /// A scene with the coefficients of this solver, `own`; refuses others.
+    /// A scene with the tangential coefficients of this solver; refuses others. `own` are those, held apart: so this solver may change
+    /// while the scene borrows them. Beside normal coefficients of the caller's own the bodies are not read.
     pub(super) fn with_own_tables<'s>(
         &self,
         scene: &'s Scene<'_>,
         own: Option<&'s KeptInfluence>,
     ) -> Result<Cow<'s, Scene<'s>>> {
         let Some(friction) = &scene.friction else { return Ok(Cow::Borrowed(scene)) };
+        let bodies = if self.set_up.given { Bodies::same(1.0, 0.0) } else { scene.bodies };
         let refused = |what: &str| Err(Error::InfluenceChanged(format!("friction->influence {what}")));
         match (&friction.influence, own) {
             (None, Some(own)) => {
                 let friction = Friction { influence: Some(own.view()), ..*friction };
-                Ok(Cow::Owned(Scene { friction: Some(friction), ..scene.clone() }))
+                Ok(Cow::Owned(Scene { friction: Some(friction), bodies, ..scene.clone() }))
             }
             (Some(given), Some(own)) if !own.is(given) => {
                 refused(&format!("holds other coefficients than this solver has; {SET_THEM}"))
             }
-            (Some(_), None) if self.friction.is_some() => {
-                refused(&format!("is given, but this solver has solved friction without; {SET_THEM}"))
-            }
+            // What is no table is said first.
+            (Some(_), None) => Effect::check(friction, &self.problem.grid)
+                .and_then(|()| refused("is given, but this solver was set up without: set up another one with it")),
+            _ if bodies != scene.bodies => Ok(Cow::Owned(Scene { bodies, ..scene.clone() })),
             _ => Ok(Cow::Borrowed(scene)),
         }
-    }
-
-    /// From here on friction is that of the tables of a scene, if it names some.
-    pub(super) fn keep_tables(&mut self, scene: &Scene<'_>) -> Result<()> {
-        let given = scene.friction.as_ref().and_then(|friction| friction.influence);
-        if let (Some(given), None) = (given, &self.own_tables) {
-            self.own_tables = Some(Arc::new(KeptInfluence::new(&given)?));
-        }
-        Ok(())
     }
 
     /// The tangential coefficients of the caller's own, if it has some.

@@ -95,7 +95,8 @@ impl Tangent {
         again: bool,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        self.solve_from(if again { Start::Again } else { Start::Before }, turn, pressure, monitor)
+        let begin = || turn.friction.initial.map_or(Start::Before, Start::Given);
+        self.solve_from(if again { Start::Again } else { begin() }, turn, pressure, monitor)
     }
 
     fn solve_from(
@@ -210,7 +211,6 @@ impl Handle {
         self.set_up.check_options(options)?;
         self.set_up.check_scene(scene, &self.problem)?;
         let pressure = &*positive(&scene.grid, pressure)?;
-        self.keep_tables(scene)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;
         let turn = Turn { scene, friction, options, threads: &threads };

@@ -332,3 +332,73 @@ fn what_a_handle_needs_is_said() {
     call.scene.mx = 8;
     assert_eq!(call.run(handle.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);
 }
+
+#[test]
+fn previous_forgets_creepages_that_are_given_now() {
+    let mut call = Call::new();
+    let handle = Handle::of(&call);
+    call.friction.prescribed[0] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
+    call.friction.force[0] = 10.0;
+    assert_eq!(call.run(handle.0), OK);
+    call.friction.prescribed[0] = CONTACT_NORMAL_PRESCRIBED_CREEPAGE;
+    call.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+    assert_eq!(call.run(handle.0), OK);
+    let found = call.traction.clone();
+    assert_eq!(call.run(null_mut()), OK);
+    assert!(apart(&call.traction, &found) < 1e-6, "{}", apart(&call.traction, &found));
+}
+
+#[test]
+fn a_table_of_entries_has_the_tables_of_its_handle() {
+    let mut call = Call::new();
+    call.use_tables(0.01);
+    let with_tables = Handle::of(&call);
+    let forces = |call: &Call, solver: *mut contact_normal_solver| {
+        let (entries, mut force) = ([[-0.01, 0.0, 0.0], [-0.02, 0.0, 0.0]], [0.0; 4]);
+        let mut results = initialised(contact_normal_friction_results_init);
+        results.force = force.as_mut_ptr();
+        let (scene, p, options) = (&raw const call.scene, call.pressure.as_ptr(), &raw const call.options);
+        let entries = entries.as_ptr().cast();
+        // SAFETY: structs with their arrays, and two entries.
+        let status =
+            unsafe { contact_normal_solve_tangential(solver, scene, p, options, 2, entries, &mut results, null_mut()) };
+        (status, force)
+    };
+    let expected = forces(&call, null_mut());
+    assert_eq!(expected.0, CONTACT_NORMAL_OK);
+    assert_eq!(forces(&call, with_tables.0), expected);
+    // Later scenes may leave the tables out.
+    call.friction.influence = [null(); 3];
+    assert_eq!(forces(&call, with_tables.0), expected);
+    // A handle without takes none later, whatever it has solved before.
+    let without = Handle::of(&call);
+    let of_half_space = forces(&call, without.0);
+    assert!(of_half_space.0 == CONTACT_NORMAL_OK && of_half_space != expected);
+    call.use_tables(0.01);
+    assert_eq!(forces(&call, without.0).0, CONTACT_NORMAL_INFLUENCE_CHANGED);
+}
+
+/// What a later scene leaves out counts as much as what it names.
+#[test]
+fn coefficients_that_are_left_out_exclude_what_they_exclude() {
+    let mut call = Call::new();
+    call.use_tables(0.01);
+    let normal = call.tables[0];
+    call.scene.influence = &raw const normal;
+    let handle = Handle::of(&call);
+    // The bodies are not read beside own coefficients.
+    call.scene.shear_modulus = [1.0, 7.0];
+    assert_eq!(call.run(handle.0), OK);
+    call.scene.influence = null();
+    assert_eq!(call.run(handle.0), OK);
+    let mut plain = Call::new();
+    plain.use_tables(0.01);
+    plain.scene.influence = &raw const normal;
+    plain.friction.influence = [null(); 3];
+    plain.scene.friction = null();
+    let handle = Handle::of(&plain);
+    plain.scene.influence = null();
+    plain.scene.friction = &raw const plain.friction;
+    let (status, message) = plain.run(handle.0);
+    assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains("influence"), "{status} {message}");
+}

@@ -56,7 +56,8 @@ fn steps() -> [Friction<'static>; 3] {
 
 fn solved<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>, tolerance: f64) -> Vec<Solution> {
     let options = Options { tolerance, ..Options::default() };
-    let mut solver = Solver::new(scene, &options).unwrap();
+    let tables = Friction { influence: own, ..Friction::new(0.3) };
+    let mut solver = Solver::new(&Scene { friction: Some(tables), ..scene.clone() }, &options).unwrap();
     let step = |friction: Friction<'a>| {
         let scene = Scene { friction: Some(Friction { influence: own, ..friction }), ..scene.clone() };
         let (stop, _) = solver.solve(&scene, &options, None, None).unwrap();

@@ -1,8 +1,11 @@
 //! Weights of creepages: surfaces that are inclined within the contact area. A creepage moves an element by its weight, and the force that
 //! goes with it is the sum of weights times tractions.
 
+use contact_normal::error::Error;
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
+use contact_normal::solver::Outcome;
 
 use super::scenes::Ellipse;
 use super::support::{residual, run, solver};
@@ -86,4 +89,23 @@ fn weights_of_one_are_none() {
     let ((plain, one), (weighted, other)) = (solved(None), solved(Some([&ones[..], &ones[..]])));
     assert_eq!((plain.creepage, plain.force), (weighted.creepage, weighted.force));
     assert_eq!(one.traction, other.traction);
+}
+
+#[test]
+fn forces_that_weights_cannot_carry_are_refused() {
+    let case = Ellipse::random(1, 20, true);
+    let (none, half) = (vec![0.0; case.grid.len()], vec![0.5; case.grid.len()]);
+    let area = case.grid.element_area();
+    let most: f64 = case.bound.iter().sum::<f64>() * area;
+    let solved = |x: f64, y: f64| {
+        let prescribed = [Prescribed::Force(x), Prescribed::Force(y)];
+        let friction = Friction { prescribed, weights: Some([&none, &half]), spin: 0.0, ..case.friction };
+        let request = Request::new(&case.bound, &friction, 1e-6);
+        solver(&case.grid, case.nu).solve(&request, &mut |_, _| true).map(|(end, report)| (end, report.creepage))
+    };
+    assert!(matches!(solved(0.1 * most, 0.1 * most), Err(Error::Infeasible(_))));
+    assert!(matches!(solved(0.0, 0.6 * most), Err(Error::Infeasible(_))));
+    // Where no creepage moves anything a force of 0 takes none, but for round-off.
+    let (end, creepage) = solved(0.0, 0.3 * most).unwrap();
+    assert!(end == Outcome::Converged && creepage[0].abs() < 1e-15 && creepage[1] < -0.1, "{end:?} {creepage:?}");
 }

@@ -188,21 +188,29 @@ impl Image {
     /// The tangential coefficients of a handle.
     fn add_tables(&mut self, tables: &TangentialInfluence<'_>) {
         let values = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten());
-        for (values, name) in values.zip(TANGENTIAL_TABLES) {
-            let table = contact_normal_influence {
+        let structs: Vec<_> = values
+            .map(|values| contact_normal_influence {
                 cx: tables.cx as i32,
                 cy: tables.cy as i32,
                 coefficients: values.as_ptr(),
                 scale: tables.scale,
                 ..Default::default()
-            };
-            let mut regions = Regions::default();
-            if regions.input("the tangential coefficients of the handle", values.as_ptr(), values.len()).is_err() {
+            })
+            .collect();
+        let mut regions = Regions::default();
+        for table in &structs {
+            let count = 4 * tables.cx * tables.cy;
+            if regions.input("the tangential coefficients of the handle", table.coefficients, count).is_err() {
                 self.lacks_memory = true;
             }
-            // SAFETY: a struct of this function, and its array.
-            unsafe { self.add(&[(name, (&raw const table).given())], &regions) };
         }
+        let named: Vec<_> = TANGENTIAL_TABLES
+            .into_iter()
+            .zip(&structs)
+            .map(|(name, table)| (name, (&raw const *table).given()))
+            .collect();
+        // SAFETY: structs of this function, and arrays of their sizes.
+        unsafe { self.add(&named, &regions) };
     }
 
     /// The last result of a handle.

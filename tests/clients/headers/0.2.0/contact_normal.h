@@ -720,7 +720,7 @@ typedef struct contact_normal_friction {
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
    even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
-   across what is in contact. A solver keeps them: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+   across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
   const struct contact_normal_influence *influence[3];
   /*
@@ -744,7 +744,7 @@ typedef struct contact_normal_friction {
   const double *initial_traction[2];
   /*
    The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
-   it. For a third body of thickness h and shear modulus G h/G. Default 0: none. Not read if there are `compliances`.
+   it. Of a third body of thickness h and shear modulus G it is h/G. Default 0: none. Not read if there are `compliances`.
    */
   double compliance;
   /*
@@ -1823,8 +1823,8 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
 /*
  From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
  its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
- up with `scene->influence`, with `friction->influence`. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
- `continues` may start from. What is refused changes nothing. Since 0.1.
+ up with `scene->influence`, with `friction->influence`, and with `influence_cross` or without. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
+ `continues` may start from. What is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence,
@@ -1875,8 +1875,7 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
                                                       double *residual);
 
 /*
- Solves n tangential problems of `scene->friction`: one with pressures of the caller's own, beside a normal solver of the caller's own, or a
- table of creep forces.
+ Solves tangential problems of `scene->friction`: one, for programs that have a normal solver of their own, or a table of creep forces.
 
  `solver`: keeps coefficients, operators and the last tractions from call to call, for `friction->continues` and for `initial_guess`
  PREVIOUS; `scene` and `options` must be as at its set-up. NULL: nothing is kept.
@@ -1885,11 +1884,11 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
  may be left unset. Tractions do not change the pressures: of unlike bodies this is one turn of two. NULL, without a solver: the
  normal problem of the scene is solved first, once.
 
- `report` (NULL: not wanted) is that of the pressures.
+ `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force)
+ and the spin. NULL, with n = 1: those of `scene->friction`. With pressures that are given this is one problem: all threads work on
+ it, `progress` is called for each iteration, and where the call is refused `results` stays as it is.
 
- `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force) and
- the spin. NULL, with n = 1: those of `scene->friction`; then all threads work on it, `report` speaks of friction, too, `progress` is called for
- each iteration, and where the call is refused `results` stays as it is.
+ `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction.
 
  Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
  a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
@@ -2057,8 +2056,8 @@ contact_normal_status contact_normal_keep(int64_t bytes);
 contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
- 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), or what
- calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+ 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), a member of
+ the friction ("initial_traction", "compliance", "creepage_weight"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
