@@ -118,7 +118,7 @@ impl Library {
                 unsafe { self.initialised("options", CONTACT_NORMAL_KIND_OPTIONS) };
             options.threads = threads;
             // SAFETY: integers, numbers and pointers, in whole words.
-            return unsafe { std::mem::transmute::<contact_normal_options, [u64; 12]>(options) }.to_vec();
+            return unsafe { std::mem::transmute::<contact_normal_options, [u64; WORDS]>(options) }.to_vec();
         }
         // SAFETY: 12 words, as in ABI 1.
         let mut options: [u64; 12] = unsafe { self.initialised("options", CONTACT_NORMAL_KIND_OPTIONS) };
@@ -126,6 +126,9 @@ impl Library {
         options.to_vec()
     }
 }
+
+/// Words of the options of this header.
+const WORDS: usize = size_of::<contact_normal_options>() / 8;
 
 /// Prints the median time of cold calls of one case by one library.
 pub fn call(library: &str, name: &str, m: usize, load: &str, threads: usize) {

@@ -19,7 +19,7 @@ _NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
 _PAIRS = ("creepage", "spin_centre")
 _FLAGS = ("continues", "sensitivities")
 _FIELDS = ("previous_traction", "rigid_slip", "initial_traction", "creepage_weight")
-_KNOWN = ("coefficient", "compliance", "motion", "force", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
+_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
