@@ -64,26 +64,44 @@ inline contact_normal_friction_results room_of(friction_table &found, std::size_
 
 } // namespace detail
 
+namespace detail {
+
+/// A table of entries, with a handle or without.
+inline friction_table table_of(contact_normal_solver *handle, const scene &of, view<std::array<double, 3>> entries, const options &how,
+                               const progress &told, std::optional<view<double>> pressure, fields asked)
+{
+    const double *const p = pressure ? sized("pressure", *pressure, of.size()) : nullptr;
+    friction_table found;
+    const std::int32_t n = narrow("entries", entries.size());
+    contact_normal_friction_results results = room_of(found, entries.size(), of.size(), asked);
+    contact_normal_report_init(&found.report);
+    watched_options options(how, told);
+    const contact_normal_scene scene = of.get();
+    const double *const first = n == 0 ? nullptr : entries.data()->data();
+    found.status = contact_normal_solve_tangential(handle, &scene, p, options.get(), n, first, &results, &found.report);
+    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    options.rethrow();
+    const bool is_refused = n == 0 || found.statuses.front() == untouched;
+    if (found.status < 0 && is_refused) throw error(found.status, found.message);
+    return found;
+}
+
+} // namespace detail
+
 /// Solves the tangential problem of a scene with friction for each of the entries: the creepage (or force) in x and in y, and the spin.
 /// `pressure`: my * mx values, or none: those of the normal problem. `asked`: traction, slip and `stick_slip` of all entries, if
 /// they are wanted. See `contact_normal_solve_tangential`; throws `error` if the call itself is refused, but not for an entry.
 inline friction_table friction_batch(const scene &of, view<std::array<double, 3>> entries, const options &how = {},
                                      const progress &told = {}, std::optional<view<double>> pressure = {}, fields asked = fields::none)
 {
-    const double *const p = pressure ? detail::sized("pressure", *pressure, of.size()) : nullptr;
-    friction_table found;
-    const std::int32_t n = detail::narrow("entries", entries.size());
-    contact_normal_friction_results results = detail::room_of(found, entries.size(), of.size(), asked);
-    contact_normal_report_init(&found.report);
-    detail::watched_options options(how, told);
-    const contact_normal_scene scene = of.get();
-    const double *const first = n == 0 ? nullptr : entries.data()->data();
-    found.status = contact_normal_solve_tangential(nullptr, &scene, p, options.get(), n, first, &results, &found.report);
-    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
-    options.rethrow();
-    const bool is_refused = n == 0 || found.statuses.front() == detail::untouched;
-    if (found.status < 0 && is_refused) throw error(found.status, found.message);
-    return found;
+    return detail::table_of(nullptr, of, entries, how, told, pressure, asked);
+}
+
+/// The same for pressures of one's own, with the coefficients and operators that a solver keeps.
+inline friction_table friction_batch(const solver &kept, const scene &of, view<std::array<double, 3>> entries, view<double> pressure,
+                                     const options &how = {}, const progress &told = {}, fields asked = fields::none)
+{
+    return detail::table_of(kept.get(), of, entries, how, told, pressure, asked);
 }
 
 } // namespace contact_normal

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from typing_extensions import Unpack
 
+    from ._arguments import Doubles
+    from ._handle import Handle
+    from ._scene import Scene
+
 
 class FrictionBatch:
     """What `friction_batch` found: of each entry its numbers, and the fields if they were asked for.
@@ -143,18 +147,27 @@ def friction_batch(
         poisson_ratio=poisson_ratio, young_modulus=young_modulus,
         effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
     )
+    return table_of(scene, pressures, entries, options(given), progress, fields, None)
+
+
+def table_of(
+    scene: Scene, pressures: Doubles | None, entries: Any, struct: Any, progress: Callable[[Progress], Any] | bool | None, fields: bool,
+    handle: Handle | None,
+) -> FrictionBatch:
+    """Solves a table of entries, with a handle or without."""
     table = doubles("entries", entries, dimensions="(n, 3)")
     if table.shape[1] != 3:
         raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")
-    struct = options(given)
     watched = Watched(progress, struct, scene, len(table))
     found = FrictionBatch(len(table), scene.shape, fields)
     results, report = found._results(), initialised("report")
     untouched = -(2**31)
     found.status[:] = untouched
+    no_handle = [] if handle else [None]
     status, message = watched.call(
-        library.contact_normal_solve_tangential, None, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
-        ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), keep=(scene, pressures, table, found),
+        library.contact_normal_solve_tangential, *no_handle, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
+        ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), handle=handle,
+        keep=(scene, pressures, table, found),
     )
     if not len(table) or untouched in found.status:
         check(status, message)

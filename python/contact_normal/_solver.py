@@ -22,6 +22,7 @@ from ._handle import Handle
 from ._library import ContactNormalError, check, library
 from ._outputs import Outputs
 from ._friction import friction as friction_of
+from ._friction_batch import FrictionBatch, table_of
 from ._result import Result, TangentialResult
 from ._scene import Scene, influence as influence_of
 from ._structs import Fields, Report
@@ -246,6 +247,35 @@ class Solver:
         pressures = shaped("pressure", doubles("pressure", pressure), self._shape)
         scene = self._scene(np.zeros(self._shape), {"approach": 0.0, "force": None}, None, friction)
         return of_pressures(scene, pressures, options({**self._given, **given}), progress, self._units, self._handle)
+
+    def friction_batch(
+        self,
+        pressure: npt.ArrayLike,
+        entries: npt.ArrayLike,
+        *,
+        friction: Mapping[str, Any],
+        fields: bool = False,
+        progress: Callable[[Progress], Any] | bool | None = None,
+        **given: Unpack[SolveOptions],
+    ) -> FrictionBatch:
+        """The function `friction_batch` for pressures of one's own, with the coefficients and operators that this solver keeps.
+
+        Parameters
+        ----------
+        pressure : array_like, (my, mx)
+            Those that are not positive count as no contact.
+        entries : array_like, (n, 3)
+            Of each entry what is prescribed in x and in y, and the spin.
+        friction, fields, progress, **given
+            As for `friction_batch`.
+
+        Returns
+        -------
+        FrictionBatch
+        """
+        pressures = shaped("pressure", doubles("pressure", pressure), self._shape)
+        scene = self._scene(np.zeros(self._shape), {"approach": 0.0, "force": None}, None, friction)
+        return table_of(scene, pressures, entries, options({**self._given, **given}), progress, fields, self._handle)
 
     def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.

@@ -44,6 +44,14 @@ class HandlesOfTangentialProblems(unittest.TestCase):
             solver.set_influence(friction=others)
             self.assertTrue((solver.solve_tangential(PRESSURE, friction=SHIFT).traction == alone(others).traction).all())
 
+    def test_a_table_of_entries_is_that_without_a_handle(self) -> None:
+        entries = [(-5e-4, 0.0, 0.0), (-6e-4, 1e-4, 1e-5)]
+        expected = cn.friction_batch(None, D, D, entries, pressure=PRESSURE, friction=SHIFT, **STEEL)
+        with cn.Solver(M, M, D, D, **STEEL) as solver:
+            for _ in range(2):
+                found = solver.friction_batch(PRESSURE, entries, friction=SHIFT)
+                self.assertTrue((found.force == expected.force).all() and (found.status == 0).all())
+
     def test_a_start_near_the_solution_saves_products(self) -> None:
         cold = alone(SHIFT, tolerance=1e-8)
         warm = alone({**SHIFT, "initial_traction": tuple(cold.traction)}, tolerance=1e-8)

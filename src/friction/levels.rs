@@ -169,26 +169,20 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             (bound[ix], slip[ix], rigid[ix]) = element(iy * to.mx + ix);
         }
     });
+    // Means over the children in C.
+    let mean = |of: &dyn Fn(usize) -> Vector, i: usize| {
+        let in_contact = || to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
+        let count = in_contact().count().max(1) as f64;
+        in_contact().fold([0.0; 2], |sum, child| add(sum, of(child))).map(|sum| sum / count)
+    };
     problem.operators.excess = match &fine.operators.excess {
         None => None,
-        Some(excess) => Some(Excess::new(&to, |i| {
-            let mean = |(sum, count): (f64, f64), child: usize| (sum + excess.at(child), count + 1.0);
-            let in_contact = to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
-            let (sum, count) = in_contact.fold((0.0, 0.0), mean);
-            sum / f64::max(count, 1.0)
-        })?),
+        Some(excess) => Some(Excess::new(&to, |i| mean(&|child| [excess.at(child), 0.0], i)[0])?),
     };
-    if !fine.weights.is_empty() {
-        let of = |i: usize| {
-            let in_contact = to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
-            let (sum, count) =
-                in_contact.fold(([0.0; 2], 0.0), |(sum, count), child| (add(sum, fine.weights[child]), count + 1.0));
-            sum.map(|weight| weight / f64::max(count, 1.0))
-        };
-        problem.weights = collected((0..to.len()).map(of), "the weights of creepages")?;
-    } else {
-        problem.weights = Vec::new();
-    }
+    problem.weights = match fine.weights[..] {
+        [] => Vec::new(),
+        _ => collected((0..to.len()).map(|i| mean(&|child| fine.weights[child], i)), "the weights of creepages")?,
+    };
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
     problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();

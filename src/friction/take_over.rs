@@ -96,22 +96,7 @@ impl Solver {
                 *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }
         });
-        problem.weights = match friction.weights {
-            None => Vec::new(),
-            Some([x, y]) => {
-                let place = |k: usize| window.row(&self.grid, k / width).start + k % width;
-                let of = (0..problem.grid.len()).map(place).map(|i| [x[i], y[i]]);
-                collected(of, "the weights of creepages")?
-            }
-        };
-        problem.operators.excess = match friction.compliance {
-            Coefficient::Uniform(_) => None,
-            Coefficient::PerElement(of) => {
-                let (mean, grid) = (problem.operators.tangential.layer(), &self.grid);
-                let place = |k: usize| window.row(grid, k / width).start + k % width;
-                Some(Excess::new(&problem.grid, |k| scales.compliance(of[place(k)]) - mean)?)
-            }
-        };
+        take_weights_and_layer(problem, friction, (grid, window), &scales)?;
         if !from_rest {
             threads.for_each_plain_row(&mut state.q, width, |iy, row| {
                 row.iter_mut()
@@ -221,6 +206,30 @@ impl Solver {
         }
         Ok(())
     }
+}
+
+/// The weights of creepages, and what the compliance of a layer is beyond its mean, on the elements of a window.
+fn take_weights_and_layer(
+    problem: &mut Problem,
+    friction: &Friction<'_>,
+    (grid, window): (&Grid, Window),
+    scales: &Scales,
+) -> Result<()> {
+    let width = problem.grid.mx;
+    let place = |k: usize| window.row(grid, k / width).start + k % width;
+    problem.weights = match friction.weights {
+        None => Vec::new(),
+        Some([x, y]) => {
+            let of = (0..problem.grid.len()).map(place).map(|i| [x[i], y[i]]);
+            collected(of, "the weights of creepages")?
+        }
+    };
+    let mean = problem.operators.tangential.layer();
+    problem.operators.excess = match friction.compliance {
+        Coefficient::Uniform(_) => None,
+        Coefficient::PerElement(of) => Some(Excess::new(&problem.grid, |k| scales.compliance(of[place(k)]) - mean)?),
+    };
+    Ok(())
 }
 
 /// The creepage of tractions to start from: with it what sticks does not slip in the mean. 0 where all slips.

@@ -211,6 +211,12 @@ static void frictions()
     expect(table.creepage[7][0] == entries[7][0] && table.residual[7] <= 1e-6 && table.products[7] > 0.0, "its numbers");
     const cn::friction_table given = cn::friction_batch(rolling, entries, {}, {}, cn::view<double>(rolled.pressure));
     expect(given.force == table.force, "pressures that are given");
+    cn::solver kept(rolling);
+    expect(cn::friction_batch(kept, rolling, entries, rolled.pressure).force == table.force, "with a handle");
+    const cn::result alone = cn::solve_tangential(rolling, rolled.pressure), one = kept.solve_tangential(rolling, rolled.pressure);
+    expect(alone.holds(cn::fields::traction | cn::fields::slip | cn::fields::stick_slip) && alone.traction == one.traction &&
+               alone.slip == one.slip && alone.report.tangential.force[0] == one.report.tangential.force[0],
+           "one problem, with a handle and without");
     entries[3][2] = std::numeric_limits<double>::quiet_NaN();
     const cn::friction_table broken = cn::friction_batch(rolling, entries);
     expect(broken.status == CONTACT_NORMAL_NOT_FINITE && broken.statuses[3] == CONTACT_NORMAL_NOT_FINITE && broken.statuses[4] == CONTACT_NORMAL_OK &&
