@@ -44,7 +44,7 @@ fn changed_bytes_of_a_dump_do_no_harm() {
     let (file, mut random) = (file(), Random::new(7));
     let (mut made, mut refused) = (0, 0);
     let text = file.windows(6).position(|bytes| bytes == b"\ndata ").expect("the end of the text");
-    for k in 0..4000 {
+    for k in 0..16000 {
         // Half of them in the text, which is the shorter part.
         let end = if k % 2 == 0 { text } else { file.len() };
         let mut bytes = file.clone();
@@ -56,5 +56,6 @@ fn changed_bytes_of_a_dump_do_no_harm() {
         made += statuses.len();
         refused += statuses.iter().filter(|status| **status < 0).count();
     }
-    assert!(made > 500 && refused > 20, "{made} made, {refused} refused");
+    // Some 2000 and 50.
+    assert!(made > 1000 && refused > 20, "{made} made, {refused} refused");
 }
