@@ -212,7 +212,7 @@ impl Call {
     pub fn check(&self, status: i32, before: &[u64], fixed: &[i32]) {
         // SAFETY: never NULL, valid until the next call.
         let message = unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().expect("UTF-8");
-        assert!((-8..=3).contains(&status), "status {status}: {message}");
+        assert!((-9..=3).contains(&status), "status {status}: {message}");
         if status < 0 {
             assert!(!message.is_empty(), "status {status} without a message");
             assert!(self.outputs() == before, "status {status}, and outputs were written: {message}");
@@ -220,7 +220,13 @@ impl Call {
         }
         let n = (self.scene.mx * self.scene.my) as usize;
         assert!(self.pressure[n..].iter().all(|&p| p.to_bits() == SENTINEL.to_bits()), "written beyond the grid");
-        let (case, found) = (self.case(fixed), self.found(status));
+        let (case, mut found) = (self.case(fixed), self.found(status));
+        if let Some(fixed) = &case.how.fixed {
+            assert!(found.contact == *fixed, "a fixed area was written");
+            // Whatever codes it has, what has a surface is in contact.
+            let in_contact = fixed.iter().zip(&case.h).map(|(code, h)| i32::from(*code != 0 && h.is_finite()));
+            found.contact = in_contact.collect();
+        }
         let Some(sliding) = &self.sliding else {
             let failures = is_true(&case, &found);
             assert!(failures.is_empty(), "status {status}: {failures:?}");

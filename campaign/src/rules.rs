@@ -134,15 +134,18 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     }
     let known = |i: usize| match (found.contact[i], &case.effects.limit) {
         (0, _) => true,
-        (1, _) => case.h[i].is_finite(),
+        (1, _) => case.h[i].is_finite() || fixed.is_some(),
         (2, Some(limit)) => found.p[i] == limit.at(i),
         _ => false,
     };
     if !(0..n).all(known) {
         failures.extend(failure("contact says what an element is", format!("status {status}")));
     }
-    // What has no surface stays exterior.
-    let given = |((&found, &fixed), h): ((&i32, &i32), &f64)| (found != 0) == (fixed != 0 && h.is_finite());
+    // What has no surface carries nothing, whatever its code is.
+    if (0..n).any(|i| case.h[i].is_infinite() && found.p[i] != 0.0) {
+        failures.extend(failure("p = 0 where there is no surface", format!("status {status}")));
+    }
+    let given = |((&found, &fixed), h): ((&i32, &i32), &f64)| h.is_infinite() || (found != 0) == (fixed != 0);
     if fixed.as_ref().is_some_and(|fixed| !found.contact.iter().zip(fixed).zip(&case.h).all(given)) {
         failures.extend(failure("a fixed area stays", format!("status {status}")));
     }
