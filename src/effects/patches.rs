@@ -17,7 +17,7 @@ pub const NONE: i32 = -1;
 pub struct Patches<'a> {
     /// Number of patches.
     pub count: usize,
-    /// Of each element, `[my][mx]`: 0 to count - 1, or [`NONE`].
+    /// Of each element, `[my][mx]`: 0 to count - 1, or -1: in none.
     pub patch: &'a [i32],
     /// `[count][count]`, symmetric, 1 on the diagonal; 0: independent, 1: as if there were no patches.
     pub factors: &'a [f64],

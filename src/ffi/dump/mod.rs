@@ -1,7 +1,7 @@
 //! `options->dump`: what a call was given, written where it fails, and read again by `contact-normal-replay`.
 //!
 //! Nothing here knows an effect. The structs are written by the list of their members, which is made from the header, and an array is as
-//! long as the call has told [`Regions`], which knows all that is read. So a new effect, or a new member, is in the file without a line
+//! long as the call has told `Regions`, which knows all that is read. So a new effect, or a new member, is in the file without a line
 //! here. docs/dump.md has the format.
 
 mod file;
