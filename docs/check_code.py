@@ -94,7 +94,7 @@ def main(prefix: Path, folder: Path) -> None:
             if language == "c":
                 whole = "int main" in block
                 source = source.with_suffix(".c")
-                source.write_text(block if whole else C % (declared(block), block))
+                source.write_text(block if whole or block.startswith("#include") else C % (declared(block), block))
                 compiler = ["gcc", "-std=c99", *WARNINGS, *flags, source]
             elif language == "cpp":
                 whole = "int main" in block
