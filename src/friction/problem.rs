@@ -241,7 +241,7 @@ impl Problem {
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
         let [sum] = vectors::sum(self.threads(), self.bound.len(), squared);
-        (sum / self.count().max(1) as f64).sqrt()
+        self.rms_of(sum)
     }
 
     /// Of the sum of squares of a field over C, the rms.

@@ -124,9 +124,7 @@ impl Solver {
     ) -> Result<(Outcome, Report)> {
         let own = self.own_tables.clone();
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
-        scene.tangential()?;
-        self.set_up.check_options(options)?;
-        self.set_up.check_scene(scene, &self.problem)?;
+        self.check_tangential(scene, options)?;
         let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
         let table = Table::new(scene, friction, pressure, entries, options);
         let began = std::time::Instant::now();

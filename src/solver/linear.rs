@@ -1,5 +1,6 @@
 //! What the operator of a solver gives beside solutions: products with pressures of the caller's, and the stiffness of a result.
 
+use super::tangential::finite;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
 use crate::contact::Survey;
 use crate::error::{invalid, Error, Result};
@@ -32,10 +33,7 @@ impl Solver {
                 return invalid(format!("{name} has {length} values; the grid has {} elements", grid.len()));
             }
         }
-        if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
-            let (element, p) = (grid.element(i), pressure[i]);
-            return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
-        }
+        finite(&grid, pressure)?;
         self.problem.displace(pressure, displacement)?;
         // No product of a solve.
         self.problem.take_products();

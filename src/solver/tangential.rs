@@ -34,6 +34,13 @@ pub struct Turn<'a> {
     pub threads: &'a Threads,
 }
 
+impl<'a> Turn<'a> {
+    /// From the tractions that the caller gave, or from those before the step.
+    pub fn start(&self) -> Start<'a> {
+        self.friction.initial.map_or(Start::Before, Start::Given)
+    }
+}
+
 impl Tangent {
     /// For a scene's grid and bodies.
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
@@ -95,8 +102,7 @@ impl Tangent {
         again: bool,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        let begin = || turn.friction.initial.map_or(Start::Before, Start::Given);
-        self.solve_from(if again { Start::Again } else { begin() }, turn, pressure, monitor)
+        self.solve_from(if again { Start::Again } else { turn.start() }, turn, pressure, monitor)
     }
 
     fn solve_from(
@@ -207,9 +213,7 @@ impl Handle {
     ) -> Result<(Outcome, &Solution, super::Report)> {
         let own = self.own_tables.clone();
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
-        let friction = scene.tangential()?;
-        self.set_up.check_options(options)?;
-        self.set_up.check_scene(scene, &self.problem)?;
+        let friction = self.check_tangential(scene, options)?;
         let pressure = &*positive(&scene.grid, pressure)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;
@@ -220,6 +224,14 @@ impl Handle {
         // A solve that ends has a result.
         let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
         Ok((stop, solution, report))
+    }
+
+    /// The friction of a scene, which must be as at the set-up. Its distance and its load are not looked at.
+    pub(super) fn check_tangential<'s>(&self, scene: &'s Scene<'_>, options: &Options) -> Result<&'s Friction<'s>> {
+        let friction = scene.tangential()?;
+        self.set_up.check_options(options)?;
+        self.set_up.check_scene(scene, &self.problem)?;
+        Ok(friction)
     }
 
     /// The tractions, slip and stick area that were found last, with pressures of the normal problem or with given ones.
@@ -257,7 +269,7 @@ fn alone(
     let mut monitor = Monitor::new(progress, Vec::new(), false);
     let start = match turn.options.initial_guess {
         InitialGuess::Previous if tangent.solution().is_some() => Start::Last,
-        _ => turn.friction.initial.map_or(Start::Before, Start::Given),
+        _ => turn.start(),
     };
     let (stop, found) = tangent.solve_from(start, turn, pressure, &mut monitor)?;
     tangent.keep_pressures(pressure);
@@ -272,16 +284,20 @@ pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [
         let (values, elements) = (pressure.len(), grid.len());
         return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
     }
-    if let Some(i) = pressure.iter().position(|p| !p.is_finite()) {
-        let (element, p) = (grid.element(i), pressure[i]);
-        return Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")));
-    }
+    finite(grid, pressure)?;
     if pressure.iter().all(|p| *p >= 0.0) {
         return Ok(Cow::Borrowed(pressure));
     }
     let mut positive: Vec<f64> = zeros(pressure.len(), "the pressures of what is in contact")?;
     positive.iter_mut().zip(pressure).for_each(|(to, p)| *to = p.max(0.0));
     Ok(Cow::Owned(positive))
+}
+
+/// Refuses pressures that are not finite.
+pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
+    let Some(i) = pressure.iter().position(|p| !p.is_finite()) else { return Ok(()) };
+    let (element, p) = (grid.element(i), pressure[i]);
+    Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")))
 }
 
 /// What is to be said of pressures that are given.

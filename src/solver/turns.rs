@@ -69,8 +69,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, friction::Report)> {
         let smaller = if tangent.is_of_like_bodies() { self.smaller_load(turn, stop, monitor)? } else { None };
-        let given = turn.friction.initial.map_or(Start::Before, Start::Given);
-        let start = smaller.as_ref().map_or(given, Smaller::start);
+        let start = smaller.as_ref().map_or(turn.start(), Smaller::start);
         let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, start, monitor)?;
         if let Some(smaller) = smaller {
             if tangential_stop == Outcome::Converged && monitor.is_cancelled() {
