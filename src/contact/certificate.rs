@@ -1,6 +1,7 @@
 //! How well the contact conditions hold: everything here is computed from p, h and a fresh u = A p.
 
 use super::survey_pass::Pass;
+pub use super::survey_pass::Survey;
 use super::{AdmissibleSet, State};
 use crate::blocks;
 use crate::threads::Threads;
@@ -21,29 +22,6 @@ pub struct Certificate {
 /// The round-off of `h - approach` where h is the approach: a sum and a mean of equal numbers. Distances below it are those of bodies that
 /// fit exactly; larger ones, though round-off of a huge offset they may be, are not taken for none.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
-
-/// What one pass over a state whose u is A p tells.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Survey {
-    /// 2-norm over C of `e = h - approach + u`.
-    pub residual: f64,
-    /// 2-norm over C of `h - approach`: what residuals are compared with.
-    pub distance: f64,
-    /// rms of the same over C and the elements at their limit: what violations are compared with.
-    pub scale: f64,
-    /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
-    pub violation: f64,
-    /// Elements in contact, free or at their limit.
-    pub contact_count: usize,
-    /// Sum of p.
-    pub pressures: f64,
-    /// Sum of p^2.
-    pub squares: f64,
-    /// Smallest and largest p.
-    pub range: (f64, f64),
-    /// `sum of p |e|` and `sum of p |u|`; of elements at their limit only e > 0 counts.
-    pub work: (f64, f64),
-}
 
 impl Survey {
     /// Surveys a state.

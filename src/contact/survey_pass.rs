@@ -3,8 +3,30 @@
 use std::array::from_fn;
 use std::ops::Range;
 
-use super::certificate::Survey;
 use super::State;
+
+/// What one pass over a state whose u is A p tells.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Survey {
+    /// 2-norm over C of `e = h - approach + u`.
+    pub residual: f64,
+    /// 2-norm over C of `h - approach`: what residuals are compared with.
+    pub distance: f64,
+    /// rms of the same over C and the elements at their limit: what violations are compared with.
+    pub scale: f64,
+    /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
+    pub violation: f64,
+    /// Elements in contact, free or at their limit.
+    pub contact_count: usize,
+    /// Sum of p.
+    pub pressures: f64,
+    /// Sum of p^2.
+    pub squares: f64,
+    /// Smallest and largest p.
+    pub range: (f64, f64),
+    /// `sum of p |e|` and `sum of p |u|`; of elements at their limit only e > 0 counts.
+    pub work: (f64, f64),
+}
 
 /// Elements that are looked at together: many at a time, which the compiler can vectorise.
 const CHUNK: usize = 64;

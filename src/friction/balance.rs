@@ -10,10 +10,10 @@
 
 use super::corral::Corral;
 use super::forces::{sum_of_bounds, Forces};
-use super::problem::{add, onto_disc, plus, square, Problem, State};
+use super::plane::{add, onto_disc, plus, square, Vector};
+use super::problem::{Problem, State};
 use super::system::pseudo_inverse;
 use super::vectors;
-use super::Vector;
 
 /// Forces that are met to this part of the sum of all bounds are met.
 const MET: f64 = 1e-13;

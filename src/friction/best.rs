@@ -2,9 +2,9 @@
 
 use super::certificate::Certificate;
 use super::forces::Forces;
+use super::plane::Vector;
 use super::problem::{Problem, State};
 use super::vectors::{self, Fields};
-use super::Vector;
 use crate::error::Result;
 
 /// Tractions, the creepages found with them, and how far they are from the conditions.

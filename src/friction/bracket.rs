@@ -11,13 +11,13 @@ use super::certificate::Certificate;
 use super::corral::Corral;
 use super::forces::{sum_of, sum_of_bounds, Forces};
 use super::newton::{self, Manner};
-use super::problem::{dot, plus, square, Problem, State};
+use super::plane::{dot, plus, square, Vector};
+use super::problem::{Problem, State};
 use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
 use super::system::pseudo_inverse;
 use super::vectors;
-use super::Vector;
 use crate::error::Result;
 use crate::progress::Outcome;
 

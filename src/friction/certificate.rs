@@ -11,9 +11,9 @@
 //!
 //! The error of q obeys `(q - q*)' A (q - q*) <= sum_C (s.q + g |s|)`.
 
-use super::problem::{add, dot, square, Problem, State};
+use super::plane::{add, dot, square, Vector};
+use super::problem::{Problem, State};
 use super::vectors::{self, BLOCK};
-use super::Vector;
 
 /// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;

@@ -30,6 +30,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::series::{Series, Shape};
+pub use super::tables::Entry;
 use super::tables::Tables;
 use super::unit::unit_of;
 use crate::effects::TangentialInfluence;
@@ -37,9 +38,6 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::gauss_each;
 use crate::scene::Bodies;
-
-/// The coefficients of one offset: `Axx, Ayy, Axy`.
-pub type Entry = [f64; 3];
 
 /// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice, as for the normal coefficients.
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];

@@ -3,8 +3,7 @@
 //! Forces F fall as creepages c grow, `(F(c) - F(c*)).(c - c*) <= 0`: whatever forces are found at c, those that are wanted lie at a
 //! `c*` with `(F(c) - F*).(c* - c) >= 0`. Cuts through the centre leave 5/9 of the area at most (Gruenbaum 1960): that ends.
 
-use super::problem::{dot, plus};
-use super::Vector;
+use super::plane::{dot, plus, Vector};
 
 /// The polygon; of one creepage that is not known a rectangle, which is never cut across.
 pub struct Corral {

@@ -15,8 +15,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::plane::Vector;
 use super::unit::unit_of;
-use super::Vector;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::grid::Grid;

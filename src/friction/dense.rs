@@ -1,7 +1,7 @@
 //! `u = A q` by direct summation: the naive twin of [`Toeplitz`](super::Toeplitz), the oracle of its tests.
 
 use super::coefficients::Tangential;
-use super::Vector;
+use super::plane::Vector;
 use crate::grid::Grid;
 
 /// `u_I = sum_J A(I - J + by) q_J`, term by term; `by` in elements: where the displacement is taken, from each centre.

@@ -7,12 +7,12 @@
 //! (P A P + D) z = -P (dw + A mu dp n)
 //! ```
 
+use super::plane::Vector;
 use super::sensitivity;
 use super::shift::Memory;
 use super::solution::resultant;
 use super::solver::Solver;
 use super::tangent::Side;
-use super::Vector;
 use crate::effects::Friction;
 use crate::error::Result;
 

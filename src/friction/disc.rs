@@ -1,8 +1,7 @@
 //! One element of the projected gradients: what slips there, and where it goes.
 
-use super::problem::{add, onto_disc, plus, square};
+use super::plane::{add, onto_disc, plus, square, Pair, Vector};
 use super::tangent::{look, mixing, Seen};
-use super::{Pair, Vector};
 use crate::operator::fft::Real;
 
 /// Units, and what is in them.

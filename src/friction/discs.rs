@@ -6,14 +6,13 @@
 mod state;
 
 use super::disc::{double, moved, slips, Units};
-use super::extension::Extension;
 use super::places::Places;
-use super::problem::{add, dot, onto_disc, plus, square, Problem};
-use super::shift::Steps;
+use super::plane::{add, dot, onto_disc, plus, square, Pair, Vector};
+use super::problem::Problem;
 use super::tangent::project;
 use super::vectors::over;
-use super::{Pair, Vector};
 use crate::memory::keep;
+use crate::methods::extension::Extension;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
 
@@ -28,34 +27,32 @@ pub struct Discs<T: Real> {
     /// n, 0 where C sticks; D; `P(-s)`.
     normal: Vec<Vector>,
     curvature: Vec<T>,
-    driving: Vec<Pair<T>>,
+    projected: Vec<Pair<T>>,
     way: Way<T>,
     /// On the grid: what is multiplied, and what that gives.
     given: Vec<Pair<T>>,
     answer: Vec<Pair<T>>,
-    extension: Extension<T>,
+    extension: Option<Extension<T, 2>>,
     units: Units,
 }
 
 /// The way of a step.
 #[derive(Default)]
 struct Way<T> {
-    /// z; t, its chord, and `A` of the chord and the debt.
+    /// z; t, its chord, and `A` of the chord and the deferred corrections.
     z: Vec<Pair<T>>,
     direction: Vec<Pair<T>>,
     chord: Vec<Pair<T>>,
     product: Vec<Pair<T>>,
-    debt: Vec<Pair<T>>,
+    deferred: Vec<Pair<T>>,
 }
 
-/// What a pass saw: the squares of what is left of the slip and of u, and of a step the debts and the ways that elements went.
+/// Sums of squares over C: of what is left of the slip, of u, and of a step the deferred corrections and the ways that elements went.
 #[derive(Clone, Copy)]
 pub struct Sums {
     pub rest: f64,
     pub displaced: f64,
-    pub owed: f64,
-    pub gone: f64,
-    /// The squares of those ways.
+    pub deferred: f64,
     pub moved: f64,
 }
 
@@ -72,30 +69,36 @@ impl<T: Real> Discs<T> {
 
     /// Predicts what slips; what the preconditioner is given is made ready.
     pub fn predict(&mut self, places: &Places, threads: &Threads) -> Sums {
-        let Discs { bound, slip, q, u, normal, curvature, driving, given, units, .. } = self;
-        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(driving));
+        let Discs { bound, slip, q, u, normal, curvature, projected, given, units, .. } = self;
+        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(projected));
         let blocks = places.parts().zip(predicted).zip(places.cut_grid(given));
-        let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), driving)), given)| {
+        let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), projected)), given)| {
             let mut sums = [0.0; 2];
             given.fill([T::zero(); 2]);
             for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
                 let seen = units.look(q[k], u[k], slip[k], bound[k]);
-                (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
-                given[place] = seen.driving.map(|r| T::of(units.mixing(seen.curvature) * r));
+                (normal[j], curvature[j], projected[j]) =
+                    (seen.normal, T::of(seen.curvature), seen.projected.map(T::of));
+                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature) * r));
                 sums = [sums[0] + seen.rest, sums[1] + square(u[k])];
             }
             sums
         });
-        Sums { rest, displaced, owed: 0.0, gone: 0.0, moved: 0.0 }
+        Sums { rest, displaced, deferred: 0.0, moved: 0.0 }
     }
 
-    /// z, the preconditioned driving: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
+    /// z, the preconditioned projected: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
     pub fn precondition(&mut self, problem: &mut Problem) -> f64 {
-        self.extension.fill(&mut self.given);
-        problem.operators.precondition_plain(&self.given, &mut self.answer);
-        self.extension.fold(&mut self.answer);
-        let Discs { normal, curvature, driving, way, answer, units, .. } = self;
+        let (operators, given, answer) = (&mut problem.operators, &self.given, &mut self.answer);
+        let compliance = operators.relative_compliance();
+        match &mut self.extension {
+            Some(extension) => {
+                extension.between(given, answer, compliance, |r, z| operators.precondition_plain(r, z));
+            }
+            None => operators.precondition_plain(given, answer),
+        }
+        let Discs { normal, curvature, projected, way, answer, units, .. } = self;
         let Way { z, direction, product, .. } = way;
         let places = &problem.places;
         let [along] = over(problem.threads(), places.parts().zip(places.cut(z)), |_, (part, z)| {
@@ -105,7 +108,7 @@ impl<T: Real> Discs<T> {
                 let mixing = units.mixing(bend);
                 let v = double(answer[place]).map(|v| mixing * v);
                 let own = (1.0 - mixing) / (bend + units.a0);
-                let new = plus(project(normal[k], v), own, double(driving[k]));
+                let new = plus(project(normal[k], v), own, double(projected[k]));
                 along += dot(new, plus(double(product[k]), bend, double(direction[k])));
                 *z = new.map(T::of);
             }
@@ -114,10 +117,10 @@ impl<T: Real> Discs<T> {
         along
     }
 
-    /// The direction t, its chord at the length f, and what is multiplied: the chord with the debt.
+    /// The direction t, its chord at the length f, and what is multiplied: the chord with the deferred.
     pub fn choose_direction(&mut self, problem: &Problem, (beta, f): (f64, f64)) {
         let Discs { bound, q, normal, way, given, .. } = self;
-        let Way { z, direction, chord, debt, .. } = way;
+        let Way { z, direction, chord, deferred, .. } = way;
         let (places, inverse) = (&problem.places, 1.0 / f);
         let blocks = places.parts().zip(places.cut(direction).zip(places.cut(chord))).zip(places.cut_grid(given));
         over(problem.threads(), blocks, |_, ((part, (direction, chord)), given)| {
@@ -127,17 +130,17 @@ impl<T: Real> Discs<T> {
                 let t = project(normal[k], plus(double(z[k]), beta, double(direction[j])));
                 let moved = moved(normal[k], bound[k], q[k], t, f);
                 let along = [inverse * (moved[0] - q[k][0]), inverse * (moved[1] - q[k][1])];
-                given[place] = plus(along, inverse, double(debt[k])).map(T::of);
+                given[place] = plus(along, inverse, double(deferred[k])).map(T::of);
                 (direction[j], chord[j]) = (t.map(T::of), along.map(T::of));
             }
             []
         });
     }
 
-    /// Multiplies; returns `t.(A + D) t` and `t` times the driving, of the chord where C sticks.
+    /// Multiplies; returns `t.(A + D) t` and `t` times the projected, of the chord where C sticks.
     pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
         problem.operators.multiply_plain(&self.given, &mut self.answer);
-        let Discs { normal, curvature, driving, way, answer, .. } = self;
+        let Discs { normal, curvature, projected, way, answer, .. } = self;
         let Way { direction, chord, product, .. } = way;
         let places = &problem.places;
         over(problem.threads(), places.parts().zip(places.cut(product)), |_, (part, product)| {
@@ -147,24 +150,26 @@ impl<T: Real> Discs<T> {
                 let along = double(if slips(normal[k]) { direction[k] } else { chord[k] });
                 let bend = curvature[k].to_double();
                 sums[0] += dot(along, double(*product)) + bend * square(along);
-                sums[1] += dot(double(driving[k]), along);
+                sums[1] += dot(double(projected[k]), along);
             }
             sums
         })
     }
 
-    /// Goes so far, of what the chord was taken for, and predicts what slips there.
-    pub fn go(&mut self, places: &Places, threads: &Threads, length: f64, steps: &Steps) -> Sums {
-        let Discs { bound, slip, q, u, normal, curvature, driving, way, given, units, .. } = self;
-        let Way { direction, chord, product, debt, .. } = way;
-        let left = 1.0 - length / steps.held_back;
-        let states = places.cut(q).zip(places.cut(u)).zip(places.cut(direction).zip(places.cut(debt)));
-        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(driving));
+    /// Goes so far along the chord at the length f, and predicts what slips there.
+    pub fn go(&mut self, places: &Places, threads: &Threads, length: f64, f: f64) -> Sums {
+        let Discs { bound, slip, q, u, normal, curvature, projected, way, given, units, .. } = self;
+        let Way { direction, chord, product, deferred, .. } = way;
+        let left = 1.0 - length / f;
+        let states = places.cut(q).zip(places.cut(u)).zip(places.cut(direction).zip(places.cut(deferred)));
+        let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(projected));
         let blocks = places.parts().zip(states).zip(predicted).zip(places.cut_grid(given));
         let work = |_: usize, block: &mut _| {
-            let (((part, ((q, u), (direction, debt))), ((normal, curvature), driving)), given): &mut Block<'_, T> =
-                block;
-            let mut sums = [0.0; 5];
+            let (((part, ((q, u), (direction, deferred))), ((normal, curvature), projected)), given): &mut Block<
+                '_,
+                T,
+            > = block;
+            let mut sums = [0.0; 4];
             given.fill([T::zero(); 2]);
             for (j, place) in part.in_rows().enumerate() {
                 let k = part.start + j;
@@ -174,36 +179,36 @@ impl<T: Real> Discs<T> {
                     true => moved(n, g, q[j], double(direction[j]), length),
                     false => onto_disc(straight, g),
                 };
-                let owed = plus([new[0] - straight[0], new[1] - straight[1]], left, double(debt[j]));
-                debt[j] = owed.map(T::of);
-                sums[2] += square(owed).sqrt();
-                let moved = square([new[0] - q[j][0], new[1] - q[j][1]]);
-                (sums[3], sums[4]) = (sums[3] + moved.sqrt(), sums[4] + moved);
+                let late = plus([new[0] - straight[0], new[1] - straight[1]], left, double(deferred[j]));
+                deferred[j] = late.map(T::of);
+                let way = [new[0] - q[j][0], new[1] - q[j][1]];
+                (sums[2], sums[3]) = (sums[2] + square(late), sums[3] + square(way));
                 u[j] = plus(u[j], length, double(product[k]));
                 if !slips(n) {
                     direction[j] = chord[k];
                 }
                 q[j] = new;
                 let seen = units.look(new, u[j], slip[k], g);
-                (normal[j], curvature[j], driving[j]) = (seen.normal, T::of(seen.curvature), seen.driving.map(T::of));
-                given[place] = seen.driving.map(|r| T::of(units.mixing(seen.curvature) * r));
+                (normal[j], curvature[j], projected[j]) =
+                    (seen.normal, T::of(seen.curvature), seen.projected.map(T::of));
+                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature) * r));
                 (sums[0], sums[1]) = (sums[0] + seen.rest, sums[1] + square(u[j]));
             }
             sums
         };
-        let [rest, displaced, owed, gone, moved] = over(threads, blocks, work);
-        Sums { rest, displaced, owed, gone, moved }
+        let [rest, displaced, deferred, moved] = over(threads, blocks, work);
+        Sums { rest, displaced, deferred, moved }
     }
 
-    /// Multiplies the debt: nothing is owed any more.
-    pub fn pay(&mut self, problem: &mut Problem) {
+    /// Multiplies the deferred corrections: none is left.
+    pub fn correct(&mut self, problem: &mut Problem) {
         let (places, threads) = (&problem.places, problem.operators.threads.clone());
-        let Discs { u, way: Way { debt, .. }, given, answer, .. } = self;
-        let blocks = places.parts().zip(places.cut(debt)).zip(places.cut_grid(given));
-        over(&threads, blocks, |_, ((part, debt), given)| {
+        let Discs { u, way: Way { deferred, .. }, given, answer, .. } = self;
+        let blocks = places.parts().zip(places.cut(deferred)).zip(places.cut_grid(given));
+        over(&threads, blocks, |_, ((part, deferred), given)| {
             given.fill([T::zero(); 2]);
-            for (place, debt) in part.in_rows().zip(debt.iter_mut()) {
-                given[place] = std::mem::replace(debt, [T::zero(); 2]);
+            for (place, deferred) in part.in_rows().zip(deferred.iter_mut()) {
+                given[place] = std::mem::replace(deferred, [T::zero(); 2]);
             }
             []
         });
@@ -221,7 +226,7 @@ impl<T: Real> Discs<T> {
         let in_double = size_of::<f64>() + 4 * size_of::<Vector>();
         self.bound.capacity() * in_double
             + (13 * self.curvature.capacity() + 2 * 2 * self.given.capacity()) * size_of::<T>()
-            + self.extension.bytes()
+            + self.extension.as_ref().map_or(0, Extension::bytes)
     }
 }
 
@@ -234,11 +239,11 @@ type States<'a, T> = ((&'a mut [Vector], &'a mut [Vector]), (&'a mut [Pair<T>], 
 
 impl<T: Real> Drop for Discs<T> {
     fn drop(&mut self) {
-        let Discs { bound, slip, q, u, normal, curvature, driving, given, answer, .. } = self;
-        let Way { z, direction, chord, product, debt } = &mut self.way;
+        let Discs { bound, slip, q, u, normal, curvature, projected, given, answer, .. } = self;
+        let Way { z, direction, chord, product, deferred } = &mut self.way;
         keep([bound]);
         keep([curvature]);
         keep([slip, q, u, normal]);
-        keep([driving, given, answer, z, direction, chord, product, debt]);
+        keep([projected, given, answer, z, direction, chord, product, deferred]);
     }
 }

@@ -6,8 +6,8 @@
 //! u_I += d (r q)_I                           in steady rolling; d v = v - v(x + dq), interpolated between the centres
 //! ```
 
-use super::march::March;
-use super::Vector;
+use super::plane::Vector;
+use super::sweep::Sweep;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
@@ -33,11 +33,11 @@ impl Excess {
         self.values[i]
     }
 
-    /// Adds `by` times what q displaces; with a march, in a step of steady rolling.
-    pub fn add<T: Real>(&self, q: &[[T; 2]], by: f64, march: Option<&March>, u: &mut [[T; 2]]) {
+    /// Adds `by` times what q displaces; with a sweep, in a step of steady rolling.
+    pub fn add<T: Real>(&self, q: &[[T; 2]], by: f64, sweep: Option<&Sweep>, u: &mut [[T; 2]]) {
         for (i, u) in u.iter_mut().enumerate() {
             let here = self.displaced(q, i);
-            let there = march.map_or([0.0; 2], |march| self.ahead(q, march, i));
+            let there = sweep.map_or([0.0; 2], |sweep| self.ahead(q, sweep, i));
             for k in 0..2 {
                 u[k] = T::of(u[k].to_double() + by * (here[k] - there[k]));
             }
@@ -45,9 +45,9 @@ impl Excess {
     }
 
     /// Subtracts what tractions before displaced at the places of a step of transient rolling.
-    pub fn subtract_ahead(&self, q: &[Vector], march: &March, w: &mut [Vector]) {
+    pub fn subtract_ahead(&self, q: &[Vector], sweep: &Sweep, w: &mut [Vector]) {
         for (i, w) in w.iter_mut().enumerate() {
-            let there = self.ahead(q, march, i);
+            let there = self.ahead(q, sweep, i);
             *w = [w[0] - there[0], w[1] - there[1]];
         }
     }
@@ -57,9 +57,9 @@ impl Excess {
     }
 
     /// `r q` at the place of element i after a step.
-    fn ahead<T: Real>(&self, q: &[[T; 2]], march: &March, i: usize) -> Vector {
-        let mut sum = self.displaced(q, i).map(|v| march.own() * v);
-        for &(in_x, in_y, weight) in march.neighbours() {
+    fn ahead<T: Real>(&self, q: &[[T; 2]], sweep: &Sweep, i: usize) -> Vector {
+        let mut sum = self.displaced(q, i).map(|v| sweep.own() * v);
+        for &(in_x, in_y, weight) in sweep.neighbours() {
             let (x, y) = ((i % self.mx).wrapping_add_signed(in_x), (i / self.mx).wrapping_add_signed(in_y));
             if x < self.mx && y < self.my {
                 let v = self.displaced(q, y * self.mx + x);

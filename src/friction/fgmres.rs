@@ -2,9 +2,8 @@
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
 
-use super::problem::dot;
+use super::plane::{dot, Vector};
 use super::vectors::{self, Fields};
-use super::Vector;
 use crate::error::Result;
 use crate::threads::Threads;
 

@@ -1,9 +1,9 @@
 //! Tangential forces that are given.
 
-use super::problem::{add, square, Problem};
+use super::plane::{add, square, Vector};
+use super::problem::Problem;
 use super::scales::Scales;
 use super::vectors;
-use super::Vector;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Result};
 use crate::grid::Grid;

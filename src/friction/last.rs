@@ -1,8 +1,8 @@
 //! The last result, copied, to go back to where a step of several solves comes to no end.
 
+use super::plane::Vector;
 use super::solution::Solution;
 use super::solver::Solver;
-use super::Vector;
 use crate::error::Result;
 use crate::memory::{blank, keep};
 

@@ -7,13 +7,12 @@
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables` | coefficients of the caller's own |
-//! | `extension` | residuals continued outside C, for the preconditioner |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
-//! | `newton`, `step`, `system`, `fgmres`, `march`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
+//! | `newton`, `step`, `system`, `fgmres`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | `levels`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
+//! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
 
 mod balance;
 mod best;
@@ -28,12 +27,11 @@ mod derivatives;
 mod disc;
 mod discs;
 mod excess;
-mod extension;
 mod fgmres;
 mod forces;
+mod interpolation;
 mod last;
 mod levels;
-mod march;
 mod nested;
 mod newton;
 mod operators;
@@ -51,6 +49,7 @@ mod solution;
 mod solver;
 mod spectrum;
 mod step;
+mod sweep;
 mod system;
 mod tables;
 mod take_over;
@@ -66,14 +65,9 @@ pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use last::Last;
+pub use plane::Vector;
 pub use request::{Request, Start, Superposed};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;
 pub use workspace::Workspace;
-
-/// A vector of the plane: `[x, y]`.
-pub type Vector = [f64; 2];
-
-/// The same in either precision.
-type Pair<T> = [T; 2];

@@ -6,7 +6,8 @@
 use super::best::Best;
 use super::bracket;
 use super::forces::Forces;
-use super::levels::{interpolate, restrict, Level};
+use super::interpolation::interpolate;
+use super::levels::{restrict, Level};
 use super::newton::{self, Manner};
 use super::shift::{self, Goal};
 use crate::error::Result;
@@ -84,8 +85,8 @@ pub fn solve(
                 return Ok(end);
             }
             let (fine, coarse) = levels.split_at_mut(l);
-            interpolate(&coarse[0], &mut fine[l - 1])?;
             let Level { problem, state, .. } = &mut fine[l - 1];
+            interpolate((&coarse[0].problem, &coarse[0].state), (problem, state))?;
             problem.refresh_to(state, tolerance);
         }
     }

@@ -16,10 +16,11 @@
 use super::balance::balanced;
 use super::best::Best;
 use super::forces::Forces;
-use super::problem::{square, Problem, State};
+use super::plane::square;
+use super::problem::{Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
-use super::tangent::{rho_of, Sight, Tangent};
+use super::tangent::{rho_of, Measures, Tangent};
 use super::vectors::Fields;
 use crate::error::Result;
 use crate::progress::Outcome;
@@ -140,10 +141,13 @@ pub fn solve(
         if matches!(manner, Manner::Balanced | Manner::InTurns) {
             problem.offset = balanced(problem, state, rho, forces);
         }
-        let sight = tangent.predict(problem, state, rho);
+        let measures = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
-        let worst =
-            largest([sight.residual, if certified { sight.excess } else { sight.excess / COARSE_EXCESS }, missing]);
+        let worst = largest([
+            measures.residual,
+            if certified { measures.excess } else { measures.excess / COARSE_EXCESS },
+            missing,
+        ]);
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
             state.unload(problem.threads());
@@ -153,7 +157,7 @@ pub fn solve(
             return Ok(Outcome::Converged);
         }
         best.see(problem, state, worst, fields)?;
-        if certified && !state.is_exact && is_near(sight, missing, tolerance) {
+        if certified && !state.is_exact && is_near(measures, missing, tolerance) {
             polish(problem, state, tangent, of_step, fields)?;
             continue;
         }
@@ -170,7 +174,7 @@ pub fn solve(
         iterations += 1;
         let enough = course.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
         let most = if course.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
-        let effort = Effort { inner: enough, most, left: sight.residual, length: course.length() };
+        let effort = Effort { inner: enough, most, left: measures.residual, length: course.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
@@ -189,6 +193,6 @@ fn all_directions(problem: &Problem) -> usize {
 }
 
 /// Whether the certificate is to be tried.
-fn is_near(sight: Sight, missing: f64, tolerance: f64) -> bool {
-    sight.residual < NEAR * tolerance && sight.excess.max(missing) < tolerance
+fn is_near(measures: Measures, missing: f64, tolerance: f64) -> bool {
+    measures.residual < NEAR * tolerance && measures.excess.max(missing) < tolerance
 }

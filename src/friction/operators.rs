@@ -2,12 +2,12 @@
 
 use super::coefficients::Tangential;
 use super::excess::Excess;
-use super::march::{March, Rolling};
+use super::plane::Vector;
 use super::quadrant::Quadrant;
+use super::sweep::{Rolling, Sweep};
 use super::toeplitz::Toeplitz;
 use super::unit::unit_of;
 use super::workspace::Workspace;
-use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::operator::fft::Real;
@@ -25,7 +25,7 @@ pub struct Operators {
     fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
-    pub rolling: Option<(Rolling, March)>,
+    pub rolling: Option<(Rolling, Sweep)>,
     /// A layer between the bodies, where it is not uniform.
     pub excess: Option<Excess>,
     /// What a traction on one element displaces itself by, in steady rolling in a step: the larger of both directions.
@@ -74,9 +74,9 @@ impl Operators {
             false => (Some(product(quadrant, grid, rolling, threads)?), None),
         };
         let [xx, yy, _] = tangential.at(0.0, 0.0);
-        let rolling = rolling.map(|rolling| (rolling, March::new(&rolling)));
-        // Between the centres as the march has it.
-        let there = rolling.as_ref().map_or([0.0; 2], |(_, march)| march.ahead_of(|x, y| tangential.at(x, y)));
+        let rolling = rolling.map(|rolling| (rolling, Sweep::new(&rolling)));
+        // Between the centres as the sweep has it.
+        let there = rolling.as_ref().map_or([0.0; 2], |(_, sweep)| sweep.ahead_of(|x, y| tangential.at(x, y)));
         Ok(Operators {
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
@@ -101,6 +101,11 @@ impl Operators {
         self.a0
     }
 
+    /// An element's influence on itself, relative to that without a layer.
+    pub fn relative_compliance(&self) -> f64 {
+        self.a0 / (self.a0 - self.tangential.layer())
+    }
+
     /// The step of steady rolling.
     pub fn step(&self) -> Option<Rolling> {
         self.rolling.as_ref().map(|(rolling, _)| *rolling)
@@ -120,7 +125,7 @@ impl Operators {
     /// What a layer adds that is not uniform.
     fn add_excess<T: Real>(&self, q: &[[T; 2]], by: f64, u: &mut [[T; 2]]) {
         if let Some(excess) = &self.excess {
-            excess.add(q, by, self.rolling.as_ref().map(|(_, march)| march), u);
+            excess.add(q, by, self.rolling.as_ref().map(|(_, sweep)| sweep), u);
         }
     }
 

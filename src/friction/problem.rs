@@ -11,18 +11,17 @@
 //!
 //! It is the minimum of `1/2 q.Aq + w.q` over the discs `|q| <= g`, strictly convex: there is one solution.
 
-use super::extension::Extension;
-use super::march::Rolling;
 use super::operators::Operators;
 use super::places::Places;
-use super::plane::clip;
-pub use super::plane::{add, against, dot, onto_disc, plus, square};
+use super::plane::{add, clip, square, Vector};
 use super::quadrant::Quadrant;
+use super::sweep::Rolling;
 use super::vectors::{self, BLOCK};
-use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep};
+use crate::methods::extension::Extension;
+use crate::operator::fft::Real;
 use crate::threads::Threads;
 
 const FIELDS: &str = "tangential fields";
@@ -76,7 +75,7 @@ pub struct Problem {
     /// A.
     pub operators: Operators,
     /// Residuals beside C, of Newton's method: there once it is to be [continued](Problem::continue_residuals).
-    pub extension: Option<Extension<f64>>,
+    pub extension: Option<Extension<f64, 2>>,
     /// The elements of C.
     pub places: Places,
     /// Where forces are given: rms over C of the rigid slip without what is found, whose round-off is left of it.
@@ -159,18 +158,15 @@ impl Problem {
     /// Sets up what continues residuals beside C, if it is not there. In steady rolling nothing is continued.
     pub fn continue_residuals(&mut self) -> Result<()> {
         if self.operators.rolling.is_none() && self.extension.is_none() {
-            let mut extension = Extension::new(&self.grid, self.threads())?;
-            extension.contact_changed(&self.bound);
-            self.extension = Some(extension);
+            self.extension = extension_on(&self.grid, self.threads())?;
+            count_near(&mut self.extension, &self.bound);
         }
         Ok(())
     }
 
     /// To be called when `bound` has changed.
     pub fn bound_changed(&mut self) {
-        if let Some(extension) = &mut self.extension {
-            extension.contact_changed(&self.bound);
-        }
+        count_near(&mut self.extension, &self.bound);
         self.places.contact_changed(&self.bound);
         let (threads, bound) = (self.threads(), &self.bound);
         let largest = vectors::largest(threads, bound.len(), |i| bound[i]);
@@ -291,5 +287,19 @@ impl Problem {
         self.operators.bytes()
             + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
             + size_of_val(&self.weights[..])
+    }
+}
+
+/// What continues residuals beside C, on a grid where that is worth it.
+pub(super) fn extension_on<T: Real>(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, 2>>> {
+    let mut extension = Extension::if_worthwhile(grid, threads)?;
+    extension.iter_mut().for_each(Extension::wake);
+    Ok(extension)
+}
+
+/// C has changed: where `bound` is positive.
+pub(super) fn count_near<T: Real>(extension: &mut Option<Extension<T, 2>>, bound: &[f64]) {
+    if let Some(extension) = extension {
+        extension.count(bound, |g| g > 0.0, |_| true);
     }
 }

@@ -1,7 +1,7 @@
 //! What is asked of a tangential solve.
 
-use super::Vector;
-use crate::effects::Friction;
+use super::plane::Vector;
+use crate::effects::{Friction, Previous};
 
 /// What is asked of a solve.
 #[derive(Clone, Copy)]
@@ -77,5 +77,14 @@ impl Start<'_> {
     /// Whether it may be worth less than the coarser grids.
     pub fn is_guess(&self) -> bool {
         matches!(self, Start::Last | Start::Given(_))
+    }
+}
+
+/// The traction of element i before the step; `kept` are those of the last result.
+pub(super) fn before(friction: &Friction<'_>, kept: &[Vector], i: usize) -> Vector {
+    match friction.previous {
+        Previous::None => [0.0; 2],
+        Previous::Given([x, y]) => [x[i], y[i]],
+        Previous::Kept => kept[i],
     }
 }

@@ -2,7 +2,7 @@
 
 use super::certificate::is_on_circle;
 use super::levels::Level;
-use super::problem::against;
+use super::plane::against;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use super::window::Window;

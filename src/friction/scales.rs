@@ -1,8 +1,9 @@
 //! Units of the iterations: powers of two, so that no bit changes. In them element sizes, coefficients and traction bounds are of order 1,
 //! whatever the caller's units are: squares, and what is in single precision, stay within range.
 
+use super::plane::Vector;
 use super::unit::unit_of;
-use super::{Tangential, Vector};
+use super::Tangential;
 use crate::grid::Grid;
 
 /// Units of displacements keep to this range: their inverses are numbers.

@@ -10,11 +10,11 @@
 
 use super::fgmres::{self, Bordered, Until};
 use super::forces::Forces;
+use super::plane::Vector;
 use super::problem::{Problem, State};
 use super::system::TangentSystem;
 use super::tangent::Tangent;
 use super::vectors::{self, Fields};
-use super::Vector;
 use crate::error::Result;
 
 /// The residual of the linear solves of derivatives that are reported, relative.

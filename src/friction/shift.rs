@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The move is not straight, so a step is held back: its chord at the length f that the step before had is taken as the direction and
-//! multiplied, and what a step of another length leaves of it is a debt, which the next product pays, or a product of its own where
-//! the debt is large.
+//! multiplied. What a step of another length leaves of it is a deferred correction: the next product includes it, or a product of its own where
+//! it is large.
 //!
 //! Fields are those of the elements of C ([`Discs`]).
 
@@ -25,8 +25,8 @@ use crate::progress::Outcome;
 /// Iterations without a new least residual after which another method takes over.
 const PATIENCE: u32 = 10;
 
-/// A debt above this part of a step is paid at once.
-const MOST_DEBT: f64 = 0.2;
+/// Deferred corrections above this part of a step are multiplied at once, both as rms.
+const MOST_DEFERRED: f64 = 0.2;
 
 /// The length at which a step is held back is at least this: on rough surfaces steps are short.
 const LEAST_HELD_BACK: f64 = 0.2;
@@ -62,9 +62,9 @@ impl Memory {
 }
 
 /// Lengths of the steps: see the module.
-pub struct Steps {
+struct Steps {
     /// f.
-    pub held_back: f64,
+    held_back: f64,
     /// `t.(A + D) t` of the last direction; 0: forgotten.
     energy: f64,
 }
@@ -136,10 +136,10 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     let [energy, gain] = discs.multiply(problem);
     let (length, next) = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
-    let mut sums = discs.go(&problem.places, &threads, length, steps);
+    let mut sums = discs.go(&problem.places, &threads, length, steps.held_back);
     problem.update = discs.own_traction(problem.rms_of(sums.moved));
-    if sums.owed > MOST_DEBT * sums.gone {
-        discs.pay(problem);
+    if sums.deferred > MOST_DEFERRED * MOST_DEFERRED * sums.moved {
+        discs.correct(problem);
         sums = discs.predict(&problem.places, &threads);
     }
     steps.held_back = next.clamp(LEAST_HELD_BACK, 1.0);

@@ -1,8 +1,7 @@
 //! What a tangential solve returns.
 
 use super::certificate::Certificate;
-use super::problem::dot;
-use super::Vector;
+use super::plane::{dot, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 

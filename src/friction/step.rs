@@ -12,11 +12,11 @@
 use super::certificate::scale;
 use super::fgmres::{self, Bordered, Until};
 use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
-use super::problem::{add, plus, square, Problem, State};
+use super::plane::{add, plus, square, Vector};
+use super::problem::{Problem, State};
 use super::system::TangentSystem;
 use super::tangent::{Side, Tangent};
 use super::vectors::{self, Fields};
-use super::Vector;
 use crate::error::Result;
 use crate::threads::Threads;
 
@@ -87,7 +87,7 @@ impl Start {
     fn new(system: &mut TangentSystem<'_>, state: &State, forces: Forces, fields: &mut Fields) -> Result<Start> {
         let (n, threads, tangent) = (state.q.len(), system.problem.threads().clone(), system.tangent);
         let mut along = fields.take(n)?;
-        system.precondition_field(&tangent.driving, &mut along);
+        system.precondition_field(&tangent.projected, &mut along);
         let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
         vectors::map(&threads, &mut along, |i, z| {
             let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + TURNED * tangent.curvature[i] / a0);
@@ -149,8 +149,8 @@ pub fn step(
     let weight = border_weight(problem, state, forces);
     let sum = sum_of(problem, &state.q);
     let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-    let driving = vectors::dot(&threads, &tangent.driving, &tangent.driving);
-    let target = effort.inner * driving.max(weight * square(missing)).sqrt();
+    let projected = vectors::dot(&threads, &tangent.projected, &tangent.projected);
+    let target = effort.inner * projected.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let mut product = fields.take(n)?;
     let way = way_to_the_circles(system.problem, tangent, state);
@@ -166,8 +166,11 @@ pub fn step(
     };
     let mut r = fields.take(n)?;
     vectors::fill(&threads, &mut r, |i| {
-        let left =
-            plus(tangent.driving[i], -1.0, tangent.project_inside(i, add(product[i], system.problem.weighted(i, by))));
+        let left = plus(
+            tangent.projected[i],
+            -1.0,
+            tangent.project_inside(i, add(product[i], system.problem.weighted(i, by))),
+        );
         plus(left, -tangent.curvature[i], along[i])
     });
     fields.give(along);

@@ -9,10 +9,10 @@
 
 use super::fgmres::{Bordered, Direction, System};
 use super::forces::{sum_of, Forces};
-use super::problem::{add, plus, Problem};
+use super::plane::{add, plus, Vector};
+use super::problem::Problem;
 use super::tangent::Tangent;
 use super::vectors::{self, Fields};
-use super::Vector;
 use crate::error::Result;
 
 /// Eigenvalues of the border below this part of the largest are none.

@@ -5,10 +5,12 @@
 
 use std::sync::Arc;
 
-use super::coefficients::Entry;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::memory::zeros;
+
+/// The coefficients of one offset: `Axx, Ayy, Axy`.
+pub type Entry = [f64; 3];
 
 /// `Axx, Ayy, Axy` at the offsets `0..cx` by `0..cy`: Axx and Ayy are even in both directions, Axy is odd in both.
 #[derive(Clone, Debug)]

@@ -3,15 +3,15 @@
 use super::certificate::is_on_circle;
 use super::excess::Excess;
 use super::levels::Level;
-use super::march::{March, Rolling};
-use super::problem::{add, square, Problem, Scale, State};
-use super::request::{Request, Start, Superposed};
+use super::plane::{add, square, Vector};
+use super::problem::{Problem, Scale, State};
+use super::request::{before, Request, Start, Superposed};
 use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
+use super::sweep::{Rolling, Sweep};
 use super::vectors;
 use super::window::{displaced, Window};
-use super::Vector;
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
@@ -180,7 +180,7 @@ impl Solver {
                 displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
                 if let Some(excess) = &problem.operators.excess {
                     let rolling = Rolling { distance: self.scales.length(friction.distance(&self.grid)), by };
-                    excess.subtract_ahead(&state.q, &March::new(&rolling), &mut problem.slip);
+                    excess.subtract_ahead(&state.q, &Sweep::new(&rolling), &mut problem.slip);
                 }
             }
         }
@@ -249,15 +249,6 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
         -slip / weights
     } else {
         0.0
-    }
-}
-
-/// The traction of element i before the step; `kept` are those of the last result.
-pub(super) fn before(friction: &Friction<'_>, kept: &[Vector], i: usize) -> Vector {
-    match friction.previous {
-        Previous::None => [0.0; 2],
-        Previous::Given([x, y]) => [x[i], y[i]],
-        Previous::Kept => kept[i],
     }
 }
 

@@ -13,9 +13,9 @@
 //! it can be, of second order in what is missing.
 
 use super::certificate::{relative, rest};
-use super::problem::{add, dot, plus, square, Problem, State};
+use super::plane::{add, dot, plus, square, Vector};
+use super::problem::{Problem, State};
 use super::vectors::{self, BLOCK};
-use super::Vector;
 use crate::error::Result;
 use crate::memory::zeros;
 
@@ -50,14 +50,14 @@ pub struct Tangent {
     /// E of the preconditioner: 1 where C sticks.
     pub mixing: Vec<f64>,
     /// `P(-s)`.
-    pub driving: Vec<Vector>,
+    pub projected: Vec<Vector>,
     /// Elements that slip.
     pub slip_count: usize,
 }
 
-/// What a prediction saw.
+/// How far a state is from a solution.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight {
+pub struct Measures {
     /// The residual of the certificate.
     pub residual: f64,
     /// `rms_C(max(0, |q| - g))/rms_C(g)`.
@@ -69,7 +69,7 @@ pub(super) struct Seen {
     pub side: Side,
     pub normal: Vector,
     pub curvature: f64,
-    pub driving: Vector,
+    pub projected: Vector,
     /// The square of what is left of the slip.
     pub rest: f64,
 }
@@ -79,10 +79,10 @@ pub(super) struct Seen {
 pub(super) fn look((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Seen {
     let (tau, against, rest) = (plus(q, -rho, s), [-s[0], -s[1]], rest(s, q, g));
     if !(square(tau) > g * g) {
-        return Seen { side: Side::Stick, normal: [0.0; 2], curvature: 0.0, driving: against, rest };
+        return Seen { side: Side::Stick, normal: [0.0; 2], curvature: 0.0, projected: against, rest };
     }
     let (normal, curvature) = normal_and_curvature((q, s), g, tau, inverse_rho);
-    Seen { side: Side::Slip, normal, curvature, driving: plus(against, dot(s, normal), normal), rest }
+    Seen { side: Side::Slip, normal, curvature, projected: plus(against, dot(s, normal), normal), rest }
 }
 
 /// rho of the natural map, at most `most`: by it the slip, as rms over C, moves tractions as far as their bounds.
@@ -121,12 +121,12 @@ impl Tangent {
     /// Memory for n elements, where there is none yet.
     pub fn fit(&mut self, n: usize) -> Result<()> {
         let what = "the stick and slip areas";
-        if self.driving.len() != n {
+        if self.projected.len() != n {
             self.normal = zeros(n, what)?;
             self.curvature = zeros(n, what)?;
             self.mixing = zeros(n, what)?;
             self.side = zeros(n, what)?;
-            self.driving = zeros(n, what)?;
+            self.projected = zeros(n, what)?;
         }
         Ok(())
     }
@@ -134,19 +134,19 @@ impl Tangent {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let each = size_of::<Side>() + 2 * size_of::<f64>() + 2 * size_of::<Vector>();
-        self.driving.capacity() * each
+        self.projected.capacity() * each
     }
 
     /// Predicts from q and its displacements.
-    pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Sight {
+    pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Measures {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
-        let Tangent { side, normal, curvature, mixing: mixings, driving, .. } = self;
+        let Tangent { side, normal, curvature, mixing: mixings, projected, .. } = self;
         let (sides, normals) = (side.chunks_mut(BLOCK), normal.chunks_mut(BLOCK));
-        let (curvatures, mixings, drivings) =
-            (curvature.chunks_mut(BLOCK), mixings.chunks_mut(BLOCK), driving.chunks_mut(BLOCK));
-        let blocks = sides.zip(normals).zip(curvatures.zip(mixings)).zip(drivings);
+        let (curvatures, mixings, projecteds) =
+            (curvature.chunks_mut(BLOCK), mixings.chunks_mut(BLOCK), projected.chunks_mut(BLOCK));
+        let blocks = sides.zip(normals).zip(curvatures.zip(mixings)).zip(projecteds);
         let sums =
-            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixings)), driving)| {
+            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixings)), projected)| {
                 let [mut squares, mut excess, mut slips, mut rigid, mut displaced] = [0.0; 5];
                 for k in 0..side.len() {
                     let i = start + k;
@@ -154,7 +154,7 @@ impl Tangent {
                     if !(g > 0.0) {
                         // Most have been there before.
                         if side[k] != Side::Outside {
-                            (side[k], curvature[k], driving[k]) = (Side::Outside, 0.0, [0.0; 2]);
+                            (side[k], curvature[k], projected[k]) = (Side::Outside, 0.0, [0.0; 2]);
                         }
                         continue;
                     }
@@ -167,7 +167,7 @@ impl Tangent {
                     let seen = look((q, s), g, (rho, inverse_rho));
                     squares += seen.rest;
                     slips += f64::from(u8::from(seen.side == Side::Slip));
-                    (side[k], normal[k], driving[k]) = (seen.side, seen.normal, seen.driving);
+                    (side[k], normal[k], projected[k]) = (seen.side, seen.normal, seen.projected);
                     (curvature[k], mixings[k]) = (seen.curvature, mixing(seen.curvature, a0));
                 }
                 [squares, excess, slips, rigid, displaced]
@@ -175,7 +175,7 @@ impl Tangent {
         self.slip_count = sums[2] as usize;
         let [squares, excess, _, rigid, displaced] = sums.map(|sum| (sum / problem.count().max(1) as f64).sqrt());
         let scale = problem.compared(rigid, displaced);
-        Sight { residual: relative(squares, scale), excess: relative(excess, problem.rms_bound()) }
+        Measures { residual: relative(squares, scale), excess: relative(excess, problem.rms_bound()) }
     }
 
     /// P v at element i, 0 outside C.
@@ -189,31 +189,30 @@ impl Tangent {
     }
 
     /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant
-    /// inverse M of A with residuals continued beside C by X (see [`Extension`](super::extension::Extension)) and, where the curvature D
-    /// dominates, its own inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`March`](super::march::March)).
+    /// inverse M of A with residuals continued beside C by X (see [`Extension`](crate::methods::extension::Extension)) and, where the curvature D
+    /// dominates, its own inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`Sweep`](super::sweep::Sweep)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let threads = problem.threads().clone();
         vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
-        // The march starts from nothing at each leading edge: what is beside C does not help it.
-        if let Some(extension) = &mut problem.extension {
-            extension.fill(mixed);
-        }
-        problem.operators.precondition(mixed, unit, z);
-        if let Some(extension) = &mut problem.extension {
-            extension.fold(z);
+        // The sweep starts from nothing at each leading edge: what is beside C does not help it.
+        let compliance = problem.operators.relative_compliance();
+        let operators = &mut problem.operators;
+        match &mut problem.extension {
+            Some(extension) => extension.between(mixed, z, compliance, |r, z| operators.precondition(r, unit, z)),
+            None => operators.precondition(mixed, unit, z),
         }
         // The own inverse, where something slips.
         let own = |i: usize| match self.side[i] {
             Side::Slip => (1.0 - self.mixing[i]) / (self.curvature[i] + a0),
             _ => 0.0,
         };
-        let Some((_, march)) = &problem.operators.rolling else {
+        let Some((_, sweep)) = &problem.operators.rolling else {
             vectors::map(&threads, z, |i, z| plus(self.project_inside(i, z.map(|z| self.mixing[i] * z)), own(i), r[i]));
             return;
         };
         vectors::map(&threads, z, |i, z| self.project_inside(i, z.map(|z| self.mixing[i] * z)));
-        march.solve(&problem.grid, self, |i| self.mixing[i], &threads, z);
+        sweep.solve(&problem.grid, |i| self.mixing[i], |i, v| self.project_inside(i, v), &threads, z);
         vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
     }
 }

@@ -17,11 +17,11 @@
 use std::ops::Range;
 
 use super::coefficients::{Entry, Tangential};
+use super::plane::Vector;
 use super::quadrant::Quadrant;
 use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
 use super::unit::unit_of;
 use super::workspace::{Piece, Workspace};
-use super::Vector;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{computed, keep};
@@ -144,6 +144,13 @@ impl<T: Real> Toeplitz<T> {
             threads: threads.clone(),
             unit,
         })
+    }
+
+    /// Memory for products by this operator.
+    pub fn workspace(&self) -> Result<Workspace<T>> {
+        let of_rows = self.rows.scratch_length().max(self.real_rows.scratch_length());
+        let scratch = of_rows.max(self.columns.scratch_length());
+        Workspace::new((self.rows.length(), self.columns.length()), self.my, scratch, &self.threads)
     }
 
     /// The same operator in another precision.

@@ -1,8 +1,7 @@
 //! Passes over fields of two components, by several threads: sums are taken in blocks of fixed length and order, so that they have the
 //! same bits for any number of threads.
 
-use super::problem::{dot as dot_one, plus};
-use super::Vector;
+use super::plane::{dot as dot_one, plus, Vector};
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::threads::Threads;
@@ -128,10 +127,14 @@ pub fn over<B: Send, const K: usize>(
     blocks: impl Iterator<Item = B>,
     work: impl Fn(usize, &mut B) -> [f64; K] + Sync + Send,
 ) -> [f64; K] {
+    let added = |all: [f64; K], sums: [f64; K]| std::array::from_fn(|k| all[k] + sums[k]);
+    if threads.count() == 1 {
+        let one = |(k, mut block): (usize, B)| threads.alone(|| work(k * BLOCK, &mut block));
+        return blocks.enumerate().map(one).fold([0.0; K], added);
+    }
     let mut blocks: Vec<(B, [f64; K])> = blocks.map(|block| (block, [0.0; K])).collect();
     threads.for_each(&mut blocks, |k, (block, sums)| *sums = work(k * BLOCK, block));
-    let added = |all: [f64; K], (_, sums): &(B, [f64; K])| std::array::from_fn(|k| all[k] + sums[k]);
-    blocks.iter().fold([0.0; K], added)
+    blocks.into_iter().map(|(_, sums)| sums).fold([0.0; K], added)
 }
 
 /// Four sums side by side: one would wait for each addition.

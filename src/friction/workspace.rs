@@ -1,10 +1,10 @@
 //! Memory of products of two components.
 
-use super::toeplitz::Toeplitz;
 use crate::error::Result;
 use crate::memory::{blank, keep, zeros};
 use crate::operator::columns::BLOCK;
 use crate::operator::fft::{Complex, Real};
+use crate::threads::Threads;
 
 /// What memory is for.
 const WORKSPACE: &str = "the workspace of tangential products";
@@ -27,6 +27,18 @@ pub(super) struct Piece<T: Real> {
 }
 
 impl<T: Real> Workspace<T> {
+    /// For a grid of `my` rows in a period of `px x py`; transforms take `scratch` values.
+    pub(super) fn new((px, py): (usize, usize), my: usize, scratch: usize, threads: &Threads) -> Result<Workspace<T>> {
+        let nothing = Complex::new(T::nan(), T::nan());
+        let columns = || blank(BLOCK * py, nothing, WORKSPACE);
+        let piece = |_| {
+            let (row, scratch) = (zeros(px, WORKSPACE)?, zeros(scratch, WORKSPACE)?);
+            Ok(Piece { row, columns: columns()?, mirrored: columns()?, scratch })
+        };
+        let pieces = (0..threads.count()).map(piece).collect::<Result<_>>()?;
+        Ok(Workspace { bins: blank(my * px, nothing, WORKSPACE)?, pieces })
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let piece = |piece: &Piece<T>| {
@@ -41,21 +53,5 @@ impl<T: Real> Drop for Workspace<T> {
     fn drop(&mut self) {
         keep([&mut self.bins]);
         self.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns, &mut piece.mirrored]));
-    }
-}
-
-impl<T: Real> Toeplitz<T> {
-    /// Memory for products by this operator.
-    pub fn workspace(&self) -> Result<Workspace<T>> {
-        let (px, py) = (self.rows.length(), self.columns.length());
-        let nothing = Complex::new(T::nan(), T::nan());
-        let columns = || blank(BLOCK * py, nothing, WORKSPACE);
-        let piece = |_| {
-            let of_rows = self.rows.scratch_length().max(self.real_rows.scratch_length());
-            let scratch = zeros(of_rows.max(self.columns.scratch_length()), WORKSPACE)?;
-            Ok(Piece { row: zeros(px, WORKSPACE)?, columns: columns()?, mirrored: columns()?, scratch })
-        };
-        let pieces = (0..self.threads.count()).map(piece).collect::<Result<_>>()?;
-        Ok(Workspace { bins: blank(self.my * px, nothing, WORKSPACE)?, pieces })
     }
 }

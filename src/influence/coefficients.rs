@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Kernel, Layer, Patches, RowTables};
+use super::kernel::Kernel;
+use super::{Layer, Patches, RowTables};
 use crate::error::Result;
 use crate::grid::Grid;
 
@@ -155,7 +156,7 @@ impl Coefficients {
 
     /// Tables of loaded rows, and what a layer adds to all of them at offset (0, 0).
     pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
-        self.kernel.row_tables().map(|tables| (tables, self.least()))
+        RowTables::of(&*self.kernel).map(|tables| (tables, self.least()))
     }
 
     /// Whether A is more than coefficients of offsets: then a part of the grid has an operator of its own, wherever it is.

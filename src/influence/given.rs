@@ -1,10 +1,21 @@
 //! A table of the caller's as it is given: what of it matters is copied, and looked at on the way.
 
 use super::extremes::Extremes;
-use super::table::{width, TABLE};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve};
+
+/// What memory is for.
+pub(super) const TABLE: &str = "the influence coefficients";
+
+/// Coefficients of one direction that are kept.
+pub(super) fn width(c: usize, even: bool) -> usize {
+    if even {
+        c
+    } else {
+        2 * c - 1
+    }
+}
 
 /// A table as it is given: `values[ky + cy][kx + cx]`.
 pub(super) struct Given<'a> {

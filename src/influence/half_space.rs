@@ -20,7 +20,7 @@ use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
-use super::Kernel;
+use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
 

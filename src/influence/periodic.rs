@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 use super::half_space::{gauss, HalfSpace};
 use super::images::{lengths, offsets, Far, Lines, Near, NODES};
-use super::Kernel;
+use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};

@@ -18,11 +18,13 @@
 //!
 //! A preconditioner knows the mean over the rows at each offset.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use super::extremes::{are_finite, largest, SYMMETRY};
-use super::table::{check_scale, coarsen_row, place, width};
-use super::Kernel;
+use super::given::width;
+use super::kernel::Kernel;
+use super::table::{check_scale, coarsen_row, place};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve, Held};
@@ -71,6 +73,11 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
 }
 
 impl RowTables {
+    /// Of a kernel that is one.
+    pub fn of(kernel: &dyn Kernel) -> Option<&RowTables> {
+        (kernel as &dyn Any).downcast_ref()
+    }
+
     /// Tables of `rows` by `rows` by `2 cx` coefficients, `values[jy][iy][kx + cx]`, that must fit `grid`: `rows` is my, cx >= mx.
     /// Column `-cx` never matters.
     pub fn new(cx: usize, rows: usize, values: &[f64], grid: &Grid) -> Result<RowTables> {
@@ -195,10 +202,6 @@ impl Kernel for RowTables {
             }
         };
         (0..self.my).all(|jy| (0..=jy).all(|iy| alike(jy, iy)))
-    }
-
-    fn row_tables(&self) -> Option<&RowTables> {
-        Some(self)
     }
 
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {

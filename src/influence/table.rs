@@ -10,14 +10,11 @@
 use std::sync::Arc;
 
 use super::extremes::{are_symmetric, largest, Extremes};
-use super::given::Given;
-use super::Kernel;
+use super::given::{width, Given, TABLE};
+use super::kernel::Kernel;
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, Held};
-
-/// What memory is for.
-pub(super) const TABLE: &str = "the influence coefficients";
 
 /// Refuses a scale that turns coefficients around or away.
 pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
@@ -35,15 +32,6 @@ pub struct Table {
     pub(crate) values: Arc<Held>,
     /// Of all values.
     extremes: Extremes,
-}
-
-/// Coefficients of one direction that are kept.
-pub(super) fn width(c: usize, even: bool) -> usize {
-    if even {
-        c
-    } else {
-        2 * c - 1
-    }
 }
 
 impl Table {

@@ -23,7 +23,7 @@ use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::{Error, Result};
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -51,8 +51,8 @@ impl<S: AdmissibleSet> Step<S> for Descent {
         "projected descent"
     }
 
-    fn habits(&self) -> Habits {
-        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 100, progress: 1.0 }
+    fn policy(&self) -> Policy {
+        Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 100, progress: 1.0 }
     }
 
     fn begin(&mut self, state: &State) -> Result<()> {

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::blank;
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
 /// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
@@ -136,9 +136,9 @@ impl<S: AdmissibleSet> Step<S> for Direct {
         "the direct solve"
     }
 
-    fn habits(&self) -> Habits {
+    fn policy(&self) -> Policy {
         // Elements that enter and leave in turn may cycle.
-        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
+        Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
     }
 
     /// p on C, those that leave it being found on the way.

@@ -2,6 +2,7 @@
 
 pub mod descent;
 pub mod direct;
+pub mod extension;
 pub mod multigrid;
 pub mod norm;
 pub mod projected_cg;
@@ -37,7 +38,7 @@ pub trait Step<S: AdmissibleSet> {
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change>;
 
     /// When it is given up, and when elements that change sides keep an answer from being one.
-    fn habits(&self) -> Habits;
+    fn policy(&self) -> Policy;
 }
 
 /// What one step did.
@@ -53,7 +54,7 @@ pub struct Change {
 
 /// How a method goes through the loop.
 #[derive(Clone, Copy, Debug)]
-pub struct Habits {
+pub struct Policy {
     /// Whether the loop takes steps (4.1) and (4.2) for it. NORM takes its own step 3, at once and before the next solve.
     pub exchanged_by_loop: bool,
     /// Whether the loop counts each step as a cycle. Other methods count their own iterations.

@@ -19,7 +19,7 @@ use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::descent::Descent;
 use crate::methods::projected_cg::ProjectedCg;
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::progress::{Criterion, Goal, Outcome};
 use crate::scene::Load;
 
@@ -143,8 +143,8 @@ impl<S: AdmissibleSet> Step<S> for ByApproach<'_> {
         "approaches in turn"
     }
 
-    fn habits(&self) -> Habits {
-        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 30, progress: 1.0 }
+    fn policy(&self) -> Policy {
+        Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 30, progress: 1.0 }
     }
 
     fn begin(&mut self, _: &State) -> Result<()> {

@@ -24,7 +24,7 @@ pub fn iterate<S: AdmissibleSet>(
     task: &mut Task<'_, '_, S>,
     best: &mut Best,
 ) -> Result<Outcome> {
-    let habits = method.habits();
+    let policy = method.policy();
     let (set, goal) = (task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
@@ -40,11 +40,11 @@ pub fn iterate<S: AdmissibleSet>(
         }
 
         // (4.1), the certificate, (4.2)
-        let left = if habits.exchanged_by_loop { truncate(task.state, set, &task.problem.threads) } else { 0 };
+        let left = if policy.exchanged_by_loop { truncate(task.state, set, &task.problem.threads) } else { 0 };
         let mut survey = certify(task, &change, left)?;
         let violation = survey.violation(set);
         let (mut entered, mut last) = (0, survey);
-        if habits.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
+        if policy.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
             entered = admit(task.state, set);
             if entered > 0 {
                 last = task.survey();
@@ -52,7 +52,7 @@ pub fn iterate<S: AdmissibleSet>(
             survey = Survey { violation: survey.violation, ..last };
         }
         let changes = change.changes + (left + entered) as u64;
-        if habits.step_is_cycle {
+        if policy.step_is_cycle {
             task.monitor.count.active_set_steps += 1;
             task.monitor.cycle_done(&task.state.grid, changes, change.update, survey.relative_residual());
         }
@@ -61,7 +61,7 @@ pub fn iterate<S: AdmissibleSet>(
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
             // After a while the certificate decides, although elements still change sides.
-            if changes == 0 || habits.exchanged_by_loop && chatter > habits.chatter {
+            if changes == 0 || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
                 return Ok(Outcome::Converged);
             }
@@ -70,10 +70,10 @@ pub fn iterate<S: AdmissibleSet>(
             best.note(task.state, violation)?;
         }
         since += 1;
-        if violation < habits.progress * least {
+        if violation < policy.progress * least {
             (least, since) = (violation, 0);
         }
-        if since > habits.patience || change.gives_up || habits.step_is_cycle && !violation.is_finite() {
+        if since > policy.patience || change.gives_up || policy.step_is_cycle && !violation.is_finite() {
             return Ok(Outcome::Stagnated);
         }
     }

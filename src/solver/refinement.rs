@@ -3,6 +3,7 @@
 mod next_grid;
 mod outlook;
 mod price_list;
+mod solved;
 
 use std::time::Instant;
 
@@ -19,6 +20,7 @@ use crate::scene::{refine, sample, Scene};
 use crate::threads::Threads;
 use next_grid::{Next, Past};
 use outlook::Outlook;
+use solved::Solved;
 
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
@@ -38,13 +40,6 @@ pub struct Refinement {
     pub reached: Option<f64>,
     /// Seconds for all grids together.
     pub seconds: f64,
-}
-
-/// The result on one grid.
-struct Solved {
-    solver: Solver,
-    report: Report,
-    outlook: Outlook,
 }
 
 /// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
@@ -104,7 +99,7 @@ pub fn solve_to_accuracy(
 /// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst = |solved: &Option<Solved>| {
-        let excesses = solved.as_ref().map(|solved| solved.outlook.excesses(accuracy));
+        let excesses = solved.as_ref().map(|solved| accuracy.excesses(&solved.outlook));
         excesses.map_or(f64::INFINITY, |all| {
             all.iter().map(|one| one.map_or(f64::INFINITY, |one| one.now())).fold(0.0, f64::max)
         })

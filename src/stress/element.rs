@@ -27,8 +27,8 @@
 
 use std::f64::consts::PI;
 
+use super::body::{Body, Loaded};
 use super::tensor::Tensor;
-use super::{Body, Loaded};
 
 /// Two values per direction: those of the edges at - and +.
 type Edges = [f64; 2];

@@ -7,9 +7,9 @@
 //! * beyond, point forces at the centres of the elements, of which means over elements are made (see [`means`](crate::influence::means)):
 //!   one evaluation per element, and no cancellation however far it is.
 
+use super::body::{Body, Loaded};
 use super::element;
 use super::point_force::{self, Lanes, Values, LANES};
-use super::{Body, Loaded};
 use crate::error::Result;
 use crate::influence::means::{in_x, in_y, HALO, ROWS};
 use crate::memory::zeros;

@@ -1,6 +1,6 @@
 //! What acts on the surface of a body.
 
-use super::Loaded;
+use super::body::Loaded;
 use crate::effects::Effect;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;

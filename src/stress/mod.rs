@@ -19,6 +19,7 @@
 //!
 //! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
 
+mod body;
 mod depth;
 mod element;
 mod kernels;
@@ -31,6 +32,7 @@ mod tensor;
 mod transform;
 mod waves;
 
+pub use body::{Body, COMPONENTS};
 pub use depth::{Depth, Maximum, Wanted};
 pub use loads::{Loads, Part};
 pub use points::stress_at_points;
@@ -39,57 +41,11 @@ pub use tensor::{principal, von_mises, Principal, Tensor};
 use std::time::Instant;
 
 use crate::error::{require, Error, Result};
-use crate::grid::Grid;
 use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
 use depth::DepthMemory;
 use periodic::Waves;
 use product::Product;
-
-/// Names of the components, in their order.
-pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
-
-/// Which loads there are: pressure, traction in x, traction in y.
-type Loaded = [bool; 3];
-
-/// A half-space with loads on the elements of a grid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// The elements.
-    pub grid: Grid,
-    /// nu, in (-1, 0.5].
-    pub poisson_ratio: f64,
-    /// Whether all repeats itself after a grid's length in x and in y. Lateral strains have mean zero.
-    pub periodic: bool,
-}
-
-impl Body {
-    fn check(&self) -> Result<()> {
-        self.grid.check()?;
-        let nu = self.poisson_ratio;
-        require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
-    }
-
-    /// The unit of lengths inside: the longer side of an element. Kernels depend on ratios of lengths only.
-    fn unit(&self) -> f64 {
-        self.grid.dx.max(self.grid.dy)
-    }
-
-    /// An element's sides in that unit.
-    fn element(&self) -> (f64, f64) {
-        (self.grid.dx / self.unit(), self.grid.dy / self.unit())
-    }
-
-    /// A length in that unit. Where its square would vanish it is 0, and where that would overflow it is cut off: stresses are 0 there.
-    fn in_units(&self, length: f64) -> f64 {
-        let ratio = (length / self.unit()).clamp(-1e150, 1e150);
-        if ratio.abs() < 1e-100 {
-            0.0
-        } else {
-            ratio
-        }
-    }
-}
 
 /// The stresses at all depths: `each(k, depth)` is told what is wanted at `depths[k]`, in their order, on the calling thread, and after
 /// it `progress`, where a cycle is a depth. True: all were done; false: the caller cancelled.

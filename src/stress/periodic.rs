@@ -26,10 +26,10 @@
 //! The bracket is a tenth difference of a function of z/r: it falls off as `10!/r^12`, and is gone at [`REACH`] sides. Both sums over j are
 //! taken before anything else is: the waves fade by `sum w_j exp(-k z_j)`, and one table of brackets is summed over the images.
 
+use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
 use super::point_force::LANES;
 use super::waves::{Aliased, Fading, NODES};
-use super::Body;
 use crate::error::{Error, Result};
 use crate::memory::zeros;
 

@@ -14,7 +14,7 @@
 //!
 //! A force in y is one in x with x and y exchanged. In direction cosines nothing overflows, at any distance.
 
-use super::{Body, Loaded};
+use super::body::{Body, Loaded};
 
 /// Places that are computed at a time: a loop over them is vectorised.
 pub const LANES: usize = 8;

@@ -1,8 +1,9 @@
 //! Stresses at places of the caller's, by direct summation over the loaded elements: right at any place, and the oracle of the product.
 
+use super::body::Body;
 use super::kernels;
+use super::loads::Loads;
 use super::tensor::Tensor;
-use super::{Body, Loads};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::threads::Threads;

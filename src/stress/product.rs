@@ -10,11 +10,12 @@
 //! With a period nothing is padded, and the waves that have faded at a depth are left out. Where patches scale what elements feel, each has
 //! loads and products of its own; kernels are those of all.
 
+use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
+use super::loads::Loads;
 use super::loads::Part;
 use super::periodic::Waves;
 use super::transform::{gap, Memory, Transforms, BLOCK};
-use super::{Body, Loads};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::operator::fft::{good_length, Complex};

@@ -1,7 +1,8 @@
 //! What passes between the fields on C and a state on the grid.
 
 use super::super::disc::Units;
-use super::super::problem::{add, Problem, State};
+use super::super::plane::add;
+use super::super::problem::{count_near, extension_on, Problem, State};
 use super::super::tangent::rho_of;
 use super::super::unit::unit_of;
 use super::super::vectors::over;
@@ -23,15 +24,17 @@ impl<T: Real> Discs<T> {
         for field in [&mut self.slip, &mut self.q, &mut self.u, &mut self.normal] {
             unwritten(field, n, zero, FIELDS, problem.threads())?;
         }
-        let Way { z, direction, chord, product, debt } = &mut self.way;
-        for field in [&mut self.driving, z, direction, chord, product, debt] {
+        let Way { z, direction, chord, product, deferred } = &mut self.way;
+        for field in [&mut self.projected, z, direction, chord, product, deferred] {
             unwritten(field, n, nothing, FIELDS, problem.threads())?;
         }
         for field in [&mut self.given, &mut self.answer] {
             unwritten(field, all, nothing, FIELDS, problem.threads())?;
         }
-        self.extension.fit(&problem.grid, problem.threads())?;
-        self.extension.contact_changed(&problem.bound);
+        if self.extension.is_none() {
+            self.extension = extension_on(&problem.grid, problem.threads())?;
+        }
+        count_near(&mut self.extension, &problem.bound);
         let (a0, bound, slip) = (problem.operators.self_influence, problem.rms_bound(), problem.rms_slip());
         let cap = 0.3 / (a0 * (n.max(1) as f64).sqrt());
         let rho = rho_of((bound, slip), cap);
@@ -56,18 +59,18 @@ impl<T: Real> Discs<T> {
         Ok(())
     }
 
-    /// q and u of a state; nothing is owed.
+    /// q and u of a state; no correction is deferred.
     pub fn take(&mut self, problem: &Problem, state: &State) {
         let Units { traction, displacement, .. } = self.units;
         let (places, to_q, to_u) = (&problem.places, 1.0 / traction, 1.0 / displacement);
         let states = places.cut(&mut self.q).zip(places.cut(&mut self.u));
-        let blocks = places.parts().zip(states).zip(places.cut(&mut self.way.debt));
-        over(problem.threads(), blocks, |_, ((part, (q, u)), debt)| {
+        let blocks = places.parts().zip(states).zip(places.cut(&mut self.way.deferred));
+        over(problem.threads(), blocks, |_, ((part, (q, u)), deferred)| {
             for ((i, q), u) in part.on_grid().zip(q.iter_mut()).zip(u.iter_mut()) {
                 *q = state.q[i].map(|q| to_q * q);
                 *u = state.u[i].map(|u| to_u * u);
             }
-            debt.fill([T::zero(); 2]);
+            deferred.fill([T::zero(); 2]);
             []
         });
     }

@@ -11,8 +11,9 @@
 //!
 //! which is smooth for any ratio of element and thickness.
 
+use super::offsets::{first_beyond, first_of_half, COATED};
 use super::quadrature::gauss_legendre;
-use super::{first_beyond, first_of_half, Base, Radial, COATED};
+use super::radial::{Base, Radial};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{means, HalfSpace, Kernel};

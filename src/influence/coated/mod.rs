@@ -10,6 +10,7 @@
 
 mod hankel;
 mod layer;
+mod offsets;
 mod periodic;
 mod polynomial;
 mod quadrature;
@@ -20,19 +21,18 @@ mod waves;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use offsets::{first_beyond, first_of_half, COATED};
 pub use periodic::CoatedPeriodic;
 pub use radial::{Base, Radial};
 pub use transfer::Transfer;
 
-use super::{HalfSpace, Kernel};
+use super::kernel::Kernel;
+use super::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 use layer::Layer;
 use quadrature::gauss_legendre;
-
-/// What memory is for.
-const COATED: &str = "the coefficients of a coating";
 
 /// One body: its coating, or none.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,15 +109,6 @@ impl Coated {
     }
 }
 
-/// The first offset in a row that is computed: of square elements the others are those of `(ky, kx)`.
-fn first_of_half(grid: &Grid, ky: usize) -> usize {
-    if grid.dx == grid.dy && grid.my <= grid.mx {
-        ky.min(grid.mx)
-    } else {
-        0
-    }
-}
-
 /// Fills in the others, a few rows at a time: these share what is read at once.
 fn mirror(grid: &Grid, table: &mut [f64]) {
     const ROWS: usize = 8;
@@ -129,16 +120,6 @@ fn mirror(grid: &Grid, table: &mut [f64]) {
             }
         }
     }
-}
-
-/// The first offset in a row whose distance is not below this, or the row's end.
-fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
-    let y = ky as f64 * grid.dy;
-    if y >= distance {
-        return 0;
-    }
-    let x = ((distance - y) * (distance + y)).sqrt();
-    ((x / grid.dx).ceil() as usize).min(grid.mx)
 }
 
 impl CoatedBody {

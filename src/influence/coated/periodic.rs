@@ -13,6 +13,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::offsets::COATED;
 use super::{waves, CoatedBody, HalfSpace, Kernel};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -23,8 +24,6 @@ use crate::memory::zeros;
 const LONGEST: f64 = 16.0;
 /// and where those of a coarser grid are, joining elements costs less.
 const LONGEST_COARSE: f64 = 4.0;
-/// What memory is for.
-const COATED: &str = "the coefficients of a coating";
 
 /// Coefficients of a period.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use super::Multigrid;
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
 /// Memory for cycles, kept from one solve to the next.
@@ -31,8 +31,8 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
         "MULTIGRID"
     }
 
-    fn habits(&self) -> Habits {
-        Habits { exchanged_by_loop: true, step_is_cycle: true, chatter: 5, patience: 50, progress: 1.0 }
+    fn policy(&self) -> Policy {
+        Policy { exchanged_by_loop: true, step_is_cycle: true, chatter: 5, patience: 50, progress: 1.0 }
     }
 
     fn begin(&mut self, state: &State) -> Result<()> {

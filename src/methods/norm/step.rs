@@ -5,7 +5,7 @@ use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
 use crate::contact::{AdmissibleSet, ExchangeGuard, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
 use crate::memory::reserve;
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::progress::Goal;
 use crate::scene::Load;
 
@@ -179,9 +179,9 @@ impl<S: AdmissibleSet> Step<S> for Norm {
         "NORM"
     }
 
-    fn habits(&self) -> Habits {
+    fn policy(&self) -> Policy {
         // The guard keeps it finite.
-        Habits { exchanged_by_loop: false, step_is_cycle: false, chatter: 0, patience: u32::MAX, progress: 1.0 }
+        Policy { exchanged_by_loop: false, step_is_cycle: false, chatter: 0, patience: u32::MAX, progress: 1.0 }
     }
 
     fn begin(&mut self, state: &State) -> Result<()> {

@@ -1,77 +1,104 @@
-//! By approach: a direction that moves the mean of p where scaling cannot.
+//! The deflation direction: a direction d whose displacement w = A d is known, so that a step along it costs no product.
 //!
-//! Directions carry no force, and p is scaled to the least energy (module `energy`). That fails in two kinds of scenes:
+//! Under a prescribed approach the residual has a part that is uniform over C. What removes it is the pressure of a flat punch on C, to
+//! which no few products with M come near, because M knows nothing of the rim. A small change of the load changes p by nearly that
+//! pressure, so the change of p since the last solution in time serves for d. Module `uniform` has another.
 //!
-//! - One element carries much of the force: a grain of dust, the spike of an interferometer. Scaling then fits the depth of that element, and a
-//!   hundredth of that depth is more than the roughness of all others.
-//! - Two periods, near full contact: the mean of p displaces nothing, so the least energy does not determine it.
-//!
-//! There p moves in each step along d, as along a known change (module `known`), and is not scaled:
-//!
-//! ```text
-//! d = 1 on C;   w = A d: one product
-//! ```
-//!
-//! d is made anew when a quarter of C has left it. Elements that left owe their part of each step, so that this costs less than it saves; and
-//! where C is found late, as around a spike on which the coarse grids see nothing else, d is first made then.
-//!
-//! Measured by approach: 180 planes of 80 x 80 with one spike, many, or plateaus, 5 to 31 iterations, 15 in the median, by force 5 to 29 and 14;
-//! without d most with spikes take more than 60. Lines of 9600 elements with two periods 94 to 300, where scaling left one of ten without an end.
+//! An element that leaves C later is removed from d but not from w = A d and from (d, w); the missing part is added to the deferred corrections.
 
-use super::iteration::Cycle;
-use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use super::deflation_passes::measures;
+use crate::error::Result;
+use crate::memory::{keep, reserve};
 use crate::operator::fft::Real;
-use crate::scene::Load;
-use crate::sums::{in_blocks, Sums};
+use crate::sums::Sums;
 
-/// Pressures of more than so many times the mean are those of few elements.
-const FEW: f64 = 8.0;
-/// They carry much if what they have beyond that is this part of the force.
-const MUCH: f64 = 0.01;
-/// Where this part of C has changed, d is made anew.
-const ANOTHER: u64 = 4;
+/// Pressures of an earlier solution and their displacements, on the whole grid, in the scene's units.
+#[derive(Clone, Copy)]
+pub struct Last<'a> {
+    /// p.
+    pub p: &'a [f64],
+    /// u = A p.
+    pub u: &'a [f64],
+}
 
-impl<T: Real> Iteration<T> {
-    /// Makes the deflation direction, where the load needs one and no change is known. Without memory for it there is none. Returns the products
-    /// that this takes.
-    pub(super) fn deflate<S: AdmissibleSet>(&mut self, state: &State, is_mean_free: bool) -> u64 {
-        let by_approach = matches!(state.load, Load::Approach(_));
-        let is_known = self.known.is_there() && !self.known.is_deflation;
-        if is_known || !by_approach || S::FIXED || state.reached_limit {
-            return 0;
-        }
-        let is_nearly_full = is_mean_free && 2 * state.contact_count() > state.p.len();
-        // Below a layer that differs between elements, few carry much for another reason, and 1 is no direction.
-        let is_of_few = !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state);
-        if !(is_nearly_full || is_of_few) || self.known.reserve(state.p.len()).is_err() {
-            return 0;
-        }
-        self.known.is_deflation = true;
-        for (d, inside) in self.known.d.iter_mut().zip(&state.contact) {
-            *d = T::of(f64::from(u8::from(*inside)));
-        }
-        self.operator.apply(&self.known.d, &mut self.known.w, &mut self.workspace);
-        self.known.measure();
-        1
+/// d and w = A d.
+#[derive(Default)]
+pub(super) struct Deflation<T> {
+    pub(super) d: Vec<T>,
+    pub(super) w: Vec<T>,
+    /// (d, w); 0 while there is no such direction.
+    pub(super) energy: f64,
+    /// The sums of d^2, and of w^2 over the elements of d.
+    length: f64,
+    pub(super) size: f64,
+    /// Whether d is 1 on C (module `uniform`).
+    pub(super) is_uniform: bool,
+    /// Elements that left C, which are 0 in d but not in what w is of.
+    pub(super) outside: Vec<(usize, f64)>,
+}
+
+impl<T> Deflation<T> {
+    /// There is no such direction.
+    pub(super) fn forget(&mut self) {
+        self.energy = 0.0;
     }
 
-    /// Whether so much of C has changed that a direction on it is to be made anew, or for the first time.
-    pub(super) fn is_another_area(&self, state: &State, cycle: &Cycle, iterations: u64) -> bool {
-        let count = state.contact_count() as u64;
-        if self.known.is_there() {
-            self.known.is_deflation && ANOTHER * self.known.left() as u64 > count
-        } else {
-            iterations.is_power_of_two() && ANOTHER * cycle.changes > count
-        }
+    /// Whether there is one.
+    pub(super) fn is_there(&self) -> bool {
+        self.energy > 0.0
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        2 * self.d.len() * size_of::<T>()
     }
 }
 
-/// Whether few elements of C carry much of the force.
-fn few_carry_much(state: &State) -> bool {
-    let sum = in_blocks(state.p.iter().map(|p| p.max(0.0)));
-    let (mean, mut sums) = (sum / state.contact_count() as f64, Sums::new());
-    sums.add::<f64, 1, 0>([&state.p], [], |[p], []| [(p - FEW * mean).max(0.0)]);
-    let [beyond] = sums.values();
-    beyond > MUCH * sum
+impl<T: Real> Deflation<T> {
+    /// d and w; t and q where gamma is 0, so that nothing else is read.
+    pub(super) fn beside<'a>(&'a self, gamma: f64, t: &'a [T], q: &'a [T]) -> (&'a [T], &'a [T]) {
+        if gamma == 0.0 {
+            (t, q)
+        } else {
+            (&self.d, &self.w)
+        }
+    }
+
+    /// Elements that left d.
+    pub(super) fn left(&self) -> usize {
+        self.outside.len()
+    }
+
+    /// The 2-norm of d.
+    pub(super) fn norm(&self) -> f64 {
+        self.length.sqrt()
+    }
+
+    /// Memory for d and w; elements that left are forgotten.
+    pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
+        for values in [&mut self.d, &mut self.w] {
+            reserve(values, n, "the change of the last step")?;
+            values.resize(n, T::zero());
+        }
+        self.outside.clear();
+        Ok(())
+    }
+
+    /// For later iterations.
+    pub(super) fn keep(&mut self) {
+        keep([&mut self.d, &mut self.w]);
+    }
+
+    /// w is A d from now on.
+    pub(super) fn measure(&mut self) {
+        let mut sums = Sums::new();
+        sums.add([], [&self.d, &self.w], |[], [d, w]| measures(d, w));
+        self.take_measures(sums.values());
+    }
+
+    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass; no direction where single precision did not hold w.
+    pub(super) fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
+        let energy = if energy.is_finite() { energy } else { 0.0 };
+        (self.energy, self.length, self.size) = (energy, length, size);
+    }
 }

@@ -12,35 +12,11 @@
 //! ```
 
 use super::formulas::WorkAndEnergy;
-use super::passes::Update;
+use super::sums::Update;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
 use crate::scene::Load;
-
-/// Sums over C for the energy of p + alpha t: (p, d), (t, d), d = approach - h, (p, u), (p, q) + (t, u), (t, q).
-#[derive(Clone, Copy)]
-pub(super) struct Energy {
-    pub(super) pd: f64,
-    pub(super) td: f64,
-    pub(super) pu: f64,
-    pub(super) pq_tu: f64,
-    pub(super) tq: f64,
-}
-
-impl Energy {
-    /// What is owed, t on an element of C, is no part of the step.
-    pub(super) fn leave_out(&mut self, owed: f64, (depth, u, q): (f64, f64, f64)) {
-        self.td -= owed * depth;
-        self.pq_tu -= owed * u;
-        self.tq -= owed * q;
-    }
-
-    /// `(p, d)` and `(p, u)` after a step of length alpha.
-    pub(super) fn after(&self, alpha: f64) -> (f64, f64) {
-        (self.pd + alpha * self.td, self.pu + alpha * (self.pq_tu + alpha * self.tq))
-    }
-}
 
 impl<T: Real> Iteration<T> {
     /// After a step: p carries the prescribed force, or is scaled to the least energy; `update` takes the factor. `limited`: whether an element was
@@ -57,14 +33,14 @@ impl<T: Real> Iteration<T> {
             Load::Force(_) => update.factor = self.carry_force::<S>(state),
             Load::Approach(_) if limited => {}
             Load::Approach(_) => {
-                self.least_energy::<S>(state, update, sums.filter(|_| !update.settled && update.gamma == 0.0))
+                self.least_energy::<S>(state, update, sums.filter(|_| !update.is_corrected && update.gamma == 0.0))
             }
         }
     }
 
-    /// By approach: scales p, and the debts with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
-    /// the factor. It costs no product. Where p moves along a known direction instead, or pressures have reached a limit, only a truncation that a
-    /// product has paid is followed by it. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
+    /// By approach: scales p, and the deferred corrections with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
+    /// the factor. It costs no product. Where p moves along the deflation direction instead, or pressures have reached a limit, it only follows a
+    /// product that corrected a truncation. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -72,8 +48,8 @@ impl<T: Real> Iteration<T> {
         sums: Option<(f64, f64)>,
     ) {
         self.is_scaled = false;
-        let scales = !(self.known.is_there() || S::LIMITED && state.reached_limit);
-        if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.settled) {
+        let scales = !(self.deflation.is_there() || S::LIMITED && state.reached_limit);
+        if matches!(state.load, Load::Force(_)) || S::FIXED || !(scales || update.is_corrected) {
             return;
         }
         self.segments.find(&state.contact);
@@ -90,7 +66,7 @@ impl<T: Real> Iteration<T> {
 
     /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
-        let (_, w) = self.known.beside(update.gamma, &self.t, &self.q);
+        let (_, w) = self.deflation.beside(update.gamma, &self.t, &self.q);
         let (State { h, u, p, .. }, products) = (state, [&self.q[..], &self.z, w]);
         let formula = WorkAndEnergy { approach: state.approach, update };
         let [work, energy] = self.segments.sum(
@@ -101,15 +77,15 @@ impl<T: Real> Iteration<T> {
         (work, energy)
     }
 
-    /// `(p, approach - h)` and `(p, u)` after a step that truncated the debts from the first `paid` on.
+    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements: those behind the first `included`.
     pub(super) fn after_truncation(
         &self,
         state: &State,
         (work, energy): (f64, f64),
         alpha: f64,
-        paid: usize,
+        included: usize,
     ) -> (f64, f64) {
-        self.debts[paid..].iter().fold((work, energy), |(work, energy), &(i, d)| {
+        self.truncation.gains()[included..].iter().fold((work, energy), |(work, energy), &(i, d)| {
             let u = state.u[i] + alpha * self.q[i].to_double();
             (work + d * (state.approach - state.h[i]), energy + d * u)
         })

@@ -1,17 +1,14 @@
 //! Steps (4.1) and (4.2) within the iteration: who leaves C with p, and who enters it with u.
 
 use super::formulas::{Entering, Leaving, Moved, MovedU};
-use super::passes::Update;
+use super::sums::Update;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
 
-/// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
-pub(super) const HELD_BACK: f64 = 1e-6;
-
 impl<T: Real> Iteration<T> {
-    /// p = p + alpha t + gamma d on C, and 4.1: elements beyond a bound, and those held back by the forecast, leave for it; what they gain
-    /// is owed. Returns how many.
+    /// p = p + alpha t + gamma d on C, and 4.1: elements beyond a bound, and those held back by the forecast, leave for it; the correction of u by
+    /// their gains is deferred. Returns how many.
     pub(super) fn update_pressures<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -20,7 +17,7 @@ impl<T: Real> Iteration<T> {
         forecast: Option<f64>,
     ) -> u64 {
         let (t, moved) = (&self.t[..], Moved { alpha, gamma });
-        let (d, _) = self.known.beside(gamma, t, &self.q);
+        let (d, _) = self.deflation.beside(gamma, t, &self.q);
         let State { p, contact, .. } = state;
         let leaving = Leaving { moved, forecast, set, elements: p.len() };
         self.segments.list_changing(
@@ -34,20 +31,20 @@ impl<T: Real> Iteration<T> {
                 block.change(p, [], [t, d], moved);
             },
         );
-        let before = self.debts.len();
-        let (t, debts) = (&mut self.t, &mut self.debts);
+        let before = self.truncation.count();
+        let (t, truncation) = (&mut self.t, &mut self.truncation);
         self.segments.change_listed(|i| {
-            debts.push((i, leave(state, set, i, t[i] > T::zero())));
+            truncation.push(i, leave(state, set, i, t[i] > T::zero()));
             t[i] = T::zero();
             true
         });
-        (debts.len() - before) as u64
+        (truncation.count() - before) as u64
     }
 
     /// u = factor (u + alpha q + gamma w + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
     /// than the caches.
     pub(super) fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update) -> u64 {
-        let (q, (_, w)) = (&self.q[..], self.known.beside(update.gamma, &self.t, &self.q));
+        let (q, (_, w)) = (&self.q[..], self.deflation.beside(update.gamma, &self.t, &self.q));
         let limited = S::LIMITED && state.has_limited();
         let State { h, u, contact, at_limit, .. } = state;
         let held = if limited { &at_limit[..] } else { &[] };
@@ -56,7 +53,7 @@ impl<T: Real> Iteration<T> {
             contact,
             u,
             #[inline(always)]
-            |block, u, list| match update.gamma != 0.0 || update.settled {
+            |block, u, list| match update.gamma != 0.0 || update.is_corrected {
                 true => block.change_and_list_outside(u, list, [h], [q, w, &self.z], moved, entering),
                 false => block.change_and_list_outside(u, list, [h], [q], moved, entering),
             },

@@ -2,10 +2,12 @@
 
 use pulp::Simd;
 
-use super::exchange::HELD_BACK;
-use super::passes::Update;
 use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
+use super::sums::Update;
 use crate::contact::AdmissibleSet;
+
+/// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
+pub(super) const HELD_BACK: f64 = 1e-6;
 
 /// The sum of `h + u`, u as `update` will leave it but for w.
 #[derive(Clone, Copy)]
@@ -15,7 +17,7 @@ impl Terms<2, 2, 1> for Distance<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [q, z]: [Vector<S>; 2]) -> [Vector<S>; 1] {
         let u = u + self.0.alpha * q;
-        [h + self.0.factor * if self.0.settled { u + z } else { u }]
+        [h + self.0.factor * if self.0.is_corrected { u + z } else { u }]
     }
 }
 
@@ -41,7 +43,7 @@ impl Terms<2, 0, 2> for Residual {
     }
 }
 
-/// (r, d) of a known change d, and (r, r).
+/// (r, d) of the deflation direction d, and (r, r).
 impl Terms<2, 1, 2> for Residual {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
@@ -132,7 +134,7 @@ impl Terms<3, 2, 9> for StepSums {
     }
 }
 
-/// (r, t), (t, q), (t, t), of |t|, (p, p); and with a known change d (r, d), (q, d).
+/// (r, t), (t, q), (t, t), of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
 impl Terms<3, 3, 7> for StepSums {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
@@ -152,7 +154,7 @@ impl Terms<3, 3, 2> for WorkAndEnergy<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [q, z, w]: [Vector<S>; 3]) -> [Vector<S>; 2] {
         let u = u + (self.update.alpha * q + self.update.gamma * w);
-        let u = if self.update.settled { u + z } else { u };
+        let u = if self.update.is_corrected { u + z } else { u };
         [p * (self.approach - h), p * u]
     }
 }
@@ -243,7 +245,7 @@ impl Becomes<1, 3> for MovedU<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q, w, z]: [Vector<S>; 3]) -> Vector<S> {
         let u = u + (self.0.alpha * q + self.0.gamma * w);
-        self.0.factor * if self.0.settled { u + z } else { u }
+        self.0.factor * if self.0.is_corrected { u + z } else { u }
     }
 }
 

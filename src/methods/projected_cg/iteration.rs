@@ -27,7 +27,7 @@
 //! pressure. Measured, with directions that may carry force, and now (products to 1e-6, by approach): ellipse 16 11.5 and 8.5, 64 11 and 8, 512 4.9 and
 //! 4.3; rough surface 512 19.3 and 11.
 //!
-//! *Truncation without a product:* module `debts`.
+//! *Truncation without a product:* module `truncation`.
 //!
 //! *After a large truncation.* What is truncated adds to the pressures; from pressures that are far too large (a coarse grid's h is a
 //! mean, which sees full contact of white noise) all of C may go and come back in turn, for ever. Scaling stops that: measured on 66 scenes
@@ -35,22 +35,22 @@
 //!
 //! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
 //! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
-//! is A p, may be negative; it is truncated, and where what that owes is large the first step has the length of the forecast: then its
-//! product pays all.
+//! is A p, may be negative; it is truncated. Where the correction of that is large the first step has the length of the forecast: then its
+//! product includes all of it.
 //!
 //! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
 //! p, so that directions of single precision lead to a solution of double precision.
 
-use super::passes::{Step, Update};
 use super::search::{Search, FIRST_FORECAST};
+use super::sums::{Step, Update};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
 
-/// A truncation is owed when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
+/// A correction is deferred when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
 /// and 0.4 the number of products hardly depends on it.
-pub(super) const OWED: f64 = 0.1;
+pub(super) const DEFERRED: f64 = 0.1;
 /// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
 const FIRST_STEP: f64 = 0.4;
 /// A step is at most so many times as long as the forecast. Elements were held back for a step of that length: by a longer one far more would be
@@ -95,7 +95,7 @@ pub enum End {
 impl<T: Real> Iteration<T> {
     /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
-        self.known.forget();
+        self.deflation.forget();
         if self.preconditioner.is_some() {
             self.limits.forget();
             self.forget_directions(state.grid.mx);
@@ -113,7 +113,7 @@ impl<T: Real> Iteration<T> {
             self.precondition(state);
             self.direct(state, 0.0, None);
             self.update_pressures(state, set, (FIRST_STEP, 0.0), None);
-            self.debts.clear();
+            self.truncation.clear();
             state.carry_force(set, &self.threads);
         }
     }
@@ -166,7 +166,7 @@ impl<T: Real> Iteration<T> {
     /// 4.1 and 4.2 before the first iteration.
     fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S, is_mean_free: bool) -> Search {
         self.forget_directions(state.grid.mx);
-        self.debts.clear();
+        self.truncation.clear();
         self.find_contact(state);
         let mut update = Update::default();
         self.limits.forget();
@@ -175,32 +175,32 @@ impl<T: Real> Iteration<T> {
         } else if S::LIMITED {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
-        // What a prediction owes is paid before its residual is looked at.
-        let products = u64::from(self.known.is_there() && self.owed() > 0.0);
+        // The truncation of a prediction is corrected before its residual is looked at.
+        let products = u64::from(self.deflation.is_there() && self.truncation.sum() > 0.0);
         if products > 0 {
-            self.settle();
-            update.settled = true;
+            self.correct_now();
+            update.is_corrected = true;
         }
         self.least_energy::<S>(state, &mut update, None);
         self.fit_approach(state, &update);
         self.update_displacements::<S>(state, &update);
         self.segments.find(&state.contact);
-        let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_known(state);
-        self.step_along_known(state);
-        let first = if self.owed() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
+        let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_deflation(state);
+        self.step_along_deflation(state);
+        let first = if self.truncation.sum() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner the first forecast is missing.
         Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }
     }
 
     /// One iteration, r being what z holds; none where there is no direction.
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
-        // z = M r, t = max(z + beta t, -p/alpha'), and what is owed
+        // z = M r, t = max(z + beta t, -p/alpha'), and the deferred correction
         self.precondition(state);
         let held_back = search.forecast.filter(|_| search.may_hold_back && !S::FIXED);
         self.direct(state, search.tq, held_back);
         held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);
-        self.owe(forecast);
+        self.include_correction(forecast);
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
@@ -213,11 +213,11 @@ impl<T: Real> Iteration<T> {
         let held_back = search.believed(alpha);
         let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
         if near {
-            self.known.forget();
+            self.deflation.forget();
             self.remember(state);
         }
-        self.pay(state, forecast, alpha, &mut step);
-        let paid = self.debts.len();
+        self.exclude_correction(state, forecast, alpha, &mut step);
+        let included = self.truncation.count();
 
         // p = p + alpha t + gamma d, 4.1
         let gamma = self.gamma(&step, alpha);
@@ -226,16 +226,16 @@ impl<T: Real> Iteration<T> {
         } else {
             self.update_pressures(state, set, (alpha, gamma), held_back)
         };
-        self.leave_known(gamma);
+        self.leave_deflation(gamma);
         search.expect(alpha, self.preconditioner.is_some());
 
         // u = u + alpha q + gamma w, 4.2
         let mut update = Update { alpha, gamma, ..Update::default() };
-        let sums = step.energy.map(|energy| self.after_truncation(state, energy.after(alpha), alpha, paid));
-        let (limited, owed) = (S::LIMITED && state.has_limited(), self.owed());
-        if owed > OWED * alpha.abs() * step.t1 || search.forecast.is_none() && owed > 0.0 {
-            self.settle();
-            update.settled = true;
+        let sums = step.energy.map(|energy| self.after_truncation(state, energy.after(alpha), alpha, included));
+        let (limited, deferred) = (S::LIMITED && state.has_limited(), self.truncation.sum());
+        if deferred > DEFERRED * alpha.abs() * step.t1 || search.forecast.is_none() && deferred > 0.0 {
+            self.correct_now();
+            update.is_corrected = true;
             if limited {
                 self.step_back(state, set, &mut update);
                 search.tq = 0.0;
@@ -247,19 +247,19 @@ impl<T: Real> Iteration<T> {
         self.segments.find(&state.contact);
         Some(Cycle {
             changes: left + entered,
-            update: step.change(alpha, gamma.abs() * self.known.norm(), update.factor) / count.sqrt(),
+            update: step.change(alpha, gamma.abs() * self.deflation.norm(), update.factor) / count.sqrt(),
             pressure: (step.pp / count).sqrt(),
             residual: f64::INFINITY,
-            products: 1 + u64::from(update.settled) + std::mem::take(&mut search.products),
+            products: 1 + u64::from(update.is_corrected) + std::mem::take(&mut search.products),
         })
     }
 
-    /// alpha; that of the forecast where it pays what is owed: at first, and where elements are at their limit.
+    /// alpha; that of the forecast where its product includes a large correction: at first, and where elements are at their limit.
     fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
-        let pays = std::mem::take(&mut search.is_first) || limited;
-        if pays && self.owed() > OWED * alpha.abs() * step.t1 {
+        let includes = std::mem::take(&mut search.is_first) || limited;
+        if includes && self.truncation.sum() > DEFERRED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }

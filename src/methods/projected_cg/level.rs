@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::deflation::Last;
 use super::inner::{in_either, Inner, MadeOf};
-use super::known::Last;
 use super::part::{enter, leave};
 use super::scaling::Scaling;
 use super::{Cycle, End, Window};
@@ -139,7 +139,7 @@ impl Level {
                 in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
-            in_either!(inner, inner => inner.know(state, last, (window, whole.mx), units))?;
+            in_either!(inner, inner => inner.deflate_by_change(state, last, (window, whole.mx), units))?;
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;

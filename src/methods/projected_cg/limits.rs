@@ -17,12 +17,13 @@
 //! Algorithms* (2009), section 5.8).
 //!
 //! By approach no scaling keeps C from going and coming back. Instead the step is shortened to the least energy wherever a product has
-//! just paid all debts: both ends of it are known exactly then. Large debts the next product pays whole, by a step of the length of the
+//! just corrected all of u: both ends of it are known exactly then. The next product includes a large deferred correction whole, by a step of the length of the
 //! forecast.
 
-use super::exchange::HELD_BACK;
 use super::formulas::Carried;
-use super::passes::{none, Update};
+use super::formulas::HELD_BACK;
+use super::passes::none;
+use super::sums::Update;
 use super::vectors::{Beyond, Iteration};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
@@ -59,7 +60,7 @@ impl<T: Real> Iteration<T> {
         reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")
     }
 
-    /// Where elements are at their limit: carries the force as far as p and the debts can be scaled, and notes what is missing. Returns
+    /// Where elements are at their limit: carries the force as far as p and the deferred corrections can be scaled, and notes what is missing. Returns
     /// the factor of the scaling; none where no element is at its limit.
     pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
         (self.limits.missing, self.limits.shift) = (0.0, 0.0);
@@ -72,7 +73,7 @@ impl<T: Real> Iteration<T> {
         if carried > (1.0 + TOO_MUCH) * pressures {
             let factor = pressures / carried;
             state.p.iter_mut().for_each(|p| *p *= factor);
-            self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+            self.truncation.scale(factor);
             for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
                 *inside |= std::mem::take(at_limit);
             }
@@ -88,7 +89,7 @@ impl<T: Real> Iteration<T> {
         Some(1.0)
     }
 
-    /// Scales p, and the debts with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
+    /// Scales p, and the deferred corrections with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         self.segments.find(&state.contact);
@@ -153,12 +154,12 @@ impl<T: Real> Iteration<T> {
     pub(super) fn remember(&mut self, state: &State) {
         self.limits.known.clear();
         self.limits.known.extend_from_slice(&state.p);
-        for &(i, d) in &self.debts {
+        for &(i, d) in self.truncation.gains() {
             self.limits.known[i] -= d;
         }
     }
 
-    /// With a limit, where a product has just paid all debts: goes back along the change d of the pressures that u learns of, to the
+    /// With a limit, where a product has just corrected all of u: goes back along the change d of the pressures that u learns of, to the
     /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
     pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
         debug_assert!(update.gamma == 0.0, "with limits nothing is predicted");
@@ -187,7 +188,7 @@ impl<T: Real> Iteration<T> {
             let to = self.limits.known[i] + s * d;
             state.p[i] = set.project(i, to);
             if state.p[i] != to {
-                self.debts.push((i, state.p[i] - to));
+                self.truncation.push(i, state.p[i] - to);
             }
             let at_limit = state.p[i] >= set.limit(i);
             state.at_limit[i] = at_limit;

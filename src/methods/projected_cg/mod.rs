@@ -1,19 +1,16 @@
 //! Projected, preconditioned conjugate gradients: the fastest way known to solve the whole problem on one grid, under nested
 //! iteration over the grids.
 
-mod boxes;
-mod cells;
+mod along;
 mod coarse_grids;
-mod debts;
+mod correction;
 mod deflation;
+mod deflation_passes;
 mod energy;
 mod exchange;
-mod extension;
 mod formulas;
 mod inner;
 mod iteration;
-mod known;
-mod known_passes;
 mod level;
 mod limits;
 mod part;
@@ -24,6 +21,9 @@ mod scaling;
 mod search;
 mod segments;
 mod step;
+mod sums;
+mod truncation;
+mod uniform;
 mod vectors;
 mod window;
 

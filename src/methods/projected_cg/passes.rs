@@ -1,8 +1,7 @@
 //! The passes over the contact area, each over its segments; what they compute is in `formulas`.
 
-use super::energy::Energy;
-use super::extension::Area;
 use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepSums};
+use super::sums::{Energy, Step, Update};
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
@@ -18,52 +17,14 @@ pub(super) const fn none<'a, T>() -> [&'a [T]; 0] {
     []
 }
 
-/// What becomes of u: factor (u + alpha q + gamma w + A d), w of the known change.
-#[derive(Clone, Copy)]
-pub(super) struct Update {
-    pub(super) alpha: f64,
-    pub(super) gamma: f64,
-    /// Whether z holds A d.
-    pub(super) settled: bool,
-    pub(super) factor: f64,
-}
-
-impl Default for Update {
-    fn default() -> Update {
-        Update { alpha: 0.0, gamma: 0.0, settled: false, factor: 1.0 }
-    }
-}
-
-/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p); and (r, d), (q, d), 0 where no change is known.
-pub(super) struct Step {
-    pub(super) rt: f64,
-    pub(super) tq: f64,
-    pub(super) tt: f64,
-    pub(super) t1: f64,
-    pub(super) pp: f64,
-    pub(super) rd: f64,
-    pub(super) qd: f64,
-    pub(super) energy: Option<Energy>,
-}
-
-impl Step {
-    /// The 2-norm of the change of p, at most: the sum of what the step along t, that along d, of which the length is given, and the scaling change.
-    pub(super) fn change(&self, alpha: f64, along_d: f64, factor: f64) -> f64 {
-        alpha.abs() * self.tt.sqrt() + along_d + (factor - 1.0).abs() * self.pp.sqrt()
-    }
-}
-
 impl<T: Real> Iteration<T> {
     /// The segments of a contact area of which nothing is known.
     pub(super) fn find_contact(&mut self, state: &State) {
         self.segments.change_all();
         self.segments.find(&state.contact);
-        if let (Some(_), Some(extension)) = (&self.preconditioner, &mut self.extension) {
-            extension.suit(&state.contact);
-        }
     }
 
-    /// With a prescribed force, where no change is known: the approach is the mean over C of h + u, u as `update` will leave it.
+    /// With a prescribed force, where there is no deflation direction: the approach is the mean over C of h + u, u as `update` will leave it.
     pub(super) fn fit_approach(&mut self, state: &mut State, update: &Update) {
         if matches!(state.load, Load::Approach(_)) {
             return;
@@ -100,17 +61,27 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Whether directions need not carry force: p is scaled to it, or to the least energy, or moves along a known change.
+    /// Whether directions need not carry force: p is scaled to it, or to the least energy, or moves along the deflation direction.
     fn is_without_force(&self, state: &State) -> bool {
-        matches!(state.load, Load::Force(_)) || self.known.is_there() || self.is_scaled
+        matches!(state.load, Load::Force(_)) || self.deflation.is_there() || self.is_scaled
     }
 
-    /// z = E^T M E r, r being what z holds (module `extension`).
+    /// z = E^T M E r, r being what z holds (module [`extension`](crate::methods::extension)).
     pub(super) fn precondition(&mut self, state: &State) {
         let without_force = self.is_without_force(state);
+        self.count_near(state);
         if let Some(m) = &mut self.preconditioner {
-            let area = Area { contact: &state.contact, segments: &self.segments };
-            m.apply(&mut self.z, (area, without_force), &mut self.extension, &mut self.workspace);
+            m.apply(&mut self.z, (&state.contact, without_force), &mut self.extension, &mut self.workspace);
+        }
+    }
+
+    /// For the extension: counts elements of C where C has changed.
+    fn count_near(&mut self, state: &State) {
+        let (Some(_), Some(extension)) = (&self.preconditioner, &mut self.extension) else { return };
+        let (segments, before) = (&self.segments, self.counted.replace(self.segments.version()));
+        if before != self.counted {
+            let has_changed = |elements| before.is_none_or(|before| segments.changed_since(before, elements));
+            extension.count(&state.contact, |inside| inside, has_changed);
         }
     }
 
@@ -181,8 +152,8 @@ impl<T: Real> Iteration<T> {
 
     /// The sums over C that the step length needs, and those of the energy where p is scaled.
     pub(super) fn step(&mut self, state: &State) -> Step {
-        if self.known.is_there() {
-            return self.step_beside_change(state);
+        if self.deflation.is_there() {
+            return self.step_beside_deflation(state);
         }
         let State { h, u, p, contact, .. } = state;
         let (tq, formula) = ([&self.t[..], &self.q], StepSums { approach: state.approach });
@@ -203,9 +174,9 @@ impl<T: Real> Iteration<T> {
         Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
 
-    /// p = factor p on C, and the debts likewise.
+    /// p = factor p on C, and the deferred corrections likewise.
     pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
-        self.debts.iter_mut().for_each(|debt| debt.1 *= factor);
+        self.truncation.scale(factor);
         let State { p, contact, .. } = state;
         let [] = self.segments.sum_changing(
             contact,

@@ -5,13 +5,13 @@
 //! ```
 //!
 //! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
-//! M is symmetric and positive definite. It is applied as E^T M E (module `extension`), with an E for each level.
+//! M is symmetric and positive definite. It is applied as E^T M E (module [`extension`](crate::methods::extension)), with an E for each level.
 
-use super::extension::{extended, Area, Extension};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::computed;
+use crate::methods::extension::Extension;
 use crate::operator::fft::Real;
 use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
@@ -66,23 +66,22 @@ impl<T: Real> Preconditioner<T> {
     pub fn apply(
         &mut self,
         z: &mut Vec<T>,
-        (area, without_force): (Area<'_>, bool),
-        extension: &mut Option<Extension<T>>,
+        (contact, without_force): (&[bool], bool),
+        extension: &mut Option<Extension<T, 1>>,
         workspace: &mut Workspace<T>,
     ) {
         let Preconditioner { parts, right, term, unit } = self;
-        let contact = area.contact;
         if let [Part { inverse, weights, compliance }] = &parts[..] {
             if weights.is_empty() {
-                return extended(extension, z, (area, *compliance), |z| inverse.apply_in_place(z, workspace));
+                return extended(extension, z, *compliance, |z| inverse.apply_in_place(z, workspace));
             }
         }
-        mix(parts, (z, area), extension, workspace, (right, term));
+        mix(parts, z, extension, workspace, (right, term));
         if !without_force {
             return;
         }
         unit.iter_mut().zip(contact).for_each(|(unit, &inside)| *unit = if inside { T::one() } else { T::zero() });
-        mix(parts, (unit, area), extension, workspace, (right, term));
+        mix(parts, unit, extension, workspace, (right, term));
         let sum = |values: &[T]| -> f64 {
             values.iter().zip(contact).map(|(value, &inside)| if inside { value.to_double() } else { 0.0 }).sum()
         };
@@ -100,8 +99,8 @@ impl<T: Real> Preconditioner<T> {
 /// z = M z of a mix, the terms of which are extended each for itself.
 fn mix<T: Real>(
     parts: &[Part<T>],
-    (z, area): (&mut [T], Area<'_>),
-    extension: &mut Option<Extension<T>>,
+    z: &mut [T],
+    extension: &mut Option<Extension<T, 1>>,
     workspace: &mut Workspace<T>,
     (right, term): (&mut [T], &mut Vec<T>),
 ) {
@@ -111,9 +110,22 @@ fn mix<T: Real>(
         for ((term, r), w) in term.iter_mut().zip(&*right).zip(weights) {
             *term = *r * *w;
         }
-        extended(extension, term, (area, *compliance), |term| inverse.apply_in_place(term, workspace));
+        extended(extension, term, *compliance, |term| inverse.apply_in_place(term, workspace));
         for ((z, term), w) in z.iter_mut().zip(&*term).zip(weights) {
             *z += *term * *w;
         }
+    }
+}
+
+/// z = E^T M E z; z = M z where there is no extension.
+fn extended<T: Real>(
+    extension: &mut Option<Extension<T, 1>>,
+    z: &mut Vec<T>,
+    compliance: f64,
+    apply: impl FnOnce(&mut [T]),
+) {
+    match extension {
+        Some(extension) => extension.around(z, compliance, apply),
+        None => apply(z),
     }
 }

@@ -8,7 +8,7 @@
 use std::mem::{swap, take};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::known::Last;
+use super::deflation::Last;
 use super::Window;
 use crate::contact::{presses, Freshness, State};
 use crate::error::Result;
@@ -57,7 +57,7 @@ impl Predictor {
     }
 
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then, in the window that `window`
-    /// chooses for it; elsewhere u is not known. p may be negative: the iteration truncates it, and owes u the change.
+    /// chooses for it; elsewhere u is not known. p may be negative: the iteration truncates it and corrects u.
     pub fn predict(
         &mut self,
         state: &mut State,

@@ -11,13 +11,13 @@ use super::{End, Window};
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::{release, reserve, rests};
-use crate::methods::{Change, Habits, Step, Task};
+use crate::methods::{Change, Policy, Step, Task};
 use crate::operator::Precision;
 use crate::progress::Goal;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// The iteration aims at this part of the tolerance: unpaid truncations and single precision rounding must still pass the certificate,
+/// The iteration aims at this part of the tolerance: deferred corrections and the rounding of single precision must still pass the certificate,
 /// and on a full contact of flat bodies, where A is worst conditioned, p be within ten tolerances (tests/random_problems.rs). Work over
 /// 40 cases at 0.5, 0.75, 0.9: 1, 0.98, 0.96.
 const AIM: f64 = 0.75;
@@ -27,7 +27,7 @@ const FINE_AIM: f64 = 0.5;
 /// The first u on the finest grid is of single precision if the noise that this may leave in p is at most so many tolerances. Errors
 /// of transforms are some tenth of `EPSILON u`: what is left is below ten tolerances in the largest pressure.
 const NOISE: f64 = 25.0;
-/// Iterations at most before a certificate: with the [patience](Step::habits) of three of them, what does not halve its violation in 180
+/// Iterations at most before a certificate: with the [patience](Step::policy) of three of them, what does not halve its violation in 180
 /// iterations is handed over. Whatever converges needs fewer for all of its digits, or halves it in some 40.
 const ROUND: u64 = 60;
 /// An iteration that stagnates above this residual does so on the contact area, which a fresh u does not change; below it, by rounding.
@@ -163,7 +163,7 @@ impl ProjectedCg {
         Ok(())
     }
 
-    /// The update of the last step, as far as it proves anything: not where u was of single precision, or pressures were owed.
+    /// The update of the last step, as far as it proves anything: not where u was of single precision, or a correction was deferred.
     fn update(&self, state: &State, was: Freshness, last: f64) -> f64 {
         if was != Freshness::Exact {
             return f64::INFINITY;
@@ -196,8 +196,8 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         "PROJECTED_CG"
     }
 
-    fn habits(&self) -> Habits {
-        Habits { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 3, progress: 0.5 }
+    fn policy(&self) -> Policy {
+        Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 3, progress: 0.5 }
     }
 
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {

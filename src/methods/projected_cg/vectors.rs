@@ -3,17 +3,18 @@
 use std::iter::once;
 use std::mem::replace;
 
-use super::extension::Extension;
-use super::known::Known;
+use super::deflation::Deflation;
 use super::preconditioner::Preconditioner;
 use super::segments::Segments;
+use super::truncation::Truncation;
 use crate::contact::State;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::memory::{asleep, keep, rest, wake};
+use crate::methods::extension::Extension;
 use crate::operator::fft::Real;
-use crate::operator::{reserve, Needs, Operator, SetUp, Workspace};
+use crate::operator::{Needs, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
@@ -28,7 +29,7 @@ pub(super) struct Beyond {
     pub(super) residual: f64,
     /// Whether the step before went back to the least energy.
     pub(super) went_back: bool,
-    /// The pressures that u knows of: those of before the iteration without what was owed then.
+    /// The p with u = A p: the pressures before this iteration, less the corrections not yet made.
     pub(super) known: Vec<f64>,
 }
 
@@ -71,16 +72,18 @@ const DIRECTIONS: &str = "search directions";
 pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
-    pub(super) extension: Option<Extension<T>>,
+    pub(super) extension: Option<Extension<T, 1>>,
+    /// The version of C whose elements the extension has counted.
+    pub(super) counted: Option<u64>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
     pub(super) q: Vec<T>,
     pub(super) z: Vec<T>,
     pub(super) segments: Segments,
-    /// Truncated elements and the pressures that u still lacks.
-    pub(super) debts: Vec<(usize, f64)>,
-    /// A direction that costs no product.
-    pub(super) known: Known<T>,
+    /// Elements that were truncated without a product.
+    pub(super) truncation: Truncation,
+    /// The direction that costs no product.
+    pub(super) deflation: Deflation<T>,
     /// By approach: whether p is scaled to the least energy after each step.
     pub(super) is_scaled: bool,
     /// With limits.
@@ -98,19 +101,20 @@ impl<T: Real> Iteration<T> {
             let mut direction = Vec::new();
             asleep(&mut direction, n, T::nan(), DIRECTIONS, threads).map(|()| direction)
         };
-        let mut debts = Vec::new();
-        reserve(&mut debts, n, "truncated elements")?;
+        let mut truncation = Truncation::default();
+        truncation.reserve(n)?;
         Ok(Iteration {
             workspace: workspace(&operator, &preconditioner)?,
             operator,
             preconditioner,
             extension: Extension::if_worthwhile(grid, threads)?,
+            counted: None,
             t: directions()?,
             q: directions()?,
             z: directions()?,
             segments: Segments::new(grid, threads)?,
-            debts,
-            known: Known::default(),
+            truncation,
+            deflation: Deflation::default(),
             is_scaled: false,
             limits: Beyond::default(),
             threads: threads.clone(),
@@ -127,11 +131,12 @@ impl<T: Real> Iteration<T> {
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
+        self.counted = None;
         self.segments = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;
         }
-        reserve(&mut self.debts, n, "truncated elements")?;
+        self.truncation.reserve(n)?;
         Ok(left)
     }
 
@@ -173,7 +178,7 @@ impl<T: Real> Iteration<T> {
 
     /// Before it is used, at first or again, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
-        self.extension.iter_mut().for_each(|extension| extension.wake(n));
+        self.extension.iter_mut().for_each(Extension::wake);
         let threads = &self.threads;
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(|values| wake(values, n, T::nan(), threads));
     }
@@ -184,8 +189,8 @@ impl<T: Real> Iteration<T> {
         let n = self.operator.elements();
         let directions = 3 * n * size_of::<T>();
         let products = self.operator.bytes() + preconditioner + self.workspace.bytes();
-        let extension = self.extension.as_ref().map_or(0, |extension| extension.bytes(n));
-        products + extension + directions + self.known.bytes()
+        let extension = self.extension.as_ref().map_or(0, Extension::bytes);
+        products + extension + directions + self.deflation.bytes()
     }
 
     /// t and q become those of no direction.
@@ -232,8 +237,8 @@ fn preconditioner<T: Real>(
 impl<T: Real> Drop for Iteration<T> {
     fn drop(&mut self) {
         keep([&mut self.t, &mut self.q, &mut self.z]);
-        keep([&mut self.known.d, &mut self.known.w]);
-        keep([&mut self.debts]);
+        self.deflation.keep();
+        self.truncation.keep();
         keep([&mut self.limits.known]);
     }
 }

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use super::outlook::{across, Falling, Quantity};
-use super::{Outcome, Solved};
+use super::outlook::{across, Falling, Outlook, Quantity};
+use super::solved::Solved;
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
+use crate::progress::Outcome;
 use crate::solver::estimates::SECONDS_EXPONENT;
 
 /// The accuracy that is asked for, and what it may cost.
@@ -94,7 +95,7 @@ impl Past {
         Past {
             grid: problem.grid,
             across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
-            excesses: solved.outlook.excesses(accuracy),
+            excesses: accuracy.excesses(&solved.outlook),
             bytes: solved.report.bytes,
             seconds: seconds.0,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
@@ -145,6 +146,13 @@ pub(super) fn require_target(target: f64) -> Result<()> {
 }
 
 impl Accuracy {
+    /// The errors that it speaks of, over their targets.
+    pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
+        let of =
+            |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
+        self.targets().into_iter().map(of).collect()
+    }
+
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
         require_target(self.target)?;

@@ -1,8 +1,8 @@
 //! What a solution says about finer grids.
 
-use super::{Accuracy, Report, Solver};
 use crate::contact::State;
 use crate::scene::Load;
+use crate::solver::{Report, Solver};
 
 /// What an accuracy is asked of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Falling {
         self.by_four * ratio * ratio + self.by_two * ratio + self.hidden
     }
 
-    fn over(self, whole: f64) -> Option<Falling> {
+    pub(super) fn over(self, whole: f64) -> Option<Falling> {
         let [by_four, by_two, hidden] = [self.by_four, self.by_two, self.hidden].map(|part| part / whole.abs());
         (by_four + by_two + hidden).is_finite().then_some(Falling { by_four, by_two, hidden })
     }
@@ -85,12 +85,6 @@ impl Outlook {
             Quantity::MaxPressure => self.max_pressure,
             Quantity::ContactArea => self.contact_area,
         }
-    }
-
-    /// The errors that an accuracy speaks of, over their targets.
-    pub fn excesses(&self, accuracy: &Accuracy) -> Vec<Option<Falling>> {
-        let of = |(quantity, target): (Quantity, f64)| self.falling(quantity).and_then(|falling| falling.over(target));
-        accuracy.targets().into_iter().map(of).collect()
     }
 }
 

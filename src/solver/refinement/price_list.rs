@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use super::next_grid::{require_target, tolerance_for, ENOUGH_ACROSS, MOST_ELEMENTS, ROUND_OFF};
 use super::outlook::{across, Falling};
-use super::{check, on_grid, scaled, Accuracy, Quantity, Solved, SurfaceCallback};
+use super::solved::Solved;
+use super::{check, on_grid, scaled, Accuracy, Quantity, SurfaceCallback};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::Scene;

@@ -4,13 +4,10 @@ use std::array::from_fn;
 
 use pulp::Simd;
 
-use super::block::Block;
+use super::block::{Block, EIGHT};
 use super::vector::{Holds, Vector};
 use crate::operator::fft::Real;
 use crate::sums::Value;
-
-/// Elements of a segment, one in each byte of a word.
-pub(super) const EIGHT: usize = 8;
 
 /// One segment of an array.
 pub(super) type Eight<A> = [A; EIGHT];

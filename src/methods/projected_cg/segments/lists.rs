@@ -2,8 +2,8 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::arrays::{eights, parts, rest, whole, Arrays, Eight, Segment, EIGHT};
-use super::block::{Becomes, Block, Wanted};
+use super::arrays::{eights, parts, rest, whole, Arrays, Eight, Segment};
+use super::block::{Becomes, Block, Wanted, EIGHT};
 use super::vector::{Holds, Vector};
 use crate::operator::fft::Real;
 

@@ -10,13 +10,15 @@
 mod arrays;
 mod block;
 mod lists;
+mod over;
 mod passes;
 mod vector;
 
 use std::mem::take;
 use std::ops::Range;
 
-use arrays::{eights, rest, EIGHT};
+use arrays::{eights, rest};
+use block::EIGHT;
 pub use block::{Becomes, Block, Terms, Wanted};
 pub use vector::{Holds, Vector};
 

@@ -3,8 +3,8 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::arrays::{convert, parts, rest, whole, Arrays, Eight, Segment, EIGHT};
-use super::block::{Becomes, Block, Terms};
+use super::arrays::{convert, parts, rest, whole, Arrays, Eight, Segment};
+use super::block::{Becomes, Block, Terms, EIGHT};
 use super::vector::Vector;
 use crate::operator::fft::Real;
 use crate::sums::Value;

@@ -7,16 +7,14 @@
 //! ```
 //!
 //! `d x = v` is solved from the leading edge on, where x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly.
-//! What slips passes on what a layer of compliance D leaves of it (see [`Tangent`]):
+//! What slips passes on what a layer of compliance D leaves of it (see [`disc`](super::disc)):
 //!
 //! ```text
 //! stick: x_i = x(ahead of i) + v_i
 //! slip:  x_i = t t.(E_i x(ahead of i) + v_i)
 //! ```
 
-use super::problem::plus;
-use super::tangent::Tangent;
-use super::Vector;
+use super::plane::{plus, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
@@ -31,7 +29,7 @@ pub struct Rolling {
 
 /// The neighbours ahead of an element, with their weights, and the element's own.
 #[derive(Clone, Debug)]
-pub struct March {
+pub struct Sweep {
     by: (f64, f64),
     ahead: Vec<(isize, isize, f64)>,
     own: f64,
@@ -47,23 +45,23 @@ impl Rolling {
     }
 }
 
-impl March {
+impl Sweep {
     /// Of steps.
-    pub fn new(rolling: &Rolling) -> March {
+    pub fn new(rolling: &Rolling) -> Sweep {
         let (x, y) = (rolling.by.0.floor(), rolling.by.1.floor());
         let (in_x, in_y) = (rolling.by.0 - x, rolling.by.1 - y);
-        let mut march = March { by: rolling.by, ahead: Vec::new(), own: 0.0 };
+        let mut sweep = Sweep { by: rolling.by, ahead: Vec::new(), own: 0.0 };
         for (row, of_row) in [(y, 1.0 - in_y), (y + 1.0, in_y)] {
             for (column, of_column) in [(x, 1.0 - in_x), (x + 1.0, in_x)] {
                 let weight = of_row * of_column;
                 match (column as isize, row as isize) {
-                    (0, 0) => march.own = weight,
-                    (column, row) if weight > 0.0 => march.ahead.push((column, row, weight)),
+                    (0, 0) => sweep.own = weight,
+                    (column, row) if weight > 0.0 => sweep.ahead.push((column, row, weight)),
                     _ => (),
                 }
             }
         }
-        march
+        sweep
     }
 
     /// The weight of an element itself at its place after a step, between the centres.
@@ -85,23 +83,28 @@ impl March {
         })
     }
 
-    /// Solves for x; `x` holds v on entry. `mixing(i)` is E.
+    /// Solves for x; `x` holds v on entry. `mixing(i)` is E, `project(i, v)` is P v of element i.
     pub fn solve(
         &self,
         grid: &Grid,
-        tangent: &Tangent,
         mixing: impl Fn(usize) -> f64 + Sync + Send,
+        project: impl Fn(usize, Vector) -> Vector + Sync + Send,
         threads: &Threads,
         x: &mut [Vector],
     ) {
         match self.ahead[..] {
-            [(1, 0, _)] if self.own == 0.0 => each_row(grid, tangent, mixing, threads, (x, true)),
-            [(-1, 0, _)] if self.own == 0.0 => each_row(grid, tangent, mixing, threads, (x, false)),
-            _ => self.any_direction(grid, tangent, mixing, x),
+            [(1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (x, true)),
+            [(-1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (x, false)),
+            _ => self.any_direction(grid, (mixing, project), x),
         }
     }
 
-    fn any_direction(&self, grid: &Grid, tangent: &Tangent, mixing: impl Fn(usize) -> f64, x: &mut [Vector]) {
+    fn any_direction(
+        &self,
+        grid: &Grid,
+        (mixing, project): (impl Fn(usize) -> f64, impl Fn(usize, Vector) -> Vector),
+        x: &mut [Vector],
+    ) {
         let Grid { mx, my, .. } = *grid;
         let factor = 1.0 / (1.0 - self.own);
         let place = |k: usize, m: usize, towards: f64| if towards > 0.0 { m - 1 - k } else { k };
@@ -118,7 +121,7 @@ impl March {
                     }
                 }
                 let sum = plus(x[i], mixing(i), ahead);
-                x[i] = tangent.project_inside(i, [factor * sum[0], factor * sum[1]]);
+                x[i] = project(i, [factor * sum[0], factor * sum[1]]);
             }
         }
     }
@@ -127,8 +130,7 @@ impl March {
 /// By one element along x, `forward` or backward: no row knows of another.
 fn each_row(
     grid: &Grid,
-    tangent: &Tangent,
-    mixing: impl Fn(usize) -> f64 + Sync + Send,
+    (mixing, project): (impl Fn(usize) -> f64 + Sync + Send, impl Fn(usize, Vector) -> Vector + Sync + Send),
     threads: &Threads,
     (x, forward): (&mut [Vector], bool),
 ) {
@@ -138,7 +140,7 @@ fn each_row(
         for k in 0..mx {
             let ix = if forward { mx - 1 - k } else { k };
             let i = iy * mx + ix;
-            ahead = tangent.project_inside(i, plus(row[ix], mixing(i), ahead));
+            ahead = project(i, plus(row[ix], mixing(i), ahead));
             row[ix] = ahead;
         }
     });

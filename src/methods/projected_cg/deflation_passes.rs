@@ -79,5 +79,5 @@ pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {
 }
 
 #[cfg(test)]
-#[path = "../../../tests/unit/known_passes.rs"]
+#[path = "../../../tests/unit/deflation_passes.rs"]
 mod tests;

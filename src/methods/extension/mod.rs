@@ -1,0 +1,178 @@
+//! The residual, extended beyond the contact area.
+//!
+//! M is the inverse of a circulant near A on the whole grid, and the residual r is known on C only. For every extension E r of r with
+//!
+//! ```text
+//! (E r, M E r) >= (r, (A on C)^-1 r)
+//! ```
+//!
+//! equality holds for the displacement of what would take r away. Zero outside is the worst: a step at the rim has an energy that grows
+//! with the number of elements across a piece of C, and a rough surface has much rim. So E r is a mean of what is near,
+//!
+//! ```text
+//! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 elements around, n of them in C, c: an eighth of B
+//! ```
+//!
+//! and E^T M E, symmetric and positive definite for any E, takes the place of M. With a box of 7 or 13 elements at 512 x 512, or a c of half or twice
+//! that, the iterations differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of
+//! an element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside
+//! and with boxes): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
+//!
+//! The normal problem extends numbers, the tangential problem vectors of the plane.
+
+mod boxes;
+mod summand;
+
+use std::ops::Range;
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::memory::{keep, reserve, rest, wake, zeros};
+use crate::operator::fft::Real;
+use crate::threads::Threads;
+use boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
+
+/// c, as a part of a box.
+const ABSENT: f64 = 0.125;
+/// Elements of a grid from which on the extension saves more than it takes. Processor times of cold calls with it on all grids, by those
+/// without (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0 to 1.15
+/// at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
+const LEAST: usize = 8192;
+/// Elements of a grid in its shorter direction from which on it is used. Strips of 9 to 36 rows with two periods end in cycles
+/// with it; of 64 rows and more they take half of the iterations.
+const NARROW: usize = 64;
+const WHAT: &str = "the extended residual";
+
+/// E of fields of K components, and the memory for it.
+pub struct Extension<T: Real, const K: usize> {
+    mx: usize,
+    my: usize,
+    /// `[my][mx][K]`.
+    values: Vec<T>,
+    /// Elements of C in each box; 0 where its element is in C.
+    near: Vec<u16>,
+    /// Whether a chunk has elements with others of C near them.
+    rim: Vec<bool>,
+    threads: Threads,
+}
+
+impl<T: Real, const K: usize> Extension<T, K> {
+    /// On `grid`; none on one that is too small.
+    pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, K>>> {
+        (grid.len() >= LEAST && grid.mx.min(grid.my) >= NARROW).then(|| Extension::new(grid, threads)).transpose()
+    }
+
+    /// Memory for a contact area on `grid`; values are to be [woken](Extension::wake), and elements to be counted.
+    fn new(grid: &Grid, threads: &Threads) -> Result<Extension<T, K>> {
+        let mut values = Vec::new();
+        reserve(&mut values, K * grid.len(), WHAT)?;
+        Ok(Extension {
+            mx: grid.mx,
+            my: grid.my,
+            values,
+            near: zeros(grid.len(), WHAT)?,
+            rim: zeros(grid.my * grid.mx.div_ceil(CHUNK), WHAT)?,
+            threads: threads.clone(),
+        })
+    }
+
+    /// Counts the elements of C near each, in boxes of rows of which `has_changed(elements)`; C is where `is_inside` an element of this value.
+    pub fn count<A: Copy + Sync>(
+        &mut self,
+        values: &[A],
+        is_inside: impl Fn(A) -> bool + Sync + Send + Copy,
+        has_changed: impl Fn(Range<usize>) -> bool + Sync + Send,
+    ) {
+        let (mx, my) = (self.mx, self.my);
+        let (near, rim) = ((&mut self.near[..], ROWS * mx), (&mut self.rim[..], ROWS * mx.div_ceil(CHUNK)));
+        self.threads.for_each_row_pair(near, rim, |k, near, rim| {
+            let y = ROWS * k;
+            if has_changed(y.saturating_sub(REACH) * mx..my.min(y + ROWS + REACH) * mx) {
+                pulp::Arch::new().dispatch(Count { values, is_inside, mx, y, near, rim });
+            }
+        });
+    }
+
+    /// c, for `compliance`: an element's influence on itself, relative to that without a layer.
+    fn absent(&self, compliance: f64) -> T {
+        let in_a_box = BOX.min(self.mx) * BOX.min(self.my);
+        T::of(ABSENT * in_a_box as f64 * compliance * compliance)
+    }
+
+    /// values = E z, of z that is zero outside C.
+    fn extend(&mut self, z: &[[T; K]], compliance: f64) {
+        let absent = self.absent(compliance);
+        let Extension { mx, values, near, rim, threads, .. } = self;
+        let (mx, chunks) = (*mx, mx.div_ceil(CHUNK));
+        threads.for_each_plain_row(values.as_chunks_mut().0, ROWS * mx, |k, values| {
+            let y = ROWS * k;
+            let (near, rim) = (&near[y * mx..], &rim[y * chunks..]);
+            pulp::Arch::new().dispatch(Extend { z, mx, y, near, rim, absent, values });
+        });
+    }
+
+    /// values = E^T values on C; elsewhere they have no meaning. `shares` is overwritten.
+    fn collect(&self, values: &mut [[T; K]], shares: &mut [[T; K]], compliance: f64) {
+        let (mx, chunks, absent) = (self.mx, self.mx.div_ceil(CHUNK), self.absent(compliance));
+        let Extension { near, rim, threads, .. } = self;
+        let from = &*values;
+        threads.for_each_plain_row(shares, mx, |y, shares| {
+            let (near, rim) = (&near[y * mx..][..mx], &rim[y * chunks..][..chunks]);
+            pulp::Arch::new().dispatch(Share { values: &from[y * mx..][..mx], near, rim, absent, shares });
+        });
+        let (shares, rim) = (&*shares, &rim[..]);
+        threads.for_each_plain_row(values, ROWS * mx, |k, values| {
+            pulp::Arch::new().dispatch(Collect { shares, mx, y: ROWS * k, rim, values });
+        });
+    }
+
+    /// z = E^T M E z; z is zero outside C before, and of no meaning there afterwards.
+    pub fn around(&mut self, z: &mut Vec<T>, compliance: f64, apply: impl FnOnce(&mut [T])) {
+        self.extend(z.as_chunks().0, compliance);
+        let mut values = std::mem::take(&mut self.values);
+        apply(&mut values);
+        self.collect(values.as_chunks_mut().0, z.as_chunks_mut().0, compliance);
+        self.values = std::mem::replace(z, values);
+    }
+
+    /// `to = E^T M E from`, from being zero outside C; to has no meaning there.
+    pub fn between(
+        &mut self,
+        from: &[[T; K]],
+        to: &mut [[T; K]],
+        compliance: f64,
+        apply: impl FnOnce(&[[T; K]], &mut [[T; K]]),
+    ) {
+        self.extend(from, compliance);
+        let mut values = std::mem::take(&mut self.values);
+        apply(values.as_chunks().0, to);
+        self.collect(to, values.as_chunks_mut().0, compliance);
+        self.values = values;
+    }
+
+    /// It is not needed for a while.
+    pub fn rest(&mut self) {
+        rest(&mut self.values);
+    }
+
+    /// Before it is used, at first or again.
+    pub fn wake(&mut self) {
+        wake(&mut self.values, K * self.mx * self.my, T::nan(), &self.threads);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.near.len() * (K * size_of::<T>() + size_of::<u16>()) + self.rim.len()
+    }
+}
+
+impl<T: Real, const K: usize> Drop for Extension<T, K> {
+    fn drop(&mut self) {
+        keep([&mut self.values]);
+        keep([&mut self.near]);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/unit/extension.rs"]
+mod tests;

@@ -1,0 +1,149 @@
+//! Steps along the deflation direction d beside those along t:
+//!
+//! ```text
+//! t has mean zero over C, as under a prescribed force
+//! gamma = (r - alpha q, d)/(d, w),  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
+//! ```
+//!
+//! Elements that are not in C at the start are taken out of d, and by one product out of w.
+
+use super::deflation::{Deflation, Last};
+use super::deflation_passes::{Change, Restrict, Subtract};
+use super::formulas::{Moved, Residual, StepSums};
+use super::scaling::Scaling;
+use super::sums::Step;
+use super::vectors::Iteration;
+use super::Window;
+use crate::contact::State;
+use crate::error::Result;
+use crate::operator::fft::Real;
+use crate::sums::Sums;
+
+/// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
+const CARRIES: f64 = 0.5;
+/// A first step along d that changes e by less than this part of the residual waits for the next.
+const WORTHWHILE: f64 = 0.1;
+/// A change of less than this part of the pressures is their rounding.
+const LEAST: f64 = 1e-6;
+
+impl<T: Real> Iteration<T> {
+    /// Takes the change from the last solution, if there is one, to `state`, the part of a grid of `mx` columns in the window; none if it
+    /// carries no force.
+    pub fn deflate_by_change(
+        &mut self,
+        state: &State,
+        last: Option<Last<'_>>,
+        (window, mx): (&Window, usize),
+        units: &Scaling,
+    ) -> Result<()> {
+        self.deflation.forget();
+        let Some(last) = last else { return Ok(()) };
+        self.deflation.reserve(state.p.len())?;
+        self.deflation.is_uniform = false;
+        let Deflation { d, w, .. } = &mut self.deflation;
+        let mut sums = Sums::new();
+        let width = window.x.len();
+        let rows = d.chunks_exact_mut(width).zip(w.chunks_exact_mut(width)).zip(window.y.clone()).enumerate();
+        for (row, ((d, w), y)) in rows {
+            let (here, whole) = (row * width..(row + 1) * width, y * mx + window.x.start..y * mx + window.x.end);
+            pulp::Arch::new().dispatch(Change {
+                p: (&state.p[here.clone()], &last.p[whole.clone()], units.pressure()),
+                u: (&state.u[here], &last.u[whole], units.length),
+                d,
+                w,
+                sums: &mut sums,
+            });
+        }
+        let [sum, absolute, all, measures @ ..] = sums.values();
+        if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
+            self.deflation.take_measures(measures);
+        }
+        Ok(())
+    }
+
+    /// d becomes the change on C alone; z loses what it held. Returns the products that this takes.
+    pub(super) fn restrict_deflation(&mut self, state: &State) -> u64 {
+        let is_there = self.deflation.is_there();
+        let (Deflation { d, .. }, z) = (&mut self.deflation, &mut self.z);
+        if !is_there || !pulp::Arch::new().dispatch(Restrict { d, z, contact: &state.contact }) {
+            return 0;
+        }
+        self.operator.apply_in_place(&mut self.z, &mut self.workspace);
+        let (Deflation { d, w, .. }, z) = (&mut self.deflation, &self.z);
+        let measures = pulp::Arch::new().dispatch(Subtract { d, w, z });
+        self.deflation.take_measures(measures);
+        1
+    }
+
+    /// The sums of a step, and those of gamma.
+    pub(super) fn step_beside_deflation(&mut self, state: &State) -> Step {
+        let (State { h, u, p, .. }, formula) = (state, StepSums { approach: state.approach });
+        let arrays = [&self.t[..], &self.q, &self.deflation.d];
+        let [rt, tq, tt, t1, pp, rd, qd] = self.segments.sum(
+            &state.contact,
+            #[inline(always)]
+            |block| block.sum([h, u, p], arrays, formula),
+        );
+        Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
+    }
+
+    /// gamma beside a step of length alpha; 0 where no change is known.
+    pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
+        let gamma = (step.rd - alpha * step.qd) / self.deflation.energy;
+        if self.deflation.is_there() && gamma.is_finite() {
+            gamma
+        } else {
+            0.0
+        }
+    }
+
+    /// After a step of length gamma: u moved along w, of which elements that left d before are a part; for them a correction is deferred. Those that have just left
+    /// C leave d.
+    pub(super) fn leave_deflation(&mut self, gamma: f64) {
+        if !self.deflation.is_there() {
+            return;
+        }
+        let Deflation { d, outside, .. } = &mut self.deflation;
+        if gamma != 0.0 && !outside.is_empty() {
+            self.truncation.extend(outside.iter().map(|&(i, d)| (i, -gamma * d)));
+        }
+        for &(i, _) in self.truncation.gains() {
+            if d[i] != T::zero() {
+                outside.push((i, d[i].to_double()));
+                d[i] = T::zero();
+            }
+        }
+    }
+
+    /// Before the first step: p and u move along d to the least energy, if that is worth a pass over u.
+    pub(super) fn step_along_deflation(&mut self, state: &mut State) {
+        if !self.deflation.is_there() {
+            return;
+        }
+        let Deflation { d, w, energy, size, .. } = &self.deflation;
+        let (State { h, u, .. }, formula) = (&*state, Residual { approach: state.approach });
+        let [rd, rr] = self.segments.sum(
+            &state.contact,
+            #[inline(always)]
+            |block| block.sum([h, u], [&d[..]], formula),
+        );
+        let gamma = rd / energy;
+        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+            return;
+        }
+        let State { p, contact, .. } = state;
+        let [] = self.segments.sum_changing(
+            contact,
+            p,
+            #[inline(always)]
+            |block, p| {
+                block.change(p, [], [&d[..], d], Moved { alpha: gamma, gamma: 0.0 });
+                []
+            },
+        );
+        let mx = state.grid.mx;
+        self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
+            u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());
+        });
+    }
+}

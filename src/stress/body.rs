@@ -1,0 +1,49 @@
+//! The half-space whose stresses are computed, and its units.
+
+use crate::error::{require, Result};
+use crate::grid::Grid;
+
+/// Names of the components, in their order.
+pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
+
+/// Which loads there are: pressure, traction in x, traction in y.
+pub type Loaded = [bool; 3];
+
+/// A half-space with loads on the elements of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// The elements.
+    pub grid: Grid,
+    /// nu, in (-1, 0.5].
+    pub poisson_ratio: f64,
+    /// Whether all repeats itself after a grid's length in x and in y. Lateral strains have mean zero.
+    pub periodic: bool,
+}
+
+impl Body {
+    pub(super) fn check(&self) -> Result<()> {
+        self.grid.check()?;
+        let nu = self.poisson_ratio;
+        require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
+    }
+
+    /// The unit of lengths inside: the longer side of an element. Kernels depend on ratios of lengths only.
+    pub(super) fn unit(&self) -> f64 {
+        self.grid.dx.max(self.grid.dy)
+    }
+
+    /// An element's sides in that unit.
+    pub(super) fn element(&self) -> (f64, f64) {
+        (self.grid.dx / self.unit(), self.grid.dy / self.unit())
+    }
+
+    /// A length in that unit. Where its square would vanish it is 0, and where that would overflow it is cut off: stresses are 0 there.
+    pub(super) fn in_units(&self, length: f64) -> f64 {
+        let ratio = (length / self.unit()).clamp(-1e150, 1e150);
+        if ratio.abs() < 1e-100 {
+            0.0
+        } else {
+            ratio
+        }
+    }
+}
