@@ -61,7 +61,8 @@ impl contact_normal_friction {
                 "friction->row_tables and friction->influence_cross are both given; unlike bodies are not solved with tables per row"
                     .into(),
             )),
-            (Some(_), Some(_)) => Err(Refusal::invalid(
+            (Some(_), Some(_)) => Err(Refusal::new(
+                CONTACT_NORMAL_UNSUPPORTED,
                 "friction->influence and friction->row_tables are both given; only one of them can be".into(),
             )),
         }

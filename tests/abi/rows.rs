@@ -175,7 +175,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->row_tables[1]->struct_size", "0"], SIZE, |c| { c.use_tangential_row_tables(); c.tangential_rows[1].struct_size = 0; }),
     (&["friction->row_tables", "along x"], UNSUPPORTED, |c| { let f = c.use_tangential_row_tables(); (f.motion, f.rolling_direction) = (1, 0.5); }),
     (&["friction->row_tables[0]", "symmetric"], UNSUPPORTED, |c| { c.use_tangential_row_tables(); c.tables[2 * CX + CX + 1] *= 1.1; }),
-    (&["friction->influence", "friction->row_tables"], INVALID, |c| { let tables = c.use_tangential_tables().influence; c.use_tangential_row_tables().influence = tables; }),
+    (&["friction->influence", "friction->row_tables"], UNSUPPORTED, |c| { let tables = c.use_tangential_tables().influence; c.use_tangential_row_tables().influence = tables; }),
     (&["friction->row_tables", "friction->influence_cross"], UNSUPPORTED, |c| { let tables = c.use_tangential_tables().influence; let f = c.use_tangential_row_tables(); (f.influence, f.influence_cross) = ([std::ptr::null(); 3], [tables[0], tables[1]]); }),
     (&["friction", "period"], UNSUPPORTED, |c| { c.use_friction(); c.use_period(1, 0); }),
     (&["friction", "patches"], UNSUPPORTED, |c| { c.use_friction(); c.use_patches(HALF); }),
