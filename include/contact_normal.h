@@ -756,6 +756,14 @@ typedef struct contact_normal_friction {
    inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
    */
   const double *creepage_weight[2];
+  /*
+   Own tangential influence coefficients that differ per loaded row, instead of `influence`: xx, yy and xy, the displacement in x by a
+   unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
+   operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
+   -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
+   elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
+   */
+  const struct contact_normal_row_tables *row_tables[3];
 } contact_normal_friction;
 
 /*
@@ -1822,8 +1830,8 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
 
 /*
  From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
- its `influence` and `influence_cross`, nothing else of it is used. NULL: those stay; one of the two must be given. Only for a solver that was set
- up with `scene->influence`, with `friction->influence`, and with `influence_cross` or without. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
+ its `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: those stay; one of the two must be given. Only for
+ a solver that was set up with `scene->influence`, with `friction->influence` or `row_tables`, and with `influence_cross` or without. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
  `continues` may start from. What is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
@@ -2057,7 +2065,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);

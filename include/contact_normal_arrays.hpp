@@ -149,6 +149,17 @@ contact_normal_influence table(const char *name, std::int32_t cx, std::int32_t c
     return made;
 }
 
+/// Coefficients that differ per loaded row, rows * rows * 2 cx values, as the C ABI takes them.
+template <class Values>
+contact_normal_row_tables row_tables(const char *name, std::int32_t cx, std::int32_t rows, const Values &coefficients, double scale)
+{
+    contact_normal_row_tables made;
+    contact_normal_row_tables_init(&made);
+    made.cx = cx, made.rows = rows, made.scale = scale;
+    made.coefficients = sized(name, coefficients, 2 * count(cx) * count(rows) * count(rows));
+    return made;
+}
+
 } // namespace detail
 
 } // namespace contact_normal

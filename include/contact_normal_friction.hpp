@@ -108,6 +108,15 @@ public:
         tables_ = std::move(own);
         return *this;
     }
+    /// Own tangential coefficients that differ per loaded row, rows * rows * 2 cx values each, instead of `influence`.
+    friction &row_tables(std::int32_t cx, std::int32_t rows, borrowed<double> xx, borrowed<double> yy, borrowed<double> xy, double scale = 1.0)
+    {
+        auto own = std::make_shared<std::array<contact_normal_row_tables, 3>>();
+        const std::array<const borrowed<double> *, 3> given{&xx, &yy, &xy};
+        for (std::size_t k = 0; k < 3; k++) (*own)[k] = detail::row_tables("friction's row_tables", cx, rows, *given[k], scale);
+        row_tables_ = std::move(own);
+        return *this;
+    }
     /// Derivatives of forces and moment, in `report.tangential.sensitivities`.
     friction &sensitivities()
     {
@@ -131,7 +140,7 @@ private:
         detail::refuse("direction is " + std::to_string(direction) + "; it must be 0 for x or 1 for y");
     }
 
-    /// That of the C ABI, for a grid of so many elements; valid as long as `tables_` and the arrays.
+    /// That of the C ABI, for a grid of so many elements; valid as long as the tables and the arrays.
     contact_normal_friction named(std::size_t elements) const
     {
         contact_normal_friction named = friction_;
@@ -158,6 +167,7 @@ private:
     {
         for (std::size_t k = 0; k < 2; k++) named.influence_cross[k] = tables_ && tables_->has_cross ? &tables_->cross[k] : nullptr;
         for (std::size_t k = 0; k < 3; k++) named.influence[k] = tables_ ? &tables_->main[k] : nullptr;
+        for (std::size_t k = 0; k < 3; k++) named.row_tables[k] = row_tables_ ? &(*row_tables_)[k] : nullptr;
         return named;
     }
 
@@ -166,6 +176,7 @@ private:
     std::optional<std::array<borrowed<double>, 2>> previous_, slip_, initial_, weights_;
     // Shared by copies, and never changed.
     std::shared_ptr<const tables> tables_;
+    std::shared_ptr<const std::array<contact_normal_row_tables, 3>> row_tables_;
 };
 
 } // namespace contact_normal

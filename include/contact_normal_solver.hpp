@@ -144,7 +144,7 @@ public:
         const contact_normal_influence own = detail::table("influence", cx, cy, coefficients, scale);
         check(contact_normal_solver_set_influence(handle_.get(), &own, nullptr));
     }
-    /// And these tangential ones: those of `friction::influence` and `influence_cross`.
+    /// And these tangential ones: those of `friction::influence` and `influence_cross`, or of `row_tables`.
     void set_influence(const friction &of)
     {
         const contact_normal_friction own = of.tables_alone();

@@ -19,7 +19,7 @@ _NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
 _PAIRS = ("creepage", "spin_centre")
 _FLAGS = ("continues", "sensitivities")
 _FIELDS = ("previous_traction", "rigid_slip", "initial_traction", "creepage_weight")
-_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", *_NUMBERS, *_FIELDS)
+_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS)
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
@@ -52,6 +52,7 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
             kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
             getattr(effect, name)[k] = pointer(kept[-1])
     kept += _influence(effect, given)
+    kept += _row_tables(effect, given)
     is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
     return effect, kept, _IS_LENGTH if is_length else ""
 
@@ -87,6 +88,26 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
         effect.influence[k] = ctypes.pointer(struct)
     for k, struct in enumerate(structs[3:]):
         effect.influence_cross[k] = ctypes.pointer(struct)
+    return [*kept, *structs]
+
+
+def _row_tables(effect: Any, given: Mapping[str, Any]) -> list[Any]:
+    """Own coefficients that differ per loaded row."""
+    tables = given.get("row_tables")
+    if tables is None:
+        return []
+    if len(tables) not in (3, 4):
+        raise ValueError(f"friction['row_tables'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    kept = [doubles(f"friction['row_tables'][{k}]", tables[k], dimensions="(my, my, 2 cx)") for k in range(3)]
+    shape = kept[0].shape
+    if any(table.shape != shape for table in kept) or shape[0] != shape[1] or shape[2] % 2:
+        raise ValueError(f"friction['row_tables'] has shapes {[table.shape for table in kept]}; all must be (my, my, 2 cx)")
+    structs = [initialised("row_tables") for _ in kept]
+    for k, (struct, table) in enumerate(zip(structs, kept)):
+        struct.rows, struct.cx, struct.coefficients = shape[0], shape[2] // 2, pointer(table)
+        if len(tables) == 4:
+            struct.scale = number("friction['row_tables'][3], the scale,", tables[3])
+        effect.row_tables[k] = ctypes.pointer(struct)
     return [*kept, *structs]
 
 

@@ -88,7 +88,8 @@ def solve(
         (my, mx); "compliance" of a thin elastic layer between the bodies (one, or (my, mx));
         "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
         by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
-        coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz).
+        coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
+        "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).
         docs/friction.md has the signs.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is

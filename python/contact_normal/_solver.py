@@ -53,7 +53,7 @@ class Solver:
     shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
     friction : mapping, optional
-        Its "influence" and "influence_cross": the tangential coefficients of later solves, whose friction need not have them again.
+        Its "influence" and "influence_cross", or its "row_tables": the tangential coefficients of later solves, whose friction need not have them again.
 
     Examples
     --------
@@ -285,7 +285,7 @@ class Solver:
         influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
             As for `solve`.
         friction : mapping, optional
-            Its "influence" and "influence_cross", as for `solve`.
+            Its "influence" and "influence_cross", or its "row_tables", as for `solve`.
         """
         effect, table = (None, None) if influence is None else influence_of(influence)
         tables, kept, _ = (None, None, "") if friction is None else friction_of(friction, self._shape)

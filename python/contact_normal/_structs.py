@@ -108,6 +108,7 @@ class Friction(ctypes.Structure):
         ("compliance", c_double),
         ("compliances", POINTER(c_double)),
         ("creepage_weight", POINTER(c_double) * 2),
+        ("row_tables", POINTER(RowTables) * 3),
     ]
 
 

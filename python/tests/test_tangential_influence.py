@@ -62,6 +62,26 @@ class TangentialInfluence(unittest.TestCase):
         # What residuals of 1e-6 leave of the forces.
         np.testing.assert_allclose(found.force, known.force, atol=1e-5 * np.abs(known.force).max())
 
+    def test_tables_per_row_of_a_half_space_give_its_tractions(self):
+        both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
+        rows = np.array([[both[M + row - loaded] for row in range(M)] for loaded in range(M)])
+        friction = {"coefficient": 0.3, "creepage": (-0.004, 0.001)}
+        known = cn.solve(H, D, D, force=0.05, friction=friction, **BODIES)
+        for tables in ((rows, rows, 0 * rows), (4 * rows, 4 * rows, 0 * rows, 0.25)):
+            found = cn.solve(H, D, D, force=0.05, friction={**friction, "row_tables": tables}, **BODIES)
+            self.assertEqual(found.status, cn.OK)
+            # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
+            np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
+        with cn.Solver(H.shape, D, D, friction={"row_tables": (rows, rows, 0 * rows)}, **BODIES) as solver:
+            solver.set_influence(friction={"row_tables": (2 * rows, 2 * rows, 0 * rows)})
+            found = solver.solve(H, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)})
+            # Twice as soft: half of the stiffness.
+            stiff = cn.solve(H, D, D, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)}, **BODIES)
+            self.assertAlmostEqual(found.creepage[0] / stiff.creepage[0], 2, delta=1e-4)
+        for tables, words in (((rows, rows), "2 entries"), ((rows, rows, rows[1:]), "shapes")):
+            with self.assertRaisesRegex(ValueError, words):
+                cn.solve(H, D, D, force=0.05, friction={**friction, "row_tables": tables}, **BODIES)
+
     def test_tables_of_the_wrong_shape_are_refused(self):
         table = np.ones((2 * M, 2 * M))
         for influence, words in (((table, table), "2 entries"), ((table, table, table[1:]), "shapes")):

@@ -312,11 +312,14 @@ impl Effect for Friction<'_> {
         let has_bodies = !others.iter().flatten().any(|other| other.replaces_bodies());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
         if lacks_cross && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
-            return Err(Error::Unsupported(
-                "friction->influence has no coefficients of what couples the normal and the tangential problem of unlike bodies: \
-                 influence_cross is not given"
-                    .into(),
-            ));
+            let by_row = self.influence.is_some_and(|influence| influence.by_row);
+            let (name, rule) = match by_row {
+                true => ("friction->row_tables", "those of tables per row are not solved"),
+                false => ("friction->influence", "influence_cross is not given"),
+            };
+            return Err(Error::Unsupported(format!(
+                "{name} has no coefficients of what couples the normal and the tangential problem of unlike bodies: {rule}"
+            )));
         }
         Ok(())
     }

@@ -24,6 +24,7 @@ mod period;
 mod pressure_limit;
 mod tables;
 mod tangential_influence;
+mod tangential_rows;
 
 pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};

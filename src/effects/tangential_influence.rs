@@ -6,14 +6,17 @@ use crate::grid::Grid;
 use crate::memory::collected;
 
 /// Tangential influence coefficients of the caller's own: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the
-/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both.
+/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both. Or `by_row`: see `tangential_rows.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialInfluence<'a> {
     /// Elements of the grid that they were made for.
     pub cx: usize,
-    /// And in y.
+    /// And in y; of tables per loaded row the number of rows.
     pub cy: usize,
-    /// Axx, Ayy, Axy: displacements in x by tractions in x, in y by those in y, and of one by the other.
+    /// Whether there is a table for each loaded row: `[cy][cy][2 cx]` of the loaded row, the row, and the offset in x.
+    pub by_row: bool,
+    /// Axx, Ayy, Axy: displacements in x by tractions in x, in y by those in y, and of one by the other; of tables per loaded row in x by
+    /// tractions in y.
     pub coefficients: [&'a [f64]; 3],
     /// Of unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
     /// `-(Axz qx + Ayz qy)`.
@@ -36,6 +39,9 @@ struct Symmetry {
 }
 
 const OWN: &str = "xx and yy must be even in x and in y, xy odd in both";
+/// What a number that all tables are multiplied by must be.
+pub(super) const SCALE: &str = "coefficients are scaled by a positive, finite number";
+
 const CROSS: &str = "xz must be odd in x and even in y, yz even in x and odd in y";
 
 /// Of the components xx, yy, xy, xz, yz.
@@ -48,9 +54,18 @@ const SYMMETRIES: [Symmetry; 5] = [
 ];
 
 /// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
-const SYMMETRY: f64 = 1e-7;
+pub(super) const SYMMETRY: f64 = 1e-7;
 
 impl TangentialInfluence<'_> {
+    /// The member of friction that they are given as.
+    pub fn name(&self) -> &'static str {
+        if self.by_row {
+            "friction->row_tables"
+        } else {
+            "friction->influence"
+        }
+    }
+
     /// The coefficients at an offset of the tables.
     pub fn at(&self, kx: i64, ky: i64) -> [f64; 3] {
         let k = (ky + self.cy as i64) as usize * 2 * self.cx + (kx + self.cx as i64) as usize;
@@ -65,8 +80,7 @@ impl TangentialInfluence<'_> {
 
     /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are.
     fn check(&self, grid: &Grid) -> Result<()> {
-        let scale = "coefficients are scaled by a positive, finite number";
-        require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, scale)?;
+        require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, SCALE)?;
         for (name, c, m) in [("cx", self.cx, grid.mx), ("cy", self.cy, grid.my)] {
             if c < m {
                 let rule = format!("the tables must reach the offsets of the grid: {m}");
@@ -129,6 +143,7 @@ impl TangentialInfluence<'_> {
 pub struct KeptInfluence {
     cx: usize,
     cy: usize,
+    by_row: bool,
     coefficients: [Vec<f64>; 3],
     cross: Option<[Vec<f64>; 2]>,
     scale: f64,
@@ -146,6 +161,7 @@ impl KeptInfluence {
         Ok(KeptInfluence {
             cx: of.cx,
             cy: of.cy,
+            by_row: of.by_row,
             coefficients: [copy(xx)?, copy(yy)?, copy(xy)?],
             cross,
             scale: of.scale,
@@ -157,6 +173,7 @@ impl KeptInfluence {
         TangentialInfluence {
             cx: self.cx,
             cy: self.cy,
+            by_row: self.by_row,
             coefficients: self.coefficients.each_ref().map(|values| &values[..]),
             cross: self.cross.as_ref().map(|tables| tables.each_ref().map(|values| &values[..])),
             scale: self.scale,
@@ -167,15 +184,16 @@ impl KeptInfluence {
     pub fn is(&self, other: &TangentialInfluence<'_>) -> bool {
         let kept = self.view();
         let (cx, cy, width) = (self.cx, self.cy, 2 * self.cx);
+        let rows = if self.by_row { 0..cy * cy } else { 1..2 * cy };
         let same = |kept: &[f64], other: &[f64]| {
-            let read = |ky: usize| ky * width + 1..(ky + 1) * width;
-            kept.len() == other.len() && (1..2 * cy).all(|ky| kept[read(ky)] == other[read(ky)])
+            let read = |row: usize| row * width + 1..(row + 1) * width;
+            kept.len() == other.len() && rows.clone().all(|row| kept[read(row)] == other[read(row)])
         };
         let cross = match (&kept.cross, &other.cross) {
             (Some(kept), Some(other)) => kept.iter().zip(other).all(|(kept, other)| same(kept, other)),
             (kept, other) => kept.is_none() && other.is_none(),
         };
-        (cx, cy, self.scale) == (other.cx, other.cy, other.scale)
+        (cx, cy, self.scale, self.by_row) == (other.cx, other.cy, other.scale, other.by_row)
             && kept.coefficients.iter().zip(&other.coefficients).all(|(kept, other)| same(kept, other))
             && cross
     }
@@ -193,12 +211,22 @@ impl Friction<'_> {
         if self.motion != Motion::Shift {
             let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
             let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
+            if influence.by_row && y.abs() > WHOLE {
+                return Err(Error::Unsupported(format!(
+                    "friction->row_tables are given, and a step of rolling goes ({x}, {y}) elements far; it must go along x"
+                )));
+            }
             if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE {
                 return Err(Error::Unsupported(format!(
-                    "friction->influence is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements"
+                    "{} is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements",
+                    influence.name()
                 )));
             }
         }
-        influence.check(grid)
+        if influence.by_row {
+            influence.check_rows(grid)
+        } else {
+            influence.check(grid)
+        }
     }
 }

@@ -1,21 +1,12 @@
 //! `contact_normal_friction`.
 
-use super::arguments::{optional, required, reserved, GivenEffect, Regions};
-use super::influence::contact_normal_influence;
+use super::arguments::{optional, reserved, GivenEffect, Regions};
+use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
-use super::structs::{self, versioned};
+use super::structs::versioned;
 use crate::friction::{EXTERIOR, SLIP, STICK};
 use crate::grid::Grid;
-use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous, TangentialInfluence};
-
-/// The tables of own coefficients: xx, yy, xy, and those of unlike bodies, xz, yz.
-const TABLES: [&str; 5] = [
-    "friction->influence[0]",
-    "friction->influence[1]",
-    "friction->influence[2]",
-    "friction->influence_cross[0]",
-    "friction->influence_cross[1]",
-];
+use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -105,6 +96,12 @@ pub struct contact_normal_friction {
     /// How much of a creepage in x, in y reaches each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. For surfaces that are
     /// inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
     pub creepage_weight: [*const f64; 2],
+    /// Own tangential influence coefficients that differ per loaded row, instead of `influence`: xx, yy and xy, the displacement in x by a
+    /// unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
+    /// operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
+    /// -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
+    /// elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
+    pub row_tables: [*const contact_normal_row_tables; 3],
 }
 
 versioned! { contact_normal_friction, contact_normal_friction_init, 248, spin_offset: 1.0 / 6.0 }
@@ -170,50 +167,6 @@ impl contact_normal_friction {
         })
     }
 
-    /// The friction of the tables, of which nothing else is used.
-    pub(super) fn tables_alone<'a>(&self) -> Result<Friction<'a>, Refusal> {
-        Ok(Friction { influence: self.own_influence()?, ..Friction::new(0.0) })
-    }
-
-    /// The structs of the tables, as the caller's header has them; none if there are no tables.
-    fn tables(&self) -> Result<Option<[Option<contact_normal_influence>; 5]>, Refusal> {
-        let [xx, yy, xy] = self.influence;
-        let [xz, yz] = self.influence_cross;
-        let at = [xx, yy, xy, xz, yz];
-        let mut tables = [None; 5];
-        for (k, table) in tables.iter_mut().enumerate() {
-            // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
-            *table = unsafe { structs::read_optional(at[k], TABLES[k])? };
-        }
-        Ok(tables.iter().any(Option::is_some).then_some(tables))
-    }
-
-    /// The caller's own tangential coefficients.
-    fn own_influence<'a>(&self) -> Result<Option<TangentialInfluence<'a>>, Refusal> {
-        let Some(tables) = self.tables()? else { return Ok(None) };
-        let first = tables[0].ok_or_else(|| Refusal::null(TABLES[0]))?;
-        let (cx, cy, size) = first.size(TABLES[0])?;
-        let table = |k: usize| {
-            let table = tables[k].ok_or_else(|| Refusal::null(TABLES[k]))?;
-            let members = [
-                ("cx", f64::from(table.cx), f64::from(first.cx)),
-                ("cy", f64::from(table.cy), f64::from(first.cy)),
-                ("scale", table.scale, first.scale),
-            ];
-            if let Some((member, value, of_first)) = members.into_iter().find(|(_, value, of_first)| value != of_first)
-            {
-                let rule = format!("it must be {of_first}, as that of {}", TABLES[0]);
-                return Err(Refusal::invalid(format!("{}->{member} is {value}; {rule}", TABLES[k])));
-            }
-            // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
-            unsafe { required(&format!("{}->coefficients", TABLES[k]), table.coefficients, size) }
-        };
-        let coefficients = [table(0)?, table(1)?, table(2)?];
-        let has_cross = tables[3].is_some() || tables[4].is_some();
-        let cross = if has_cross { Some([table(3)?, table(4)?]) } else { None };
-        Ok(Some(TangentialInfluence { cx, cy, coefficients, cross, scale: first.scale }))
-    }
-
     fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
         match self.prescribed[k] {
             CONTACT_NORMAL_PRESCRIBED_CREEPAGE => Ok(Prescribed::Creepage(self.creepage[k])),
@@ -237,16 +190,6 @@ impl GivenEffect for contact_normal_friction {
             regions.input("friction->initial_traction", self.initial_traction[k], n)?;
             regions.input("friction->creepage_weight", self.creepage_weight[k], n)?;
         }
-        let (at, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
-        let first = tables.and_then(|tables| tables[0]);
-        for ((at, table), name) in at.zip(tables.iter().flatten()).zip(TABLES) {
-            let Some(table) = table else { continue };
-            regions.input_struct(at, table)?;
-            // One of another size than the first is refused, and not read.
-            if first.is_some_and(|first| (first.cx, first.cy) == (table.cx, table.cy)) {
-                regions.input(name, table.coefficients, table.size(name)?.2)?;
-            }
-        }
-        Ok(())
+        self.add_tables_to(regions)
     }
 }

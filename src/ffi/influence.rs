@@ -88,9 +88,14 @@ impl contact_normal_row_tables {
 
     /// cx, rows, and the number of values that are read.
     fn size(&self, grid: &Grid) -> Result<(usize, usize, usize), Refusal> {
-        let (cx, rows) = (count("row_tables->cx", self.cx)?, count("row_tables->rows", self.rows)?);
+        self.size_on(Some(grid), "row_tables")
+    }
+
+    /// The same; `name` is what messages call the tables. Without a grid all of them.
+    pub(super) fn size_on(&self, grid: Option<&Grid>, name: &str) -> Result<(usize, usize, usize), Refusal> {
+        let (cx, rows) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->rows"), self.rows)?);
         // What is not that of the grid is refused before it is looked at.
-        let rows_read = if rows == grid.my && cx >= grid.mx { rows } else { 0 };
+        let rows_read = if grid.is_none_or(|grid| rows == grid.my && cx >= grid.mx) { rows } else { 0 };
         let size = rows_read.checked_mul(rows_read).and_then(|n| n.checked_mul(2)).and_then(|n| n.checked_mul(cx));
         let size = size.filter(|n| *n <= isize::MAX as usize / 8).ok_or_else(|| {
             Refusal::invalid(format!("rows * rows * 2 cx is {rows} * {rows} * 2 * {cx}; no row tables are that large"))

@@ -9,7 +9,7 @@ const NOT_ASSOCIATED: i64 = 2;
 const WRONG_SHAPE: i64 = 3;
 
 /// The procedures and their arguments, in the order of include/contact_normal.f90.
-const PROCEDURES: [(&str, &[&str]); 17] = [
+const PROCEDURES: [(&str, &[&str]); 18] = [
     ("set_undeformed_distance", &["scene", "h"]),
     ("set_influence", &["scene", "influence", "cx", "cy", "coefficients", "scale"]),
     ("set_layer", &["scene", "layer", "compliance", "compliances"]),
@@ -70,6 +70,7 @@ const PROCEDURES: [(&str, &[&str]); 17] = [
     ),
     ("set_ledger", &["report", "ledger"]),
     ("solver_solve_batch", &["solver", "scenes", "options", "fields", "reports", "statuses"]),
+    ("set_tangential_row_tables", &["friction", "tables", "cx", "xx", "yy", "xy", "scale"]),
 ];
 
 /// What a mark says, if this is one.
@@ -118,7 +119,7 @@ mod tests {
     fn other_sizes_are_no_marks() {
         let wrong = [
             mark(0, 1, 1),
-            mark(18, 1, 1),
+            mark(19, 1, 1),
             mark(1, 0, 1),
             mark(1, 4, 1),
             mark(1, NOT_ASSOCIATED, 0),

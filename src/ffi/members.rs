@@ -181,6 +181,9 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "compliances", at: offset_of!(contact_normal_friction, compliances), kind: Array },
         Member { name: "creepage_weight[0]", at: offset_of!(contact_normal_friction, creepage_weight), kind: Array },
         Member { name: "creepage_weight[1]", at: offset_of!(contact_normal_friction, creepage_weight) + 8, kind: Array },
+        Member { name: "row_tables[0]", at: offset_of!(contact_normal_friction, row_tables), kind: Structs("contact_normal_row_tables") },
+        Member { name: "row_tables[1]", at: offset_of!(contact_normal_friction, row_tables) + 8, kind: Structs("contact_normal_row_tables") },
+        Member { name: "row_tables[2]", at: offset_of!(contact_normal_friction, row_tables) + 16, kind: Structs("contact_normal_row_tables") },
     ] },
     Struct { name: "contact_normal_scene", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_scene, struct_size), kind: Int64 },

@@ -15,6 +15,7 @@ mod fields;
 mod floating_point;
 mod friction;
 mod friction_results;
+mod friction_tables;
 mod guard;
 mod has;
 mod influence;

@@ -29,6 +29,7 @@ use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::row_tables::RowTables;
 use super::series::{Series, Shape};
 pub use super::tables::Entry;
 use super::tables::Tables;
@@ -79,6 +80,8 @@ pub struct Tangential {
     series: [Series; 2],
     /// The caller's own, in place of these.
     own: Option<Tables>,
+    /// One table per loaded row, of which these are the means.
+    rows: Option<RowTables>,
     /// What a layer between the bodies adds to the coefficient of an element on itself.
     layer: f64,
 }
@@ -102,13 +105,28 @@ impl Tangential {
         };
         let xx = combined(&|a, b| shear * (a + b) - poisson * a);
         let yy = combined(&|a, b| shear * (a + b) - poisson * b);
-        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy], own: None, layer: 0.0 }
+        Tangential { dx, dy, compliance, shape: shape.clone(), series: [xx, yy], own: None, rows: None, layer: 0.0 }
     }
 
     /// The caller's own coefficients, for elements `dx` by `dy`.
     pub fn of_tables(dx: f64, dy: f64, influence: &TangentialInfluence<'_>) -> Result<Tangential> {
         let no_bodies = Compliance { shear: 1.0, poisson: 0.0, unlike: 0.0 };
-        Ok(Tangential { own: Some(Tables::new(influence)?), ..Tangential::new(dx, dy, no_bodies) })
+        let rows = if influence.by_row { Some(RowTables::new(influence)?) } else { None };
+        let own = match &rows {
+            Some(rows) => rows.mean()?,
+            None => Tables::new(influence)?,
+        };
+        Ok(Tangential { own: Some(own), rows, ..Tangential::new(dx, dy, no_bodies) })
+    }
+
+    /// The same for a run of rows of the grid: they matter to tables per loaded row.
+    pub fn of_run(&self, first: usize, rows: usize) -> Tangential {
+        Tangential { rows: self.rows.as_ref().map(|all| all.of_run(first, rows)), ..self.clone() }
+    }
+
+    /// The tables per loaded row.
+    pub fn rows(&self) -> Option<&RowTables> {
+        self.rows.as_ref()
     }
 
     /// The same with a layer of this compliance between the bodies.
@@ -133,7 +151,8 @@ impl Tangential {
             let needed = (m as f64 + by.abs()).round();
             if needed > c as f64 {
                 let rule = format!("the contact area and a step of rolling ask for {needed}");
-                return invalid(format!("friction->influence->{name} is {c}; {rule}"));
+                let tables = if self.rows.is_some() { "row_tables" } else { "influence" };
+                return invalid(format!("friction->{tables}->{name} is {c}; {rule}"));
             }
         }
         Ok(())
@@ -143,8 +162,13 @@ impl Tangential {
     pub fn for_element(&self, dx: f64, dy: f64) -> Result<Tangential> {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Arc::new(Shape::new(dx, dy)) };
-        let own = self.own.as_ref().map(|own| own.coarsened(dx > self.dx, dy > self.dy)).transpose()?;
-        Ok(Tangential { own, layer: self.layer, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
+        let (in_x, in_y) = (dx > self.dx, dy > self.dy);
+        let rows = self.rows.as_ref().map(|rows| rows.coarsened(in_x, in_y)).transpose()?;
+        let own = match (&rows, &self.own) {
+            (Some(rows), _) => Some(rows.mean()?),
+            (None, own) => own.as_ref().map(|own| own.coarsened(in_x, in_y)).transpose()?,
+        };
+        Ok(Tangential { own, rows, layer: self.layer, ..Tangential::of_shape(dx, dy, self.compliance, shape) })
     }
 
     /// The same with lengths in units of `length`, and the unit of displacements by tractions of 1 that makes the coefficients of order 1.
@@ -156,8 +180,9 @@ impl Tangential {
         };
         let compliance = Compliance { shear: shear / stiff, poisson: poisson / stiff, unlike: unlike / stiff };
         let own = self.own.as_ref().map(|own| own.in_units_of(unit));
+        let rows = self.rows.as_ref().map(|rows| rows.in_units_of(unit));
         let scaled = Tangential::of_shape(self.dx / length, self.dy / length, compliance, self.shape.clone());
-        (Tangential { own, layer: self.layer / unit, ..scaled }, unit)
+        (Tangential { own, rows, layer: self.layer / unit, ..scaled }, unit)
     }
 
     /// What the materials make of tractions.

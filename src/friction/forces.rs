@@ -21,6 +21,9 @@ pub struct Forces {
 /// Round-off of the sum of all bounds, relative to it: that of 2^31 of them in any order.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Of an interval in which a minimum lies, whose value then is right to round-off.
+const HALVINGS: u32 = 60;
+
 impl Forces {
     /// None.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
@@ -30,7 +33,7 @@ impl Forces {
         self.only_given(self.sum) == [0.0; 2]
     }
 
-    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that are more than that. Where nothing can be carried
+    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that no tractions within these carry. Where nothing can be carried
     /// a force of 0 is met as it is, and its creepage stays 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
         let area = grid.element_area();
@@ -60,14 +63,20 @@ impl Forces {
         }
         let wanted = forces.sum[0].hypot(forces.sum[1]);
         let along = if wanted > 0.0 { forces.sum.map(|sum| sum / wanted) } else { [1.0, 0.0] };
-        let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));
-        let greatest = in_blocks((0..grid.len()).map(|i| share(i) * bound(i)));
+        let greatest = match friction.weights {
+            Some(weights) if forces.given == [true; 2] && wanted > 0.0 => reach(weights, along, grid.len(), &bound),
+            _ => {
+                let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));
+                in_blocks((0..grid.len()).map(|i| share(i) * bound(i)))
+            }
+        };
         if greatest == 0.0 && forces.sum == [0.0; 2] {
             return Ok(Forces::NONE);
         }
         if !(wanted < greatest * (1.0 - ROUND_OFF)) {
+            let these = if friction.weights.is_some() { "these weights and this direction" } else { "this friction" };
             return Err(Error::Infeasible(format!(
-                "the tangential force is {}; with this friction it must be less than {}",
+                "the tangential force is {}; with {these} it must be less than {}",
                 wanted * area,
                 greatest * area
             )));
@@ -101,6 +110,45 @@ impl Forces {
         let missing = self.only_given([self.sum[0] - sum[0], self.sum[1] - sum[1]]);
         square(missing).sqrt() / sum_of_bounds(problem)
     }
+}
+
+/// The greatest force along a direction t whose part across it is 0, of elements that carry at most `bound(i)` each.
+///
+/// ```text
+/// sum of W q  lies in the convex set  { F: F.d <= h(d) for all d },     h(d) = sum of g |W d|
+/// greatest = min h(t + c n) over c                                      n: across t
+/// ```
+///
+/// h is convex: its slope along c rises from below 0 to above it, and where it is 0 is found by halving.
+fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> f64 {
+    let direction = |c: f64| [along - c * aside, aside + c * along];
+    let length = |i: usize, d: Vector| (x[i] * d[0]).hypot(y[i] * d[1]);
+    let h = |c: f64| in_blocks((0..n).map(|i| bound(i) * length(i, direction(c))));
+    let slope = |c: f64| {
+        let d = direction(c);
+        in_blocks((0..n).map(|i| {
+            let length = length(i, d);
+            let turned = -x[i] * x[i] * d[0] * aside + y[i] * y[i] * d[1] * along;
+            if length > 0.0 {
+                bound(i) * turned / length
+            } else {
+                0.0
+            }
+        }))
+    };
+    // h(c) >= |c| h(n) - h(t), which is above h(0) from here on.
+    let across = in_blocks((0..n).map(|i| bound(i) * length(i, [-aside, along])));
+    let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
+    let (mut low, mut high) = (-most, most);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if slope(middle) > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    h(0.0).min(h(low)).min(h(high))
 }
 
 /// The sum of a field that is 0 outside C, times the weights of creepages.

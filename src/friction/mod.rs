@@ -41,6 +41,8 @@ mod problem;
 mod quadrant;
 mod request;
 mod result;
+mod row_product;
+mod row_tables;
 mod scales;
 mod sensitivity;
 mod series;

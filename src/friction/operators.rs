@@ -4,6 +4,7 @@ use super::coefficients::Tangential;
 use super::excess::Excess;
 use super::plane::Vector;
 use super::quadrant::Quadrant;
+use super::row_product::RowProduct;
 use super::sweep::{Rolling, Sweep};
 use super::toeplitz::Toeplitz;
 use super::unit::unit_of;
@@ -24,6 +25,8 @@ pub struct Operators {
     exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
     fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
+    /// Of tables per loaded row, in place of `exact` and `fast`.
+    rows: Option<RowProduct>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
     pub rolling: Option<(Rolling, Sweep)>,
     /// A layer between the bodies, where it is not uniform.
@@ -48,6 +51,7 @@ impl Operators {
             exact: None,
             fast: None,
             inverse: None,
+            rows: None,
             rolling: None,
             excess: None,
             self_influence: xx.max(yy),
@@ -69,7 +73,13 @@ impl Operators {
     ) -> Result<Operators> {
         let none = Operators::none(quadrant.tangential(), grid, threads);
         let (tangential, threads) = (&none.tangential, &none.threads);
+        let rows = match (tangential.rows(), rolling) {
+            (None, _) => None,
+            (Some(rows), Some(rolling)) => Some(RowProduct::rolling(tangential, rows, grid, rolling.by.0, threads)?),
+            (Some(rows), None) => Some(RowProduct::direct(tangential, rows, grid, threads)?),
+        };
         let (exact, fast) = match single {
+            _ if rows.is_some() => (None, None),
             true => (None, Some(product(quadrant, grid, rolling, threads)?)),
             false => (Some(product(quadrant, grid, rolling, threads)?), None),
         };
@@ -80,6 +90,7 @@ impl Operators {
         Ok(Operators {
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
+            rows,
             rolling,
             self_influence: (xx - there[0]).max(yy - there[1]),
             ..none
@@ -113,9 +124,10 @@ impl Operators {
 
     /// `u = A q` in double precision, or B q; on coarser grids in the precision that there is, for q of the order of `unit`.
     pub fn multiply(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
-        match (&mut self.exact, &mut self.fast) {
-            (Some((operator, workspace)), _) => operator.apply(q, 1.0, u, workspace),
-            (_, Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
+        match (&mut self.rows, &mut self.exact, &mut self.fast) {
+            (Some(rows), ..) => rows.apply(q, 1.0, u),
+            (_, Some((operator, workspace)), _) => operator.apply(q, 1.0, u, workspace),
+            (.., Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
             _ => unreachable!("there is one of them"),
         }
         self.add_excess(q, 1.0, u);
@@ -139,9 +151,10 @@ impl Operators {
 
     /// The same in units of a traction, and of that times [`unit`](Self::unit).
     pub fn multiply_plain<S: Real>(&mut self, q: &[[S; 2]], u: &mut [[S; 2]]) {
-        match (&mut self.exact, &mut self.fast) {
-            (_, Some((operator, workspace))) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
-            (Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+        match (&mut self.rows, &mut self.exact, &mut self.fast) {
+            (Some(rows), ..) => rows.apply(q, 1.0 / self.unit, u),
+            (.., Some((operator, workspace))) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            (_, Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
             _ => unreachable!("there is one of them"),
         }
         self.add_excess(q, 1.0 / self.unit(), u);
@@ -187,7 +200,8 @@ impl Operators {
             operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
         }
         let excess = self.excess.as_ref().map_or(0, Excess::bytes);
-        of(&self.exact) + of(&self.fast) + of(&self.inverse) + excess
+        let rows = self.rows.as_ref().map_or(0, RowProduct::bytes);
+        of(&self.exact) + of(&self.fast) + of(&self.inverse) + rows + excess
     }
 }
 

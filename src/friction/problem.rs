@@ -15,6 +15,7 @@ use super::operators::Operators;
 use super::places::Places;
 use super::plane::{add, clip, square, Vector};
 use super::quadrant::Quadrant;
+use super::row_tables::RowTables;
 use super::sweep::Rolling;
 use super::vectors::{self, BLOCK};
 use crate::error::Result;
@@ -175,9 +176,10 @@ impl Problem {
         self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
-    /// Whether its operators are those of a grid and a step.
-    pub fn suits(&self, grid: &Grid, rolling: Option<Rolling>) -> bool {
-        self.grid == *grid && self.operators.step() == rolling
+    /// Whether its operators are those of a grid, of tables per loaded row from that row on, and of a step.
+    pub fn suits(&self, grid: &Grid, first: Option<usize>, rolling: Option<Rolling>) -> bool {
+        let own = self.operators.tangential.rows().map(RowTables::first);
+        self.grid == *grid && own == first && self.operators.step() == rolling
     }
 
     /// The elements of C.

@@ -264,11 +264,13 @@ impl Solver {
     /// Operators of a window.
     fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
-        if self.has_coarser && self.levels.first().is_some_and(|level| level.problem.suits(&grid, rolling)) {
+        let first = self.scaled.rows().map(|_| window.y.0);
+        if self.has_coarser && self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, rolling)) {
             return Ok(());
         }
         self.levels.clear();
-        self.levels = levels(&self.scaled, grid, rolling, self.single, &self.threads)?;
+        let tangential = self.scaled.of_run(window.y.0, grid.my);
+        self.levels = levels(&tangential, grid, rolling, self.single, &self.threads)?;
         self.has_coarser = true;
         Ok(())
     }
@@ -276,9 +278,11 @@ impl Solver {
     /// What a product by the finest grid alone takes.
     fn set_up_finest(&mut self, window: Window) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
-        if !self.levels.first().is_some_and(|level| level.problem.suits(&grid, None)) {
+        let first = self.scaled.rows().map(|_| window.y.0);
+        if !self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, None)) {
             self.levels.clear();
-            self.levels.push(Level::alone(&self.scaled, grid, self.single, &self.threads)?);
+            let tangential = self.scaled.of_run(window.y.0, grid.my);
+            self.levels.push(Level::alone(&tangential, grid, self.single, &self.threads)?);
             self.has_coarser = false;
         }
         Ok(())

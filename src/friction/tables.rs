@@ -28,7 +28,8 @@ impl Tables {
         Tables::of(influence.cx, influence.cy, |x, y| influence.at(x, y))
     }
 
-    fn of(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
+    /// `at(x, y)` at each offset of the quadrant.
+    pub fn of(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
         let mut values: Vec<Entry> = zeros(cx * cy, "the tangential influence coefficients")?;
         for (k, entry) in values.iter_mut().enumerate() {
             *entry = at((k % cx) as i64, (k / cx) as i64);

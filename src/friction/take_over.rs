@@ -176,8 +176,9 @@ impl Solver {
             Motion::Shift => problem.operators.multiply(&state.q, problem.rms_bound(), &mut state.u),
             Motion::TransientRolling => {
                 let by = friction.elements_rolled(&self.grid);
-                let displaced = displaced(&mut self.displaced, &self.scaled, problem.grid, by, &self.threads)?;
-                displaced.operator.apply(&state.q, 1.0, &mut state.u, &mut displaced.workspace);
+                let tangential = &problem.operators.tangential;
+                let displaced = displaced(&mut self.displaced, tangential, problem.grid, by, &self.threads)?;
+                displaced.apply(&state.q, &mut state.u);
                 if let Some(excess) = &problem.operators.excess {
                     let rolling = Rolling { distance: self.scales.length(friction.distance(&self.grid)), by };
                     excess.subtract_ahead(&state.q, &Sweep::new(&rolling), &mut problem.slip);

@@ -1,5 +1,8 @@
 //! The box around C, on which the operators are, and products between the centres of its elements.
 
+use super::plane::Vector;
+use super::row_product::RowProduct;
+use super::row_tables::RowTables;
 use super::toeplitz::Toeplitz;
 use super::workspace::Workspace;
 use super::Tangential;
@@ -64,14 +67,31 @@ impl Window {
 pub struct Displaced {
     by: (f64, f64),
     grid: Grid,
-    pub operator: Toeplitz<f64>,
-    pub workspace: Workspace<f64>,
+    /// The first row, of tables per loaded row.
+    first: Option<usize>,
+    product: Product,
+}
+
+enum Product {
+    Toeplitz(Box<Toeplitz<f64>>, Workspace<f64>),
+    ByRow(RowProduct),
 }
 
 impl Displaced {
+    /// The displacements.
+    pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
+        match &mut self.product {
+            Product::Toeplitz(operator, workspace) => operator.apply(q, 1.0, u, workspace),
+            Product::ByRow(product) => product.apply(q, 1.0, u),
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.operator.bytes() + self.workspace.bytes()
+        match &self.product {
+            Product::Toeplitz(operator, workspace) => operator.bytes() + workspace.bytes(),
+            Product::ByRow(product) => product.bytes(),
+        }
     }
 }
 
@@ -83,11 +103,19 @@ pub fn displaced<'a>(
     by: (f64, f64),
     threads: &Threads,
 ) -> Result<&'a mut Displaced> {
-    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid) {
+    let (rows, threads) = (tangential.rows(), &threads.suited_to(grid.len()));
+    let first = rows.map(RowTables::first);
+    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid && kept.first == first) {
         *kept = None;
-        let operator = Toeplitz::displaced(tangential, &grid, by, &threads.suited_to(grid.len()))?;
-        let workspace = operator.workspace()?;
-        *kept = Some(Displaced { by, grid, operator, workspace });
+        let product = match rows {
+            Some(rows) => Product::ByRow(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?),
+            None => {
+                let operator = Box::new(Toeplitz::displaced(tangential, &grid, by, threads)?);
+                let workspace = operator.workspace()?;
+                Product::Toeplitz(operator, workspace)
+            }
+        };
+        *kept = Some(Displaced { by, grid, first, product });
     }
     match kept {
         Some(kept) => Ok(kept),

@@ -18,7 +18,8 @@ impl Solver {
     ) -> Result<Cow<'s, Scene<'s>>> {
         let Some(friction) = &scene.friction else { return Ok(Cow::Borrowed(scene)) };
         let bodies = if self.set_up.given { Bodies::same(1.0, 0.0) } else { scene.bodies };
-        let refused = |what: &str| Err(Error::InfluenceChanged(format!("friction->influence {what}")));
+        let name = friction.influence.or(own.map(KeptInfluence::view)).map_or("", |tables| tables.name());
+        let refused = |what: &str| Err(Error::InfluenceChanged(format!("{name} {what}")));
         match (&friction.influence, own) {
             (None, Some(own)) => {
                 let friction = Friction { influence: Some(own.view()), ..*friction };
@@ -42,11 +43,11 @@ impl Solver {
 
     /// Refuses tangential coefficients that this solver cannot use.
     pub fn check_tangential_influence(&self, friction: &Friction<'_>) -> Result<()> {
-        if friction.influence.is_none() {
+        let Some(given) = &friction.influence else {
             return invalid("friction->influence is not given: there is nothing to set".into());
-        }
-        if self.own_tables.is_none() {
-            return invalid("friction->influence is given, but this solver was set up without".into());
+        };
+        if !self.own_tables.as_ref().is_some_and(|own| own.view().by_row == given.by_row) {
+            return invalid(format!("{} is given, but this solver was set up without", given.name()));
         }
         Effect::check(friction, &self.problem.grid)
     }

@@ -58,6 +58,7 @@ pub struct Call {
     pub friction: Box<Grown<contact_normal_friction>>,
     /// Tables of friction.
     pub tangential: Box<[contact_normal_influence; 3]>,
+    pub tangential_rows: Box<[contact_normal_row_tables; 3]>,
     pub cycle: Box<Grown<contact_normal_cycle>>,
     pub options: Box<Grown<contact_normal_options>>,
     pub fields: Box<Grown<contact_normal_fields>>,
@@ -106,6 +107,7 @@ impl Call {
             row_tables: Grown::new(initialised(contact_normal_row_tables_init)),
             friction: Grown::new(initialised(contact_normal_friction_init)),
             tangential: Box::new([contact_normal_influence::default(); 3]),
+            tangential_rows: Box::new([contact_normal_row_tables::default(); 3]),
             cycle: Grown::new(initialised(contact_normal_cycle_init)),
             options: Grown::new(initialised(contact_normal_options_init)),
             fields: Grown::new(initialised(contact_normal_fields_init)),
@@ -190,6 +192,25 @@ impl Call {
         let influence = [0, 1, 2].map(|k: usize| &raw const self.tangential[k]);
         let friction = self.use_friction();
         friction.influence = influence;
+        friction
+    }
+
+    /// Those of a half-space with a table for each loaded row.
+    pub fn use_tangential_row_tables(&mut self) -> &mut contact_normal_friction {
+        let count = MY * MY * 2 * CX;
+        self.tables.clear();
+        for k in 0..MY * MY {
+            let row = (CY + k % MY - k / MY) * 2 * CX;
+            self.tables.extend_from_slice(&self.table[row..row + 2 * CX]);
+        }
+        self.tables.resize(2 * count, 0.0);
+        let (rows, zeros) = (self.tables.as_ptr(), self.tables[count..].as_ptr());
+        for (own, coefficients) in self.tangential_rows.iter_mut().zip([rows, rows, zeros]) {
+            (own.cx, own.rows, own.coefficients) = (CX as i32, MY as i32, coefficients);
+        }
+        let row_tables = [0, 1, 2].map(|k: usize| &raw const self.tangential_rows[k]);
+        let friction = self.use_friction();
+        friction.row_tables = row_tables;
         friction
     }
 

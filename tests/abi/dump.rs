@@ -93,7 +93,9 @@ fn guesses_and_fixed_contact_areas_are_in_the_file() {
 fn every_pointer_of_a_scene_is_in_the_file() {
     let path = folder("every").join("failed");
     let path_text = text(&path);
-    let mut scene = Everything::new("layer pressure_limit coating influence row_tables period patches friction tables");
+    let mut scene = Everything::new(
+        "layer pressure_limit coating influence row_tables period patches friction tables tangential_rows",
+    );
     scene.options.dump = path_text.as_ptr();
     // Effects that do not go together.
     let (status, _) = scene.solve();

@@ -47,22 +47,25 @@ fn set_ups_and_tangential_problems_are_made_again() {
         assert!(status > 0, "{status}: {}", last_error());
         assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
         // With a handle: from the tractions that it found last, and with its tables where the scene leaves them out.
-        let mut scene = Everything::new("friction tables");
-        scene.options.dump = path_text.as_ptr();
-        (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-14);
-        assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
-        assert_eq!(solve(handle, &scene, &mut report), status);
-        scene.friction.influence = [null(); 3];
-        scene.friction.influence_cross = [null(); 2];
-        scene.friction.previous_traction = [null(); 2];
-        scene.friction.continues = 1;
-        scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
-        let again = solve(handle, &scene, &mut report);
-        assert!(again > 0, "{again}: {}", last_error());
-        let force = report.tangential.force;
-        assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
-        let replayed = Dump::read(&std::fs::read(&path).unwrap()).unwrap().replay().unwrap();
-        assert_eq!((replayed.status, replayed.report.tangential.force), (again, force));
+        for effects in ["friction tables", "friction tangential_rows"] {
+            let mut scene = Everything::new(effects);
+            scene.options.dump = path_text.as_ptr();
+            (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-14);
+            assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+            assert_eq!(solve(handle, &scene, &mut report), status);
+            scene.friction.influence = [null(); 3];
+            scene.friction.influence_cross = [null(); 2];
+            scene.friction.row_tables = [null(); 3];
+            scene.friction.previous_traction = [null(); 2];
+            scene.friction.continues = 1;
+            scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+            let again = solve(handle, &scene, &mut report);
+            assert!(again > 0, "{again}: {}", last_error());
+            let force = report.tangential.force;
+            assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
+            let replayed = Dump::read(&std::fs::read(&path).unwrap()).unwrap().replay().unwrap();
+            assert_eq!((replayed.status, replayed.report.tangential.force), (again, force));
+        }
     }
 }
 

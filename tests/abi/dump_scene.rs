@@ -40,6 +40,7 @@ struct Structs {
     period: contact_normal_period,
     patches: contact_normal_patches,
     row_tables: contact_normal_row_tables,
+    tangential_rows: [contact_normal_row_tables; 3],
     coating: [contact_normal_coating; 2],
     cycle: contact_normal_cycle,
 }
@@ -65,7 +66,7 @@ fn half_space() -> Vec<f64> {
 }
 
 impl Everything {
-    /// `effects`: their names as in the scene, and "tables": own tables of friction.
+    /// `effects`: their names as in the scene, and "tables" or "tangential_rows": own tables of friction.
     pub fn new(effects: &str) -> Everything {
         let names = |name: &str| effects.split(' ').any(|named| named == name);
         let h: Box<[f64]> =
@@ -86,8 +87,13 @@ impl Everything {
         friction.compliances = each(1e-9);
         friction.creepage_weight = [each(0.1), each(0.09)];
         let table = half_space();
-        let rows = (0..MY * MY).flat_map(|k| table[(CY + k % MY - k / MY) * 2 * CX..][..2 * CX].to_vec()).collect();
-        (s.row_tables.cx, s.row_tables.rows, s.row_tables.coefficients) = (CX as i32, MY as i32, array(rows));
+        let rows: Vec<f64> =
+            (0..MY * MY).flat_map(|k| table[(CY + k % MY - k / MY) * 2 * CX..][..2 * CX].to_vec()).collect();
+        let none = vec![0.0; rows.len()];
+        for (to, values) in s.tangential_rows.iter_mut().zip([&rows, &rows, &none]) {
+            (to.cx, to.rows, to.coefficients) = (CX as i32, MY as i32, array(values.clone()));
+        }
+        s.row_tables = s.tangential_rows[0];
         let zeros = vec![0.0; table.len()];
         let tables = [&table, &table, &zeros, &zeros, &zeros].map(|table| array(table.clone()));
         for (to, coefficients) in s.tangential.iter_mut().zip(tables) {
@@ -103,6 +109,9 @@ impl Everything {
         if names("tables") {
             friction.influence = [&raw const s.tangential[0], &raw const s.tangential[1], &raw const s.tangential[2]];
             friction.influence_cross = [&raw const s.tangential[3], &raw const s.tangential[4]];
+        }
+        if names("tangential_rows") {
+            friction.row_tables = [0, 1, 2].map(|k: usize| &raw const s.tangential_rows[k]);
         }
         let mut scene = contact_normal_scene { mx: MX as i32, my: MY as i32, dx: 0.5, dy: 0.25, ..Default::default() };
         scene.undeformed_distance = h.as_ptr();

@@ -139,6 +139,11 @@ const LINES: &[(&str, &str, &str)] = &[
         "cn::friction(0.3).influence_cross(h, made());",
         "borrowed<T>::borrowed(C&&)",
     ),
+    (
+        "cn::friction(0.3).row_tables(4, 4, h, h, h);",
+        "cn::friction(0.3).row_tables(4, 4, h, h, made());",
+        "borrowed<T>::borrowed(C&&)",
+    ),
     ("cn::loads on{h, h, h};", "cn::loads on{h, made(), h};", "borrowed<T>::borrowed(C&&)"),
     ("auto named = scene.get();", "auto named = made_scene().get();", "get() const &&"),
     ("auto named = scene.layer(1.0).get();", "auto named = made_scene().layer(1.0).get();", "get() const &&"),

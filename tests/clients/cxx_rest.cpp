@@ -178,6 +178,17 @@ static void frictions()
     expect(thrown_by([&] { cn::friction(0.3).influence_cross(none, none); }, "call influence first") == CONTACT_NORMAL_INVALID_ARGUMENT, "cross tables alone");
     expect(thrown_by([&] { cn::friction(0.3).influence(32, 24, table, h, none); }, "768 values; it must have 3072") == CONTACT_NORMAL_INVALID_ARGUMENT, "a table of another size");
 
+    // The same coefficients, of each pair of rows.
+    std::vector<double> of_rows, no_rows(24 * 24 * 64, 0.0);
+    for (std::size_t k = 0; k < 24 * 24; k++) {
+        const auto row = table.begin() + static_cast<std::ptrdiff_t>((24 + k % 24 - k / 24) * 64);
+        of_rows.insert(of_rows.end(), row, row + 64);
+    }
+    const cn::friction rows = cn::friction(0.3).creepage(0, -1e-4).row_tables(32, 24, of_rows, of_rows, no_rows);
+    const cn::result by_rows = cn::solve(cn::scene(scene).friction(rows));
+    expect(std::abs(by_rows.report.tangential.force[0] / by_tables.report.tangential.force[0] - 1.0) < 1e-4, "tangential tables per row");
+    expect(thrown_by([&] { cn::friction(0.3).row_tables(32, 24, of_rows, h, no_rows); }, "768 values; it must have 36864") == CONTACT_NORMAL_INVALID_ARGUMENT, "tangential row tables of another size");
+
     const std::vector<std::array<double, 3>> entries{{-1e-4, 0.0, 0.0}, {-2e-4, 0.0, 0.0}};
     const cn::friction_table many =
         cn::friction_batch(cn::scene(scene).friction(moved), entries, {}, {}, found.pressure, cn::fields::traction | cn::fields::stick_slip);

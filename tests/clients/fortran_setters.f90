@@ -19,7 +19,7 @@ program fortran_setters
   type(contact_normal_layer), pointer :: no_layer => null()
   type(contact_normal_pressure_limit), target :: limit
   type(contact_normal_influence), target :: influence, tables(-1:3), two_tables(2)
-  type(contact_normal_row_tables), target :: rows
+  type(contact_normal_row_tables), target :: rows, two_rows(2), three_rows(-2:0)
   type(contact_normal_patches), target :: patches
   type(contact_normal_ledger_row), target :: ledger(0:7)
   type(contact_normal_ledger_row), pointer, contiguous :: no_ledger(:) => null()
@@ -72,6 +72,12 @@ program fortran_setters
   call contact_normal_set_friction(scene, friction, 0.3_dp)
   call contact_normal_set_tangential_influence(friction, tables, even, odd, even)
   call refused("set_tangential_influence: yy has another shape")
+  call contact_normal_set_friction(scene, friction, 0.3_dp)
+  call contact_normal_set_tangential_row_tables(friction, two_rows, M, cube, cube, cube)
+  call refused("set_tangential_row_tables: tables has another shape")
+  call contact_normal_set_friction(scene, friction, 0.3_dp)
+  call contact_normal_set_tangential_row_tables(friction, three_rows, M, nothing_3, cube, cube)
+  call refused("set_tangential_row_tables: xx is not associated")
 
   ! Of the others that a call takes.
   call contact_normal_set_fields(fields, pressure=p, displacement=nothing)
@@ -174,7 +180,31 @@ contains
     call hold(solved() == CONTACT_NORMAL_OK, "tables with bounds of their own")
     call hold(tables(-1)%cx == M .and. tables(1)%cx == M, "the first three of them")
     call begin()
+    call contact_normal_set_friction(scene, friction, 0.3_dp)
+    friction%creepage(1) = 1e-3_dp
+    call contact_normal_set_tangential_row_tables(friction, three_rows, M, even_rows(), even_rows(), zeros_of_rows())
+    call hold(solved() == CONTACT_NORMAL_OK, "tables per row")
+    call hold(three_rows(-2)%rows == M .and. three_rows(0)%cx == M, "three of them")
+    call begin()
   end subroutine
+
+  function even_rows() result(rows_of_even)
+    real(dp), pointer, contiguous :: rows_of_even(:, :, :)
+    real(dp), target, save :: kept(2*M, M, M)
+    integer :: row, loaded
+    do loaded = 1, M
+      do row = 1, M
+        kept(:, row, loaded) = even(:, M + 1 + row - loaded)
+      end do
+    end do
+    rows_of_even => kept
+  end function
+
+  function zeros_of_rows() result(zeros)
+    real(dp), pointer, contiguous :: zeros(:, :, :)
+    real(dp), target, save :: kept(2*M, M, M) = 0
+    zeros => kept
+  end function
 
   function zeros_of_a_table() result(zeros)
     real(dp), pointer, contiguous :: zeros(:, :)

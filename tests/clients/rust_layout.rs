@@ -67,6 +67,7 @@ pub fn layout() -> Vec<(&'static str, usize)> {
         ("contact_normal_friction.compliance", offset_of!(contact_normal_friction, compliance)),
         ("contact_normal_friction.compliances", offset_of!(contact_normal_friction, compliances)),
         ("contact_normal_friction.creepage_weight", offset_of!(contact_normal_friction, creepage_weight)),
+        ("contact_normal_friction.row_tables", offset_of!(contact_normal_friction, row_tables)),
         ("contact_normal_scene", size_of::<contact_normal_scene>()),
         ("contact_normal_scene.struct_size", offset_of!(contact_normal_scene, struct_size)),
         ("contact_normal_scene.mx", offset_of!(contact_normal_scene, mx)),

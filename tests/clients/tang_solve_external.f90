@@ -43,9 +43,61 @@ program tang_solve_external
     if (any(bits([xi(1), eta(1), fx(1), fy(1), err(1)]) /= bits([xi(2), eta(2), fx(2), fy(2), err(2)]))) error stop "numbers"
     if (abs(sum(q(:, :, 1, 2))*DX*DY/fx(2) - 1) > 1e-12_dp) error stop "force"
   end do
+  call one_element_by_its_layer()
+  call one_element_by_its_weights()
   print '(a)', "the same bits"
 
 contains
+
+  ! An element that sticks: (a + layer) q = -xi. The layer: none, one compliance, or one per element.
+  function traction_by(compliance, compliances) result(found)
+    real(dp), intent(in), optional :: compliance, compliances(1, 1)
+    real(dp) :: found, xi, eta, fx, fy, px(1, 1), py(1, 1), sx(1, 1), sy(1, 1), err
+    integer(c_int32_t) :: code(1, 1), status
+    xi = -1e-5_dp
+    eta = 0
+    px = 0
+    py = 0
+    call tang_solve(1, 1, DX, DY, G, NU, one(1.0_dp), one(1e3_dp), 0, 0, xi, eta, 0.0_dp, fx, fy, DX, 0.0_dp, &
+      px, py, code, sx, sy, EPS, 100, err, status, compliance=compliance, compliances=compliances)
+    if (status /= 0 .or. code(1, 1) /= 1) error stop "an element with a layer"
+    found = px(1, 1)
+  end function
+
+  subroutine one_element_by_its_layer()
+    real(dp), parameter :: LAYER = 3e-6_dp, XI = 1e-5_dp
+    real(dp) :: bare
+    bare = traction_by()
+    if (abs(XI/traction_by(LAYER) - XI/bare - LAYER) > 1e-6_dp*LAYER) error stop "the compliance of a layer"
+    if (abs(XI/traction_by(compliances=one(LAYER)) - XI/bare - LAYER) > 1e-6_dp*LAYER) error stop "one compliance per element"
+  end subroutine
+
+  ! The force is the weight times q dx dy and stays as it is; the creepage moves the element by its weight.
+  subroutine one_element_by_its_weights()
+    real(dp) :: xi, eta, fx, fy, px(1, 1), py(1, 1), sx(1, 1), sy(1, 1), err, a
+    integer(c_int32_t) :: code(1, 1), status
+    a = 1e-5_dp/traction_by()
+    xi = 0
+    eta = 0
+    fx = 0.2_dp*DX*DY
+    px = 0
+    py = 0
+    call tang_solve(1, 1, DX, DY, G, NU, one(1.0_dp), one(1.0_dp), 0, 1, xi, eta, 0.0_dp, fx, fy, DX, 0.0_dp, &
+      px, py, code, sx, sy, EPS, 100, err, status, weight_x=one(0.5_dp), weight_y=one(0.3_dp))
+    if (status /= 0) error stop "an element with weights"
+    if (abs(px(1, 1) - 0.4_dp) > 1e-6_dp .or. bits(fx) /= bits(0.2_dp*DX*DY)) error stop "a weighted force"
+    if (abs(xi/(-a*0.4_dp/0.5_dp) - 1) > 1e-6_dp) error stop "a weighted creepage"
+    ! One of the two is not given.
+    call tang_solve(1, 1, DX, DY, G, NU, one(1.0_dp), one(1.0_dp), 0, 1, xi, eta, 0.0_dp, fx, fy, DX, 0.0_dp, &
+      px, py, code, sx, sy, EPS, 100, err, status, weight_x=one(0.5_dp))
+    if (status >= 0) error stop "one of two weights"
+  end subroutine
+
+  function one(value) result(array)
+    real(dp), intent(in) :: value
+    real(dp) :: array(1, 1)
+    array = value
+  end function
 
   elemental function bits(value) result(found)
     use, intrinsic :: iso_c_binding, only: c_int64_t

@@ -15,6 +15,7 @@ mod linear_theory;
 mod onset_of_rolling;
 mod refusals;
 mod rolling;
+mod row_tables;
 mod same_bits;
 #[path = "../../examples/friction/scenes.rs"]
 #[allow(dead_code)]

@@ -165,7 +165,8 @@ fn other_tables_that_are_refused_leave_the_tractions_of_those_before() {
     let (one, other) = (table(0.1), table(0.2));
     let plain = Scene::new(grid, &h, LIKE, Load::Force(0.03));
     fn with<'a>(plain: &Scene<'a>, [xx, yy, xy]: &'a [Vec<f64>; 3], friction: Friction<'a>) -> Scene<'a> {
-        let influence = TangentialInfluence { cx: 16, cy: 16, coefficients: [xx, yy, xy], cross: None, scale: 1.0 };
+        let influence =
+            TangentialInfluence { cx: 16, cy: 16, coefficients: [xx, yy, xy], cross: None, scale: 1.0, by_row: false };
         Scene { friction: Some(Friction { influence: Some(influence), ..friction }), ..plain.clone() }
     }
     let options = Options::default();

@@ -62,12 +62,25 @@ pub fn residual(
     g: &[f64],
     friction: &Friction<'_>,
     before: &[Vector],
-    (report, solution): (&Report, &Solution),
+    found: (&Report, &Solution),
 ) -> f64 {
     let tangential = tangential(grid, nu);
+    let sums = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| dense::apply(&tangential, grid, by, q, u);
+    residual_by(sums, grid, g, friction, before, found)
+}
+
+/// The same with direct sums `sums(by, q, u)` of other coefficients, at places `by` elements from each.
+pub fn residual_by(
+    sums: impl Fn((f64, f64), &[Vector], &mut [Vector]),
+    grid: &Grid,
+    g: &[f64],
+    friction: &Friction<'_>,
+    before: &[Vector],
+    (report, solution): (&Report, &Solution),
+) -> f64 {
     let (n, q) = (grid.len(), &solution.traction);
     let (mut u, mut u_before) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
-    dense::apply(&tangential, grid, (0.0, 0.0), q, &mut u);
+    sums((0.0, 0.0), q, &mut u);
     let distance = friction.distance(grid);
     let (sine, cosine) = friction.rolling_direction.sin_cos();
     let by = match friction.motion {
@@ -76,7 +89,7 @@ pub fn residual(
     };
     let is_steady = friction.motion == Motion::SteadyRolling;
     let before = if is_steady { q } else { before };
-    dense::apply(&tangential, grid, by, before, &mut u_before);
+    sums(by, before, &mut u_before);
     add_layer(grid, friction, (0.0, 0.0), q, &mut u);
     add_layer(grid, friction, by, before, &mut u_before);
     let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);

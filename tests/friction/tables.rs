@@ -41,7 +41,7 @@ fn tables_of(bodies: &Bodies, grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
 
 fn influence<'a>(grid: &Grid, tables: &'a [Vec<f64>; 3], scale: f64) -> TangentialInfluence<'a> {
     let coefficients = [&tables[0][..], &tables[1][..], &tables[2][..]];
-    TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my + BEYOND, coefficients, cross: None, scale }
+    TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my + BEYOND, coefficients, cross: None, scale, by_row: false }
 }
 
 fn pushed() -> Friction<'static> {

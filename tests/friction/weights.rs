@@ -109,3 +109,59 @@ fn forces_that_weights_cannot_carry_are_refused() {
     let (end, creepage) = solved(0.0, 0.3 * most).unwrap();
     assert!(end == Outcome::Converged && creepage[0].abs() < 1e-15 && creepage[1] < -0.1, "{end:?} {creepage:?}");
 }
+
+/// The greatest part of a force that elements carry, by tractions that go with 20000 directions of creepages: each of them carries a point of
+/// the border of what can be carried.
+fn reach(force: [f64; 2], bound: &[f64], weights: &[Vec<f64>; 2], area: f64) -> f64 {
+    let part = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / 20000.0;
+        let d = [angle.cos(), angle.sin()];
+        let length: f64 = (0..bound.len()).map(|i| bound[i] * (weights[0][i] * d[0]).hypot(weights[1][i] * d[1])).sum();
+        let along = force[0] * d[0] + force[1] * d[1];
+        if along > 0.0 {
+            length * area / along
+        } else {
+            f64::INFINITY
+        }
+    };
+    (0..20000).map(part).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn what_can_be_carried_is_solved_and_what_cannot_be_is_refused() {
+    let mut random = 1u64;
+    let mut next = || {
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (random >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for (mx, my) in [(1, 1), (1, 2), (2, 1), (2, 2), (3, 2), (4, 3)] {
+        for trial in 0..12 {
+            let grid = Grid::new(mx, my, 1.0, 0.7).unwrap();
+            let bound: Vec<f64> = (0..grid.len()).map(|_| 0.2 + next()).collect();
+            let sign = if trial % 3 == 0 { -1.0 } else { 1.0 };
+            let weights = [0, 1].map(|_| {
+                (0..grid.len())
+                    .map(|_| (1.0 - 0.95 * next()) * if next() < 0.2 { sign } else { 1.0 })
+                    .collect::<Vec<f64>>()
+            });
+            let views = weights.each_ref().map(|weights| &weights[..]);
+            let angle = std::f64::consts::TAU * next();
+            let along = [angle.cos(), angle.sin()];
+            let most = reach(along, &bound, &weights, grid.element_area());
+            for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
+                for (part, can_be) in [(0.5, true), (0.9, true), (0.98, true), (1.0 + 1e-6, false), (1.1, false)] {
+                    let prescribed = along.map(|along| Prescribed::Force(part * most * along));
+                    let friction = Friction { motion, prescribed, weights: Some(views), ..Friction::new(1.0) };
+                    let request = Request::new(&bound, &friction, 1e-6);
+                    let mut solver = solver(&grid, 0.3);
+                    let found = solver.solve(&request, &mut |_, _| true);
+                    let what = format!("{mx} x {my}, trial {trial}, {motion:?}, {part} of {most}: {found:?}");
+                    match found {
+                        Ok((end, _)) => assert!(can_be && end == Outcome::Converged, "{what}"),
+                        Err(error) => assert!(!can_be && matches!(error, Error::Infeasible(_)), "{what}"),
+                    }
+                }
+            }
+        }
+    }
+}

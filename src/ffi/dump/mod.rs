@@ -18,7 +18,7 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use super::arguments::Regions;
 use super::guard::refusal_of_panic;
-use super::influence::contact_normal_influence;
+use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{
     contact_normal_status, last_error_text, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
@@ -40,6 +40,10 @@ const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xz",
     "handle.tangential_yz",
 ];
+
+/// And those of tables per loaded row.
+const TANGENTIAL_ROW_TABLES: [&str; 3] =
+    ["handle.tangential_rows_xx", "handle.tangential_rows_yy", "handle.tangential_rows_xy"];
 
 /// An argument of a call.
 #[derive(Clone, Copy)]
@@ -185,8 +189,30 @@ impl<'a> Recording<'a> {
 }
 
 impl Image {
+    /// The tangential coefficients of a handle, one table per loaded row.
+    fn add_row_tables(&mut self, tables: &TangentialInfluence<'_>) {
+        let structs = tables.coefficients.map(|values| contact_normal_row_tables {
+            cx: tables.cx as i32,
+            rows: tables.cy as i32,
+            coefficients: values.as_ptr(),
+            scale: tables.scale,
+            ..Default::default()
+        });
+        let mut regions = Regions::default();
+        for (table, values) in structs.iter().zip(tables.coefficients) {
+            let name = "the tangential coefficients of the handle";
+            self.lacks_memory |= regions.input(name, table.coefficients, values.len()).is_err();
+        }
+        let named = [0, 1, 2].map(|k| (TANGENTIAL_ROW_TABLES[k], (&raw const structs[k]).given()));
+        // SAFETY: structs of this function, and arrays of their sizes.
+        unsafe { self.add(&named, &regions) };
+    }
+
     /// The tangential coefficients of a handle.
     fn add_tables(&mut self, tables: &TangentialInfluence<'_>) {
+        if tables.by_row {
+            return self.add_row_tables(tables);
+        }
         let values = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten());
         let structs: Vec<_> = values
             .map(|values| contact_normal_influence {

@@ -5,7 +5,7 @@ use std::ptr::null_mut;
 
 use libc::c_void;
 
-use super::{Dump, TANGENTIAL_TABLES};
+use super::{Dump, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
 use crate::ffi::arguments::within;
 use crate::ffi::*;
 
@@ -204,6 +204,12 @@ impl Dump {
                 if !table.is_null() {
                     let to = if k < 3 { &mut friction.influence[k] } else { &mut friction.influence_cross[k - 3] };
                     *to = table;
+                }
+            }
+            for (to, name) in friction.row_tables.iter_mut().zip(TANGENTIAL_ROW_TABLES) {
+                let tables = self.pointer::<contact_normal_row_tables>(name).unwrap_or(null_mut());
+                if !tables.is_null() {
+                    *to = tables;
                 }
             }
         }

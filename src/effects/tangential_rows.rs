@@ -1,0 +1,90 @@
+//! Tangential influence coefficients of the caller's own, one table per loaded row: what they must be.
+//!
+//! ```text
+//! u_x(ix, iy) = sum over jy and jx of  xx_jy(iy, k) qx(jx, jy) + xy_jy(iy, k) qy(jx, jy)          k = ix - jx
+//! u_y(ix, iy) =                        yx_jy(iy, k) qx(jx, jy) + yy_jy(iy, k) qy(jx, jy)
+//!
+//! xx_jy(iy, k) = xx_iy(jy, -k),   yy alike,   yx_jy(iy, k) = xy_iy(jy, -k)           the operator is symmetric as a whole
+//! ```
+
+use super::tangential_influence::{TangentialInfluence, SCALE, SYMMETRY};
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+
+/// Of the components xx, yy, xy.
+const NAMES: [&str; 3] =
+    ["friction->row_tables[0] (xx)", "friction->row_tables[1] (yy)", "friction->row_tables[2] (xy)"];
+
+impl TangentialInfluence<'_> {
+    /// `xx, yy, xy, yx` of a loaded row jy and a row iy at an offset in x, `|kx| < cx`.
+    pub fn of_rows(&self, jy: usize, iy: usize, kx: i64) -> [f64; 4] {
+        let at = |jy: usize, iy: usize, kx: i64| (jy * self.cy + iy) * 2 * self.cx + (kx + self.cx as i64) as usize;
+        let [xx, yy, xy] = self.coefficients.map(|values| self.scale * values[at(jy, iy, kx)]);
+        [xx, yy, xy, self.scale * self.coefficients[2][at(iy, jy, -kx)]]
+    }
+
+    /// Refuses tables per loaded row that are not those of a grid, and operators that are not symmetric.
+    pub(super) fn check_rows(&self, grid: &Grid) -> Result<()> {
+        let TangentialInfluence { cx, cy: rows, scale, .. } = *self;
+        require(scale > 0.0 && scale.is_finite(), "friction->row_tables->scale", scale, SCALE)?;
+        if cx < grid.mx {
+            let rule = format!("the tables must reach the offsets of the grid: {}", grid.mx);
+            return invalid(format!("friction->row_tables->cx is {cx}; {rule}"));
+        }
+        if rows != grid.my {
+            let rule = format!("there must be a table for each row of the grid: {}", grid.my);
+            return invalid(format!("friction->row_tables->rows is {rows}; {rule}"));
+        }
+        let expected = rows.checked_mul(rows).and_then(|n| n.checked_mul(2)).and_then(|n| n.checked_mul(cx));
+        for (values, name) in self.coefficients.iter().zip(NAMES) {
+            if expected != Some(values.len()) {
+                return invalid(format!("{name} has {} values; it must have rows by rows by 2 cx", values.len()));
+            }
+        }
+        let largest = self.check_finite_and_own()?;
+        (0..rows).try_for_each(|jy| (0..=jy).try_for_each(|iy| self.check_pair((jy, iy), largest)))
+    }
+
+    /// Refuses coefficients that are not finite, and tractions that do not displace their own element along. Returns the largest
+    /// coefficient of an element on itself.
+    fn check_finite_and_own(&self) -> Result<f64> {
+        let (rows, width, mut largest) = (self.cy, 2 * self.cx, 0.0_f64);
+        for (component, (values, name)) in self.coefficients.iter().zip(NAMES).enumerate() {
+            for (k, row) in values.chunks_exact(width).enumerate() {
+                let (jy, iy) = (k / rows, k % rows);
+                let place =
+                    |kx: usize| format!("{name} of rows (jy {jy}, iy {iy}) at offset {}", kx as i64 - self.cx as i64);
+                // Column -cx is never read.
+                if let Some(kx) = (1..width).find(|&kx| !(self.scale * row[kx]).is_finite()) {
+                    let rule = "coefficients must be finite";
+                    return Err(Error::NotFinite(format!("{} is {}; {rule}", place(kx), self.scale * row[kx])));
+                }
+                if component < 2 && jy == iy {
+                    let own = self.scale * row[self.cx];
+                    if !(own > 0.0) {
+                        let rule = "a traction must displace its own element along";
+                        return Err(Error::NotPositiveDefinite(format!("{} is {own}; {rule}", place(self.cx))));
+                    }
+                    largest = largest.max(own);
+                }
+            }
+        }
+        Ok(largest)
+    }
+
+    /// The tables of two rows on each other, which differ by round-off alone.
+    fn check_pair(&self, (jy, iy): (usize, usize), largest: f64) -> Result<()> {
+        for kx in 1 - self.cx as i64..self.cx as i64 {
+            let (one, other) = (self.of_rows(jy, iy, kx), self.of_rows(iy, jy, -kx));
+            let is_off = |component: &usize| !((one[*component] - other[*component]).abs() <= SYMMETRY * largest);
+            if let Some(component) = (0..2).find(is_off) {
+                let (a, b) = (one[component], other[component]);
+                let places =
+                    format!("of rows (jy {jy}, iy {iy}) at offset {kx} and {b} of rows (jy {iy}, iy {jy}) at {}", -kx);
+                let rule = "the operator must be symmetric";
+                return Err(Error::Unsupported(format!("{} is {a} {places}; {rule}", NAMES[component])));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,132 @@
+//! The tables of own tangential coefficients in `contact_normal_friction`.
+
+use super::arguments::{required, Regions};
+use super::friction::contact_normal_friction;
+use super::influence::{contact_normal_influence, contact_normal_row_tables};
+use super::status::{Refusal, CONTACT_NORMAL_UNSUPPORTED};
+use super::structs::{self, Versioned};
+use crate::scene::{Friction, TangentialInfluence};
+
+/// The tables of own coefficients: xx, yy, xy, and those of unlike bodies, xz, yz.
+const TABLES: [&str; 5] = [
+    "friction->influence[0]",
+    "friction->influence[1]",
+    "friction->influence[2]",
+    "friction->influence_cross[0]",
+    "friction->influence_cross[1]",
+];
+
+/// Those per loaded row.
+const ROW_TABLES: [&str; 3] = ["friction->row_tables[0]", "friction->row_tables[1]", "friction->row_tables[2]"];
+
+/// The structs of some tables, as the caller's header has them; none if there are no tables.
+fn read<T: Versioned, const N: usize>(at: [*const T; N], names: [&str; N]) -> Result<Option<[Option<T>; N]>, Refusal> {
+    let mut tables = [None; N];
+    for (k, table) in tables.iter_mut().enumerate() {
+        // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
+        *table = unsafe { structs::read_optional(at[k], names[k])? };
+    }
+    Ok(tables.iter().any(Option::is_some).then_some(tables))
+}
+
+/// Refuses a table whose members differ from those of the first one.
+fn same(name: &str, first: &str, members: [(&str, f64, f64); 3]) -> Result<(), Refusal> {
+    let Some((member, value, of_first)) = members.into_iter().find(|(_, value, of_first)| value != of_first) else {
+        return Ok(());
+    };
+    Err(Refusal::invalid(format!("{name}->{member} is {value}; it must be {of_first}, as that of {first}")))
+}
+
+impl contact_normal_friction {
+    /// The friction of the tables, of which nothing else is used.
+    pub(super) fn tables_alone<'a>(&self) -> Result<Friction<'a>, Refusal> {
+        Ok(Friction { influence: self.own_influence()?, ..Friction::new(0.0) })
+    }
+
+    fn tables(&self) -> Result<Option<[Option<contact_normal_influence>; 5]>, Refusal> {
+        let [xx, yy, xy] = self.influence;
+        let [xz, yz] = self.influence_cross;
+        read([xx, yy, xy, xz, yz], TABLES)
+    }
+
+    /// The caller's own tangential coefficients.
+    pub(super) fn own_influence<'a>(&self) -> Result<Option<TangentialInfluence<'a>>, Refusal> {
+        let (tables, rows) = (self.tables()?, read(self.row_tables, ROW_TABLES)?);
+        match (tables, rows) {
+            (None, None) => Ok(None),
+            (Some(tables), None) => of_offsets(tables).map(Some),
+            (None, Some(tables)) => of_rows(tables).map(Some),
+            (Some([None, None, None, ..]), Some(_)) => Err(Refusal::new(
+                CONTACT_NORMAL_UNSUPPORTED,
+                "friction->row_tables and friction->influence_cross are both given; unlike bodies are not solved with tables per row"
+                    .into(),
+            )),
+            (Some(_), Some(_)) => Err(Refusal::new(
+                CONTACT_NORMAL_UNSUPPORTED,
+                "friction->influence and friction->row_tables are both given; only one of them can be".into(),
+            )),
+        }
+    }
+
+    /// What of the tables a call reads.
+    pub(super) fn add_tables_to(&self, regions: &mut Regions) -> Result<(), Refusal> {
+        let (at, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
+        let first = tables.and_then(|tables| tables[0]);
+        for ((at, table), name) in at.zip(tables.iter().flatten()).zip(TABLES) {
+            let Some(table) = table else { continue };
+            regions.input_struct(at, table)?;
+            // One of another size than the first is refused, and not read.
+            if first.is_some_and(|first| (first.cx, first.cy) == (table.cx, table.cy)) {
+                regions.input(name, table.coefficients, table.size(name)?.2)?;
+            }
+        }
+        let rows = read(self.row_tables, ROW_TABLES)?;
+        let first = rows.and_then(|tables| tables[0]);
+        for ((at, table), name) in self.row_tables.into_iter().zip(rows.iter().flatten()).zip(ROW_TABLES) {
+            let Some(table) = table else { continue };
+            regions.input_struct(at, table)?;
+            if first.is_some_and(|first| (first.cx, first.rows) == (table.cx, table.rows)) {
+                regions.input(name, table.coefficients, table.size_on(None, name)?.2)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn of_offsets<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<TangentialInfluence<'a>, Refusal> {
+    let first = tables[0].ok_or_else(|| Refusal::null(TABLES[0]))?;
+    let (cx, cy, size) = first.size(TABLES[0])?;
+    let table = |k: usize| {
+        let table = tables[k].ok_or_else(|| Refusal::null(TABLES[k]))?;
+        let members = [
+            ("cx", f64::from(table.cx), f64::from(first.cx)),
+            ("cy", f64::from(table.cy), f64::from(first.cy)),
+            ("scale", table.scale, first.scale),
+        ];
+        same(TABLES[k], TABLES[0], members)?;
+        // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
+        unsafe { required(&format!("{}->coefficients", TABLES[k]), table.coefficients, size) }
+    };
+    let coefficients = [table(0)?, table(1)?, table(2)?];
+    let has_cross = tables[3].is_some() || tables[4].is_some();
+    let cross = if has_cross { Some([table(3)?, table(4)?]) } else { None };
+    Ok(TangentialInfluence { cx, cy, by_row: false, coefficients, cross, scale: first.scale })
+}
+
+fn of_rows<'a>(tables: [Option<contact_normal_row_tables>; 3]) -> Result<TangentialInfluence<'a>, Refusal> {
+    let first = tables[0].ok_or_else(|| Refusal::null(ROW_TABLES[0]))?;
+    let (cx, cy, size) = first.size_on(None, ROW_TABLES[0])?;
+    let table = |k: usize| {
+        let table = tables[k].ok_or_else(|| Refusal::null(ROW_TABLES[k]))?;
+        let members = [
+            ("cx", f64::from(table.cx), f64::from(first.cx)),
+            ("rows", f64::from(table.rows), f64::from(first.rows)),
+            ("scale", table.scale, first.scale),
+        ];
+        same(ROW_TABLES[k], ROW_TABLES[0], members)?;
+        // SAFETY: NULL or rows by rows by 2 cx values, by the conventions of the ABI.
+        unsafe { required(&format!("{}->coefficients", ROW_TABLES[k]), table.coefficients, size) }
+    };
+    let coefficients = [table(0)?, table(1)?, table(2)?];
+    Ok(TangentialInfluence { cx, cy, by_row: true, coefficients, cross: None, scale: first.scale })
+}

@@ -1,0 +1,185 @@
+//! Products with [one table per loaded row](super::row_tables): A is Toeplitz in x only.
+//!
+//! ```text
+//! u^(iy, kx) = sum over jy of S_kx(jy, iy) q^(jy, kx),     ^: the transform in x;  S: a 2 x 2 matrix
+//! ```
+//!
+//! For each of the `px/2 + 1` bins that is a matrix of 2 my by 2 my complex numbers, all of which a product reads.
+
+use super::coefficients::Tangential;
+use super::row_tables::{Full, RowTables};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::memory::{blank, keep, zeros};
+use crate::operator::fft::{good_length, room_for_plans, Complex, Real};
+use crate::operator::row_transform::RowTransform;
+use crate::threads::Threads;
+
+/// What memory is for.
+const MATRICES: &str = "the transforms of tangential tables per row";
+
+type Wave = Complex<f64>;
+
+/// The operator of one grid, with its workspace.
+pub struct RowProduct {
+    mx: usize,
+    my: usize,
+    transform: RowTransform<f64>,
+    /// `[bin][iy][jy]`: `xx, yy, xy, yx`, with the normalisation.
+    matrices: Vec<[Wave; 4]>,
+    /// `[2 my][bins]`, and the other way round.
+    rows: Vec<Wave>,
+    columns: Vec<Wave>,
+    pieces: Vec<Piece>,
+    threads: Threads,
+}
+
+/// Memory of one piece of the work.
+struct Piece {
+    row: Vec<f64>,
+    scratch: Vec<Wave>,
+    bins: Vec<Wave>,
+}
+
+impl Drop for RowProduct {
+    fn drop(&mut self) {
+        keep([&mut self.rows, &mut self.columns]);
+        keep([&mut self.matrices]);
+    }
+}
+
+impl RowProduct {
+    /// A.
+    pub fn direct(tangential: &Tangential, rows: &RowTables, grid: &Grid, threads: &Threads) -> Result<RowProduct> {
+        let layer = tangential.layer();
+        RowProduct::new(|jy, iy, kx| with_layer(rows, layer, (jy, iy, kx)), grid, threads)
+    }
+
+    /// Displacements at `by` elements from each centre, along x.
+    pub fn displaced(
+        tangential: &Tangential,
+        rows: &RowTables,
+        grid: &Grid,
+        by: f64,
+        threads: &Threads,
+    ) -> Result<RowProduct> {
+        let (layer, by) = (tangential.layer(), by.round() as i64);
+        RowProduct::new(|jy, iy, kx| with_layer(rows, layer, (jy, iy, kx + by)), grid, threads)
+    }
+
+    /// Displacements at each centre less those at `by` elements from it, along x: steady rolling.
+    pub fn rolling(
+        tangential: &Tangential,
+        rows: &RowTables,
+        grid: &Grid,
+        by: f64,
+        threads: &Threads,
+    ) -> Result<RowProduct> {
+        let (layer, by) = (tangential.layer(), by.round() as i64);
+        let entry = |jy: usize, iy: usize, kx: i64| {
+            let here = with_layer(rows, layer, (jy, iy, kx));
+            let there = with_layer(rows, layer, (jy, iy, kx + by));
+            [0, 1, 2, 3].map(|k| here[k] - there[k])
+        };
+        RowProduct::new(entry, grid, threads)
+    }
+
+    fn new(
+        entry: impl Fn(usize, usize, i64) -> Full + Sync + Send,
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<RowProduct> {
+        let Grid { mx, my, .. } = *grid;
+        let px = good_length(2 * mx - 1);
+        room_for_plans::<f64>(&[px])?;
+        let transform = RowTransform::<f64>::new(px);
+        let nb = transform.bins();
+        let size = my.checked_mul(my).and_then(|n| n.checked_mul(nb));
+        let size =
+            size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {nb} values of {MATRICES}")))?;
+        let nan = Wave::new(f64::NAN, f64::NAN);
+        let piece = |_| {
+            let (row, bins) = (zeros(px, MATRICES)?, zeros(4 * nb, MATRICES)?);
+            Ok(Piece { row, scratch: transform.scratch()?, bins })
+        };
+        let mut pieces = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
+        let mut matrices = blank(size, [nan; 4], MATRICES)?;
+        let mut of_row = blank(my * nb, [nan; 4], MATRICES)?;
+        let last = mx as i64 - 1;
+        for iy in 0..my {
+            threads.for_each_row(&mut of_row, nb, &mut pieces, |jy, out, Piece { row, scratch, bins }| {
+                for component in 0..4 {
+                    row.fill(0.0);
+                    for kx in -last..=last {
+                        row[kx.rem_euclid(px as i64) as usize] = entry(jy, iy, kx)[component] / px as f64;
+                    }
+                    transform.forward(row, &mut bins[component * nb..][..nb], scratch);
+                }
+                for (bin, out) in out.iter_mut().enumerate() {
+                    *out = [0, 1, 2, 3].map(|component| bins[component * nb + bin]);
+                }
+            });
+            let of_row = &of_row[..];
+            threads.for_each_plain_row(&mut matrices, my * my, |bin, matrix| {
+                let column = of_row[bin..].iter().step_by(nb);
+                matrix[iy * my..][..my].iter_mut().zip(column).for_each(|(to, from)| *to = *from);
+            });
+        }
+        keep([&mut of_row]);
+        let (rows, columns) = (blank(2 * my * nb, nan, MATRICES)?, blank(2 * my * nb, nan, MATRICES)?);
+        Ok(RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads: threads.clone() })
+    }
+
+    /// `u = by A q` of fields in any precision.
+    pub fn apply<S: Real>(&mut self, q: &[[S; 2]], by: f64, u: &mut [[S; 2]]) {
+        let RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads } = self;
+        let (mx, my, nb) = (*mx, *my, transform.bins());
+        assert!(q.len() == mx * my && u.len() == mx * my);
+        // Rows of x components, then those of y.
+        threads.for_each_row(rows, nb, pieces, |k, bins, Piece { row, scratch, .. }| {
+            let of_row = &q[k % my * mx..][..mx];
+            row[..mx].iter_mut().zip(of_row).for_each(|(value, q)| *value = by * q[k / my].to_double());
+            transform.forward(&row[..mx], bins, scratch);
+        });
+        let (rows, matrices) = (&rows[..], &matrices[..]);
+        threads.for_each_plain_row(columns, 2 * my, |bin, column| {
+            let (x, y) = column.split_at_mut(my);
+            let matrix = &matrices[bin * my * my..][..my * my];
+            for ((x, y), row) in x.iter_mut().zip(y).zip(matrix.chunks_exact(my)) {
+                let mut sum = [Wave::default(); 2];
+                for (jy, [xx, yy, xy, yx]) in row.iter().enumerate() {
+                    let (qx, qy) = (rows[jy * nb + bin], rows[(my + jy) * nb + bin]);
+                    sum = [sum[0] + xx * qx + xy * qy, sum[1] + yx * qx + yy * qy];
+                }
+                (*x, *y) = (sum[0], sum[1]);
+            }
+        });
+        let columns = &columns[..];
+        threads.for_each_row(u, mx, pieces, |iy, u, Piece { row, scratch, bins }| {
+            for component in 0..2 {
+                let bins = &mut bins[..nb];
+                bins.iter_mut()
+                    .enumerate()
+                    .for_each(|(bin, value)| *value = columns[bin * 2 * my + component * my + iy]);
+                transform.inverse(bins, &mut row[..mx], scratch);
+                u.iter_mut().zip(&*row).for_each(|(u, value)| u[component] = S::of(*value));
+            }
+        });
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let piece = |piece: &Piece| {
+            size_of_val(&piece.row[..]) + size_of_val(&piece.scratch[..]) + size_of_val(&piece.bins[..])
+        };
+        let fields = size_of_val(&self.rows[..]) + size_of_val(&self.columns[..]);
+        size_of_val(&self.matrices[..]) + fields + self.pieces.iter().map(piece).sum::<usize>()
+    }
+}
+
+/// The coefficients with a layer between the bodies, which displaces an element by its own traction alone.
+fn with_layer(rows: &RowTables, layer: f64, (jy, iy, kx): (usize, usize, i64)) -> Full {
+    let [xx, yy, xy, yx] = rows.at(jy, iy, kx);
+    let layer = if jy == iy && kx == 0 { layer } else { 0.0 };
+    [xx + layer, yy + layer, xy, yx]
+}
