@@ -189,17 +189,17 @@ def section(measured):
     for accuracy, both in ratios.items():
         (least, most), (least_both, most_both) = ((min(column), max(column)) for column in zip(*both))
         both_times.append(f"at {accuracy:.0e} {least:.1f} to {most:.1f} times as long for the tangential problem and {least_both:.1f} to {most_both:.1f} "
-                          f"times for both, in the {len(both)} of {len(measured)} scenes where it reaches that")
+                          f"times for both, in the {len(both)} of {len(measured)} scenes where it reaches this accuracy")
     return (
         f"{HEADING}\nWritten by `build/peers/bin/python benches/peers/friction.py`. Two like bodies are pressed together and shifted from rest, to 50 % and 90 % of mu N, "
-        f"by a motion or by a force. aspher {version} takes {'; '.join(both_times)}.\n\nAccuracy is the larger one of the pressures' error as above and "
-        "the residual of the tangential problem, which is relative to the shift or the displacements ([Friction](friction.md)), "
-        "both checked by a product of the bench's own. Each has its loosest tolerances that reach it, aspher one for each problem and the faster one of its two settings. "
-        "With nu = 0.3 it reaches none of them, because its iteration stalls: on the ball of 64 x 64 elements the tractions are the same for tolerances "
-        "of 1e-3 to 1e-8, and its own check (`tol_kkt`) lets them pass. Its operator is the same: with another sign of Axy, or without it, they leave "
-        "13 to 27 times as much.\n\n"
-        "mu = 0.3, one thread, milliseconds of the processor, medians of repeats taken in turns. Setting up counts: with aspher as part of its "
-        "normal problem. Whole cold calls; for contact-normal the tangential time is that of a call with friction less that of one without.\n\n"
+        f"by a motion or by a force. aspher {version} takes {'; '.join(both_times)}.\n\nThe accuracy is the larger one of two values: the error of the pressures as above, and "
+        "the residual of the tangential problem, which is relative to the shift or the displacements ([Friction](friction.md)). "
+        "A product of the bench's own checks both. Each program has its loosest tolerances that reach the accuracy; aspher has one tolerance for each problem, and the "
+        "faster one of its two settings. With nu = 0.3 aspher reaches none of the accuracies, because its iteration stalls: on the ball of 64 x 64 elements its tractions "
+        "are equal for tolerances of 1e-3 to 1e-8, and its own check (`tol_kkt`) accepts them. The operators agree: with another sign of Axy, or without Axy, these "
+        "tractions leave residuals 13 to 27 times as large.\n\n"
+        "The table is for mu = 0.3 and one thread. It has milliseconds of the processor, medians of repeats in turns, for whole cold calls with set-up. "
+        "For aspher the set-up is a part of its normal problem. For contact-normal the tangential time is the difference of a call with friction and a call without.\n\n"
         + "\n".join(lines) + "\n\n![Friction: time against size](performance_friction.png)\n"
     )
 

@@ -100,11 +100,11 @@ def report():
     measured.sort(key=lambda one: (ORDER.index(one["problem"]), one["size"]))
     text = (
         "# Peers: equal problems, equal checked accuracy\n\n"
-        "Written by `make bench-peers`; [performance.md](performance.md) says what it means.\n\n"
-        f"{machine()}. One thread. Accuracy: max(|e| in contact, penetration outside)/max |u|, checked by a product of its own. "
-        "Each solver at its loosest tolerance (half a decade apart for contact-normal and aspher, a decade for the others and where a call takes more than 3 s) and in its "
-        "fastest setting that reach it; whole calls from Python, set-up included; medians of repeats taken in turns. Times are those of the processor: with one thread what "
-        "the clock of a quiet machine would say; the ratio by the clock stands beside theirs.\n\n"
+        "Written by `make bench-peers`; [Performance](performance.md) has a summary.\n\n"
+        f"{machine()}. One thread. The accuracy is max(|e| in contact, penetration outside)/max |u|, checked by a product of the bench's own. "
+        "Each solver has its fastest setting and its loosest tolerance that reach the accuracy. Tolerances are half a decade apart for contact-normal and aspher, and a "
+        "decade for the others and where a call takes more than 3 s. Calls are whole calls from Python, with set-up. Times are medians of repeats in turns, in seconds of "
+        "the processor; with one thread these are the seconds by the clock on a quiet machine. The last column has the ratio by the clock.\n\n"
         f"{table(measured)}\n\n![Time against error](performance_error.png)\n\n![Time against size](performance_size.png)\n"
     )
     path = os.path.join(ROOT, "docs", "performance_peers.md")

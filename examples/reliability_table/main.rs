@@ -1,4 +1,4 @@
-//! The tables of docs/reliability.md: every hard case by every method, the residual reached and the products spent; and those of friction.
+//! The tables of docs/reliability_table.md and docs/reliability_friction.md: the residual reached and the products spent, by every method or motion.
 //!
 //! `cargo run --release --locked --example reliability_table`; the second table alone: `... -- friction`
 

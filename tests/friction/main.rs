@@ -8,7 +8,7 @@ mod conditions;
 mod effects;
 mod estimates;
 mod forces;
-#[allow(dead_code)] // what docs/reliability.md prints
+#[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
 mod layer;
 mod linear_theory;

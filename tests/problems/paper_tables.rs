@@ -67,7 +67,7 @@ fn table_2_norm_needs_the_measured_iterations() {
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
         assert_eq!((stop, report.count.active_set_steps), (Outcome::Converged, steps));
         // Without a preconditioner the rounding of A decides about some iterations: with other roundings of the coefficients, by half a unit in
-        // their last place, the second grid takes 129 to 134, the third 196 to 198 (docs/notes, "Lengths of even products").
+        // their last place, the second grid takes 129 to 134, the third 196 to 198 (docs/notes/2026-11-performance-targets.md).
         let off = (report.count.cycles as f64 / iterations as f64 - 1.0).abs();
         let is_seen = m == 64 && (129..=134).contains(&report.count.cycles);
         assert!(off <= 0.03 || is_seen, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);

@@ -1,4 +1,4 @@
-//! The hard cases of friction, for docs/reliability.md as well, and what is promised of them.
+//! The hard cases of friction, for docs/reliability_friction.md as well, and what is promised of them.
 
 pub mod cases;
 pub mod certificate;

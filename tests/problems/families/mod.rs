@@ -1,4 +1,4 @@
-//! The families of hard cases. Each file has its cases, for docs/reliability.md as well, and what is promised of them.
+//! The families of hard cases. Each file has its cases, for docs/reliability_table.md as well, and what is promised of them.
 
 pub mod case;
 pub mod certificate;
@@ -16,7 +16,7 @@ pub mod units;
 pub use case::Case;
 
 /// Every case of every family.
-#[allow(dead_code)] // for docs/reliability.md
+#[allow(dead_code)] // for docs/reliability_table.md
 pub fn all() -> Vec<(&'static str, Vec<Case>)> {
     vec![
         ("contact areas", contact_areas::cases()),
