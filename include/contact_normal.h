@@ -1904,7 +1904,8 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
 
  An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
  status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
- (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
+ (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
+ "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
 
  `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
  the entries that are done and `residual` is that of the last one. When it cancels, the results of

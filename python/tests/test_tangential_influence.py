@@ -72,12 +72,12 @@ class TangentialInfluence(unittest.TestCase):
             self.assertEqual(found.status, cn.OK)
             # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
-        with cn.Solver(H.shape, D, D, friction={"row_tables": (rows, rows, 0 * rows)}, **BODIES) as solver:
+        with cn.Solver(M, M, D, D, friction={"row_tables": (rows, rows, 0 * rows)}, **BODIES) as solver:
             solver.set_influence(friction={"row_tables": (2 * rows, 2 * rows, 0 * rows)})
             found = solver.solve(H, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)})
             # Twice as soft: half of the stiffness.
             stiff = cn.solve(H, D, D, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)}, **BODIES)
-            self.assertAlmostEqual(found.creepage[0] / stiff.creepage[0], 2, delta=1e-4)
+            self.assertAlmostEqual(found.report["creepage"][0] / stiff.report["creepage"][0], 2, delta=1e-4)
         for tables, words in (((rows, rows), "2 entries"), ((rows, rows, rows[1:]), "shapes")):
             with self.assertRaisesRegex(ValueError, words):
                 cn.solve(H, D, D, force=0.05, friction={**friction, "row_tables": tables}, **BODIES)

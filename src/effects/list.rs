@@ -37,15 +37,23 @@ pub(super) fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn 
 pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     for effect in effects(scene) {
         effect.check(&scene.grid)?;
-        if let Some(other) = effects(scene).find(|other| effect.excludes().contains(&other.name())) {
-            return Err(Error::Unsupported(format!(
-                "{} and {} are both given; this version does not solve them together",
-                effect.name(),
-                other.name()
-            )));
-        }
+        let name = effect.name();
+        let given = |other: &str| effects(scene).any(|effect| effect.name() == other);
+        refuse_together(effect, given, |other| format!("{name} and {other} are both given"))?;
     }
     Ok(())
+}
+
+/// Refuses an effect beside others that are there and that it is not solved with; `say(other)` begins the message.
+pub(super) fn refuse_together(
+    effect: &dyn Effect,
+    is_there: impl Fn(&str) -> bool,
+    say: impl Fn(&str) -> String,
+) -> Result<()> {
+    match effect.excludes().iter().find(|other| is_there(other)) {
+        Some(other) => Err(Error::Unsupported(format!("{}; this version does not solve them together", say(other)))),
+        None => Ok(()),
+    }
 }
 
 /// Whether the bodies do not matter: own coefficients know none.

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::effect::{Effect, Value};
-use super::list::{effects, list, replace_bodies, COUNT};
+use super::list::{effects, list, refuse_together, replace_bodies, COUNT};
 use crate::error::{invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
@@ -99,14 +99,9 @@ impl Named {
         }
         // What is left out of this scene is there all the same.
         for effect in effects(scene) {
-            let left_out = |name: &&&str| self.effects.contains(&Some(**name));
-            if let Some(other) = effect.excludes().iter().find(left_out) {
-                let rule = "this version does not solve them together";
-                return Err(Error::Unsupported(format!(
-                    "{} is given, and this solver has {other}; {rule}",
-                    effect.name()
-                )));
-            }
+            let name = effect.name();
+            let left_out = |other: &str| self.effects.iter().flatten().any(|effect| *effect == other);
+            refuse_together(effect, left_out, |other| format!("{name} is given, and this solver has {other}"))?;
         }
         let mut same = Ok(());
         for effect in effects(scene) {

@@ -115,9 +115,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let concluded = watched(Watcher::of(&translated), |progress| {
             let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
             let found = outcome.solver.as_ref();
-            let grid = found.map(|found| *found.grid());
-            (given.mx, given.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
-            (given.dx, given.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
+            given.set_grid(found.map(Solver::grid));
             (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
             let warned = |found: &Solver| outputs.warnings(&scene, &translated.options, &outcome.report, found.state());
             let warnings = found.map_or(0, warned);
@@ -135,6 +133,14 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) })
+}
+
+impl contact_normal_accuracy {
+    /// The grid of the result; zeros where there is none.
+    fn set_grid(&mut self, grid: Option<&Grid>) {
+        (self.mx, self.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
+        (self.dx, self.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
+    }
 }
 
 /// What writes the caller's surface; none where there is none.

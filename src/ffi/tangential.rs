@@ -43,7 +43,8 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 ///
 /// An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
 /// status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
-/// (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
+/// (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
+/// "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
 ///
 /// `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
 /// the entries that are done and `residual` is that of the last one. When it cancels, the results of
@@ -100,14 +101,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         };
         let solver = in_use.as_mut().map(|in_use| &mut in_use.held().solver);
         let call = Call { scene: &read, options: &options, outputs: &outputs, wanted: &wanted };
-        match (pressure, given) {
-            (Some(pressure), None) => call.one(solver, pressure),
-            (None, None) => call.table(solver, pressure, read.friction.as_ref().map(Entry::of).as_slice()),
-            (_, Some(given)) => {
-                let entry = |&[x, y, spin]: &[f64; 3]| Entry { amount: [x, y], spin };
-                call.table(solver, pressure, &collected(given.iter().map(entry), "the entries of a table")?)
-            }
-        }
+        call.solve(solver, pressure, given)
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
@@ -122,6 +116,23 @@ struct Call<'a> {
 }
 
 impl Call<'_> {
+    /// One problem, or a table where entries are given or the pressures are to be found.
+    fn solve(
+        &self,
+        solver: Option<&mut Solver>,
+        pressure: Option<&[f64]>,
+        given: Option<&[[f64; 3]]>,
+    ) -> Result<contact_normal_status, Refusal> {
+        match (pressure, given) {
+            (Some(pressure), None) => self.one(solver, pressure),
+            (None, None) => self.table(solver, pressure, self.scene.friction.as_ref().map(Entry::of).as_slice()),
+            (_, Some(given)) => {
+                let entry = |&[x, y, spin]: &[f64; 3]| Entry { amount: [x, y], spin };
+                self.table(solver, pressure, &collected(given.iter().map(entry), "the entries of a table")?)
+            }
+        }
+    }
+
     /// One problem, on all threads.
     fn one(&self, solver: Option<&mut Solver>, pressure: &[f64]) -> Result<contact_normal_status, Refusal> {
         let (scene, options) = (self.scene, &self.options.options);

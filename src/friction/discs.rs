@@ -28,6 +28,8 @@ pub struct Discs<T: Real> {
     normal: Vec<Vector>,
     curvature: Vec<T>,
     projected: Vec<Pair<T>>,
+    /// What a layer is beyond its least compliance; none: it is uniform.
+    excess: Vec<f64>,
     way: Way<T>,
     /// On the grid: what is multiplied, and what that gives.
     given: Vec<Pair<T>>,
@@ -69,7 +71,7 @@ impl<T: Real> Discs<T> {
 
     /// Predicts what slips; what the preconditioner is given is made ready.
     pub fn predict(&mut self, places: &Places, threads: &Threads) -> Sums {
-        let Discs { bound, slip, q, u, normal, curvature, projected, given, units, .. } = self;
+        let Discs { bound, slip, q, u, normal, curvature, projected, excess, given, units, .. } = self;
         let predicted = places.cut(normal).zip(places.cut(curvature)).zip(places.cut(projected));
         let blocks = places.parts().zip(predicted).zip(places.cut_grid(given));
         let [rest, displaced] = over(threads, blocks, |_, ((part, ((normal, curvature), projected)), given)| {
@@ -80,7 +82,7 @@ impl<T: Real> Discs<T> {
                 let seen = units.look(q[k], u[k], slip[k], bound[k]);
                 (normal[j], curvature[j], projected[j]) =
                     (seen.normal, T::of(seen.curvature), seen.projected.map(T::of));
-                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature) * r));
+                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature + beyond(excess, k)) * r));
                 sums = [sums[0] + seen.rest, sums[1] + square(u[k])];
             }
             sums
@@ -98,16 +100,17 @@ impl<T: Real> Discs<T> {
             }
             None => operators.precondition_plain(given, answer),
         }
-        let Discs { normal, curvature, projected, way, answer, units, .. } = self;
+        let Discs { normal, curvature, projected, excess, way, answer, units, .. } = self;
         let Way { z, direction, product, .. } = way;
         let places = &problem.places;
         let [along] = over(problem.threads(), places.parts().zip(places.cut(z)), |_, (part, z)| {
             let mut along = 0.0;
             for ((k, place), z) in (part.start..).zip(part.on_grid()).zip(z.iter_mut()) {
                 let bend = curvature[k].to_double();
-                let mixing = units.mixing(bend);
+                let stiff = bend + beyond(excess, k);
+                let mixing = units.mixing(stiff);
                 let v = double(answer[place]).map(|v| mixing * v);
-                let own = (1.0 - mixing) / (bend + units.a0);
+                let own = (1.0 - mixing) / (stiff + units.a0);
                 let new = plus(project(normal[k], v), own, double(projected[k]));
                 along += dot(new, plus(double(product[k]), bend, double(direction[k])));
                 *z = new.map(T::of);
@@ -158,7 +161,7 @@ impl<T: Real> Discs<T> {
 
     /// Goes so far along the chord at the length f, and predicts what slips there.
     pub fn go(&mut self, places: &Places, threads: &Threads, length: f64, f: f64) -> Sums {
-        let Discs { bound, slip, q, u, normal, curvature, projected, way, given, units, .. } = self;
+        let Discs { bound, slip, q, u, normal, curvature, projected, excess, way, given, units, .. } = self;
         let Way { direction, chord, product, deferred, .. } = way;
         let left = 1.0 - length / f;
         let states = places.cut(q).zip(places.cut(u)).zip(places.cut(direction).zip(places.cut(deferred)));
@@ -191,7 +194,7 @@ impl<T: Real> Discs<T> {
                 let seen = units.look(new, u[j], slip[k], g);
                 (normal[j], curvature[j], projected[j]) =
                     (seen.normal, T::of(seen.curvature), seen.projected.map(T::of));
-                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature) * r));
+                given[place] = seen.projected.map(|r| T::of(units.mixing(seen.curvature + beyond(excess, k)) * r));
                 (sums[0], sums[1]) = (sums[0] + seen.rest, sums[1] + square(u[j]));
             }
             sums
@@ -225,9 +228,16 @@ impl<T: Real> Discs<T> {
     pub fn bytes(&self) -> usize {
         let in_double = size_of::<f64>() + 4 * size_of::<Vector>();
         self.bound.capacity() * in_double
+            + self.excess.capacity() * size_of::<f64>()
             + (13 * self.curvature.capacity() + 2 * 2 * self.given.capacity()) * size_of::<T>()
             + self.extension.as_ref().map_or(0, Extension::bytes)
     }
+}
+
+/// What a layer is at the k-th element of C beyond its least compliance.
+#[inline]
+fn beyond(excess: &[f64], k: usize) -> f64 {
+    excess.get(k).copied().unwrap_or(0.0)
 }
 
 /// Of one block what moves, its prediction, and its part of what is multiplied.
@@ -239,9 +249,9 @@ type States<'a, T> = ((&'a mut [Vector], &'a mut [Vector]), (&'a mut [Pair<T>], 
 
 impl<T: Real> Drop for Discs<T> {
     fn drop(&mut self) {
-        let Discs { bound, slip, q, u, normal, curvature, projected, given, answer, .. } = self;
+        let Discs { bound, slip, q, u, normal, curvature, projected, excess, given, answer, .. } = self;
         let Way { z, direction, chord, product, deferred } = &mut self.way;
-        keep([bound]);
+        keep([bound, excess]);
         keep([curvature]);
         keep([slip, q, u, normal]);
         keep([projected, given, answer, z, direction, chord, product, deferred]);

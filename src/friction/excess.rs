@@ -1,8 +1,8 @@
-//! A layer between the bodies whose compliance differs from element to element: what it displaces beyond its mean, which is among the
+//! A layer between the bodies whose compliance differs from element to element: what it displaces beyond its least, which is among the
 //! coefficients.
 //!
 //! ```text
-//! u_I += r_I q_I                             r: the compliance less its mean
+//! u_I += r_I q_I                             r: the compliance less the least
 //! u_I += d (r q)_I                           in steady rolling; d v = v - v(x + dq), interpolated between the centres
 //! ```
 

@@ -248,11 +248,11 @@ impl Solver {
         Ok(end)
     }
 
-    /// The mean compliance of the layer is added to the coefficient of an element on itself; if it changes, operators are made anew.
+    /// The least compliance of the layer is added to the coefficient of an element on itself; if it changes, operators are made anew.
     fn set_layer(&mut self, friction: &Friction<'_>) {
         let layer = match friction.compliance {
             Coefficient::Uniform(compliance) => compliance,
-            Coefficient::PerElement(of) => in_blocks(of.iter().copied()) / of.len() as f64,
+            Coefficient::PerElement(of) => of.iter().copied().fold(f64::INFINITY, f64::min),
         };
         if layer != self.tangential.layer() {
             self.tangential = self.tangential.with_layer(layer);

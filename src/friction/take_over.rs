@@ -104,16 +104,8 @@ impl Solver {
                     .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
-        // A warm start of steady rolling starts from the last creepages, too.
-        let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
+        take_step(problem, friction, grid, (&scales, self.offset));
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-        problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found(k) { self.offset[k] } else { 0.0 }));
-        problem.scale = match friction.motion {
-            Motion::Shift => Scale::SlipOrDisplacement,
-            Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
-            _ => Scale::Slip,
-        };
-        problem.ahead = scales.displacement(spin_ahead(friction, grid));
         (problem.given, problem.update) = (0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
@@ -209,7 +201,21 @@ impl Solver {
     }
 }
 
-/// The weights of creepages, and what the compliance of a layer is beyond its mean, on the elements of a window.
+/// Where creepages that are to be found start, what residuals are compared with, and what the slip by spin gains; `last` creepages found.
+fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
+    // A warm start of steady rolling starts from the last creepages, too.
+    let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
+    let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
+    problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found(k) { last[k] } else { 0.0 }));
+    problem.scale = match friction.motion {
+        Motion::Shift => Scale::SlipOrDisplacement,
+        Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
+        _ => Scale::Slip,
+    };
+    problem.ahead = scales.displacement(spin_ahead(friction, grid));
+}
+
+/// The weights of creepages, and what the compliance of a layer is beyond its least, on the elements of a window.
 fn take_weights_and_layer(
     problem: &mut Problem,
     friction: &Friction<'_>,
@@ -225,10 +231,10 @@ fn take_weights_and_layer(
             collected(of, "the weights of creepages")?
         }
     };
-    let mean = problem.operators.tangential.layer();
+    let least = problem.operators.tangential.layer();
     problem.operators.excess = match friction.compliance {
         Coefficient::Uniform(_) => None,
-        Coefficient::PerElement(of) => Some(Excess::new(&problem.grid, |k| scales.compliance(of[place(k)]) - mean)?),
+        Coefficient::PerElement(of) => Some(Excess::new(&problem.grid, |k| scales.compliance(of[place(k)]) - least)?),
     };
     Ok(())
 }

@@ -140,6 +140,9 @@ impl Tangent {
     /// Predicts from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Measures {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
+        // In steady rolling a0 is that of a step, which a layer does not shorten.
+        let share = a0 / problem.operators.greatest();
+        let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| share * excess.at(i));
         let Tangent { side, normal, curvature, mixing: mixings, projected, .. } = self;
         let (sides, normals) = (side.chunks_mut(BLOCK), normal.chunks_mut(BLOCK));
         let (curvatures, mixings, projecteds) =
@@ -168,7 +171,7 @@ impl Tangent {
                     squares += seen.rest;
                     slips += f64::from(u8::from(seen.side == Side::Slip));
                     (side[k], normal[k], projected[k]) = (seen.side, seen.normal, seen.projected);
-                    (curvature[k], mixings[k]) = (seen.curvature, mixing(seen.curvature, a0));
+                    (curvature[k], mixings[k]) = (seen.curvature, mixing(seen.curvature + beyond(i), a0));
                 }
                 [squares, excess, slips, rigid, displaced]
             });
@@ -190,7 +193,7 @@ impl Tangent {
 
     /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant
     /// inverse M of A with residuals continued beside C by X (see [`Extension`](crate::methods::extension::Extension)) and, where the curvature D
-    /// dominates, its own inverse. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`Sweep`](super::sweep::Sweep)).
+    /// dominates, its own inverse. What a layer between the bodies is beyond its least compliance adds to D: there, too. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`Sweep`](super::sweep::Sweep)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let threads = problem.threads().clone();
@@ -202,17 +205,33 @@ impl Tangent {
             Some(extension) => extension.between(mixed, z, compliance, |r, z| operators.precondition(r, unit, z)),
             None => operators.precondition(mixed, unit, z),
         }
-        // The own inverse, where something slips.
+        // The own inverse, where something slips or a layer is softer than elsewhere.
+        let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| excess.at(i));
         let own = |i: usize| match self.side[i] {
-            Side::Slip => (1.0 - self.mixing[i]) / (self.curvature[i] + a0),
-            _ => 0.0,
+            Side::Outside => 0.0,
+            _ if self.mixing[i] == 1.0 => 0.0,
+            _ => (1.0 - self.mixing[i]) / (self.curvature[i] + beyond(i) + a0),
         };
         let Some((_, sweep)) = &problem.operators.rolling else {
             vectors::map(&threads, z, |i, z| plus(self.project_inside(i, z.map(|z| self.mixing[i] * z)), own(i), r[i]));
             return;
         };
         vectors::map(&threads, z, |i, z| self.project_inside(i, z.map(|z| self.mixing[i] * z)));
-        sweep.solve(&problem.grid, |i| self.mixing[i], |i, v| self.project_inside(i, v), &threads, z);
-        vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
+        let project = |i: usize, v: Vector| self.project_inside(i, v);
+        if problem.operators.excess.is_none() {
+            sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
+            return vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
+        }
+        // What a layer displaces is rolled over, too: from element to element (a + r) x is passed on, for r differs.
+        let a = problem.operators.greatest();
+        let soft = |i: usize| (a + beyond(i)) / a;
+        let of_layer = |i: usize| match self.side[i] {
+            Side::Stick => (1.0 - self.mixing[i]) / (a + beyond(i)),
+            _ => 0.0,
+        };
+        vectors::map(&threads, z, |i, z| plus(z, of_layer(i), r[i]).map(|z| soft(i) * z));
+        sweep.solve(&problem.grid, |i| mixing(self.curvature[i], a0 * soft(i)), project, &threads, z);
+        let after = |i: usize| if self.side[i] == Side::Slip { own(i) } else { 0.0 };
+        vectors::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
     }
 }

@@ -194,7 +194,7 @@ contains
     integer :: row, loaded
     do loaded = 1, M
       do row = 1, M
-        kept(:, row, loaded) = even(:, M + 1 + row - loaded)
+        kept(:, row, loaded) = even(:, row - loaded)
       end do
     end do
     rows_of_even => kept

@@ -96,3 +96,38 @@ fn one_compliance_for_each_element_is_the_uniform_one() {
         }
     }
 }
+
+/// Compliances from 1 to 100 times the least, in random order.
+fn random_compliances(n: usize, least: f64, seed: u64) -> Vec<f64> {
+    let mut random = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let next = |_| {
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        least * 100f64.powf((random >> 11) as f64 / (1u64 << 53) as f64)
+    };
+    (0..n).map(next).collect()
+}
+
+#[test]
+fn compliances_that_differ_by_a_hundred_times_take_few_products() {
+    let (mut of_both, mut most) = ([0.0; 2], [0.0f64; 2]);
+    let mut of_motion = [[0.0; 2]; 3];
+    for seed in 0..100u64 {
+        let motion = [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling][seed as usize % 3];
+        let case = Ellipse::random(seed, 6 + seed as usize % 7, seed % 2 == 1);
+        let own = solver(&case.grid, case.nu).tangential().at(0.0, 0.0)[0];
+        let each = random_compliances(case.grid.len(), [0.01, 0.1, 1.0, 10.0][seed as usize % 4] * own, seed + 1);
+        let mean = each.iter().sum::<f64>() / each.len() as f64;
+        for (k, compliance) in [Coefficient::Uniform(mean), Coefficient::PerElement(&each)].into_iter().enumerate() {
+            let friction = Friction { motion, compliance, ..case.friction };
+            let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-6);
+            let none = vec![[0.0; 2]; case.grid.len()];
+            let left = residual((&case.grid, case.nu), &case.bound, &friction, &none, (&report, &solution));
+            // The tolerance, and round-off of two products.
+            assert!(left <= 1.001e-6, "{seed} {motion:?}: {left}");
+            of_both[k] += report.products;
+            of_motion[seed as usize % 3][k] += report.products;
+            most[k] = most[k].max(report.products);
+        }
+    }
+    assert!(of_both[1] <= 2.0 * of_both[0], "{of_both:?} products, at most {most:?}, {of_motion:?}");
+}

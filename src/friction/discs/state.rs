@@ -31,6 +31,9 @@ impl<T: Real> Discs<T> {
         for field in [&mut self.given, &mut self.answer] {
             unwritten(field, all, nothing, FIELDS, problem.threads())?;
         }
+        // What a layer is beyond its least compliance; none: it is uniform.
+        let beyond = if problem.operators.excess.is_some() { n } else { 0 };
+        unwritten(&mut self.excess, beyond, f64::NAN, FIELDS, problem.threads())?;
         if self.extension.is_none() {
             self.extension = extension_on(&problem.grid, problem.threads())?;
         }
@@ -40,6 +43,9 @@ impl<T: Real> Discs<T> {
         let rho = rho_of((bound, slip), cap);
         let (traction, unit) = (unit_of(bound.min(slip / a0)), problem.operators.unit());
         self.units = Units { traction, displacement: traction * unit, a0: a0 / unit, rho: rho * unit };
+        if let Some(excess) = &problem.operators.excess {
+            self.excess.iter_mut().zip(problem.contact()).for_each(|(to, i)| *to = excess.at(i) / unit);
+        }
         let by = 1.0 / self.units.displacement;
         let places = &problem.places;
         let Way { direction, chord, product, .. } = &mut self.way;
