@@ -53,8 +53,8 @@
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
-//! | [`threads`] | the pool |
-//! | `blocks`, `bounding_box`, `sums` | passes over a grid, by all threads and in vectors |
+//! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
+//! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
 #![warn(missing_docs)]
@@ -71,7 +71,6 @@ pub mod ffi;
 pub mod friction;
 pub mod grid;
 pub mod influence;
-mod memory;
 pub mod methods;
 pub mod operator;
 #[cfg(feature = "test-panics")]
@@ -81,8 +80,9 @@ pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod stress;
-mod sums;
-pub mod threads;
+
+pub use par::threads;
+pub(crate) use par::{memory, sums};
 
 #[cfg(panic = "abort")]
 compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");

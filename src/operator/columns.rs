@@ -1,5 +1,5 @@
 //! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and memory asked for
-//! ahead. Outside of `ffi/` only this file and `memory/pages.rs` have unsafe code.
+//! ahead. Outside of `ffi/` only this file and `par::memory` have unsafe code.
 
 use std::marker::PhantomData;
 use std::ops::Range;

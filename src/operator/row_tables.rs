@@ -40,7 +40,7 @@ impl<T: Real> PerRow<T> {
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
         // Rows may be long: their scratch is as large as an array of the grid then.
         let scratch = |_| zeros(transform.scratch_length(), MATRICES);
-        let mut pieces = (0..threads.count()).map(scratch).collect::<Result<Vec<_>>>()?;
+        let mut pieces = (0..threads.count()).map(scratch).collect::<par::Result<Vec<_>>>()?;
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
@@ -169,7 +169,7 @@ fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
     let size = (my * my).checked_mul(planes * bins);
     let size =
         size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
-    blank(size, T::nan(), MATRICES)
+    Ok(blank(size, T::nan(), MATRICES)?)
 }
 
 /// `u = u + M p`, row after row of M, four at a time.

@@ -54,7 +54,7 @@ impl Piece {
     pub(super) fn fit(&mut self, (row, column, rows): (usize, usize, usize)) -> Result<()> {
         unwritten(&mut self.row, row, f64::NAN, COEFFICIENTS, &Threads::One)?;
         unwritten(&mut self.column, column, Complex::default(), COEFFICIENTS, &Threads::One)?;
-        unwritten(&mut self.rows, rows, Complex::default(), COEFFICIENTS, &Threads::One)
+        Ok(unwritten(&mut self.rows, rows, Complex::default(), COEFFICIENTS, &Threads::One)?)
     }
 }
 

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::error::{Error, Result};
+use crate::error::{OutOfMemory, Result};
 
 /// The workers beside a calling thread, and the process that has them.
 #[derive(Clone)]
@@ -28,7 +28,7 @@ pub struct Pool {
 const AWAKE: Duration = Duration::from_micros(150);
 
 /// Prefix of the names of our threads.
-pub(crate) const THREAD_NAME: &str = "contact-normal-";
+pub const THREAD_NAME: &str = "contact-normal-";
 
 static POOLS: Mutex<Vec<Pool>> = Mutex::new(Vec::new());
 
@@ -52,7 +52,7 @@ impl Pool {
             .num_threads(count - 1)
             .thread_name(|i| format!("{THREAD_NAME}{i}"))
             .build()
-            .map_err(|e| Error::OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
+            .map_err(|e| OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
         let pool = Pool { process, count, workers: Arc::new(workers), awake: Arc::default() };
         pools.push(pool.clone());
         Ok(pool)

@@ -18,7 +18,7 @@ use std::ops::Deref;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
-use crate::error::{Error, Result};
+use crate::error::{OutOfMemory, Result};
 use crate::threads::Threads;
 use pages::{ask_for_huge_pages, give_pages_back, lengthen};
 
@@ -35,6 +35,8 @@ const TOO_LARGE_TO_KEEP: usize = 96 << 20;
 /// Arrays of so many values rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
 /// product.
 const RESTS: usize = 1 << 23;
+/// Of as many as the caller says.
+static RESTING: AtomicUsize = AtomicUsize::new(RESTS);
 
 /// A `Vec` of some type, and what it held last.
 struct Kept {
@@ -54,7 +56,7 @@ struct Shelf {
 static SHELF: Mutex<Shelf> = Mutex::new(Shelf { blocks: VecDeque::new(), bytes: 0 });
 
 /// n zeros. `what` they are says the message.
-pub(crate) fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) -> Result<Vec<A>> {
+pub fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     reserve(&mut v, n, what)?;
     v.resize(n, A::default());
@@ -63,7 +65,7 @@ pub(crate) fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) ->
 
 /// Makes v n values long that are all written before they are read: it may hold anything, where it can a `mark`, which shows if they
 /// are not. The threads first touch its pages together.
-pub(crate) fn unwritten<A: Copy + Send + Sync + 'static>(
+pub fn unwritten<A: Copy + Send + Sync + 'static>(
     v: &mut Vec<A>,
     n: usize,
     mark: A,
@@ -88,14 +90,14 @@ pub(crate) fn unwritten<A: Copy + Send + Sync + 'static>(
 }
 
 /// A new array of n values that are all written before they are read.
-pub(crate) fn blank<A: Copy + Send + Sync + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
+pub fn blank<A: Copy + Send + Sync + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     unwritten(&mut v, n, mark, what, &Threads::One)?;
     Ok(v)
 }
 
 /// Room for n values: what is put there later allocates nothing.
-pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
+pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n <= v.capacity() {
         return Ok(());
     }
@@ -109,7 +111,7 @@ pub(crate) fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: 
 }
 
 /// The same where few of them may be put there: in small pages, so that the others take no memory.
-pub(crate) fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
+pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     ask_for_room(&mut v, n, what)?;
     Ok(v)
@@ -126,7 +128,7 @@ fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
 }
 
 fn ask_for_room<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
-    let refused = |_| Error::OutOfMemory(format!("no memory for {n} values of {what}"));
+    let refused = |_| OutOfMemory(format!("no memory for {n} values of {what}"));
     v.try_reserve_exact(n - v.len()).map_err(refused)
 }
 
@@ -146,28 +148,17 @@ fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
 }
 
 /// Whether an array of n values rests.
-pub(crate) fn rests(n: usize) -> bool {
-    n >= least_resting()
+pub fn rests(n: usize) -> bool {
+    n >= RESTING.load(Ordering::Relaxed)
 }
 
-#[cfg(not(test))]
-fn least_resting() -> usize {
-    RESTS
-}
-
-#[cfg(test)]
-thread_local! {
-    /// Tests of small grids let smaller arrays rest.
-    pub(crate) static LEAST_RESTING: std::cell::Cell<usize> = const { std::cell::Cell::new(RESTS) };
-}
-
-#[cfg(test)]
-fn least_resting() -> usize {
-    LEAST_RESTING.get()
+/// Lets arrays of so many values rest, and of more. No result depends on it.
+pub fn rest_from(n: usize) {
+    RESTING.store(n, Ordering::Relaxed);
 }
 
 /// Makes room for n values that wake when they are first needed, and are all written before they are read. Small arrays are awake.
-pub(crate) fn asleep<A: Copy + Send + Sync + 'static>(
+pub fn asleep<A: Copy + Send + Sync + 'static>(
     v: &mut Vec<A>,
     n: usize,
     mark: A,
@@ -182,7 +173,7 @@ pub(crate) fn asleep<A: Copy + Send + Sync + 'static>(
 }
 
 /// An array that is not needed for a while: a large one is empty then.
-pub(crate) fn rest<A>(values: &mut Vec<A>) {
+pub fn rest<A>(values: &mut Vec<A>) {
     if rests(values.capacity()) {
         values.clear();
         give_pages_back(values);
@@ -190,13 +181,13 @@ pub(crate) fn rest<A>(values: &mut Vec<A>) {
 }
 
 /// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
-pub(crate) fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
+pub fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     debug_assert!(n <= values.capacity(), "room for {n} values");
     lengthen(values, n, mark, threads);
 }
 
 /// Keeps the memory of arrays that nobody needs any more: they are empty then.
-pub(crate) fn keep<A: Copy + Send + 'static, const K: usize>(arrays: [&mut Vec<A>; K]) {
+pub fn keep<A: Copy + Send + 'static, const K: usize>(arrays: [&mut Vec<A>; K]) {
     arrays.into_iter().for_each(|values| keep_one(take(values)));
 }
 
@@ -248,14 +239,14 @@ impl Drop for Held {
 }
 
 /// Gives all that is kept back to the system.
-pub(crate) fn release() {
+pub fn release() {
     if let Ok(mut shelf) = SHELF.try_lock() {
         (shelf.blocks, shelf.bytes) = (VecDeque::new(), 0);
     }
 }
 
 /// Keeps no more than so many bytes from here on.
-pub(crate) fn keep_at_most(bytes: usize) {
+pub fn keep_at_most(bytes: usize) {
     ALLOWED.store(bytes, Ordering::Relaxed);
     if let Ok(mut shelf) = SHELF.try_lock() {
         shelf.shrink_to(bytes);
@@ -263,12 +254,12 @@ pub(crate) fn keep_at_most(bytes: usize) {
 }
 
 /// Bytes that are kept.
-pub(crate) fn kept() -> usize {
+pub fn kept() -> usize {
     SHELF.try_lock().map_or(0, |shelf| shelf.bytes)
 }
 
 /// Values that are computed, of any type: their memory is not kept.
-pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
+pub fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
     let mut collected = Vec::new();
     allocate(&mut collected, values.len(), what)?;
     collected.extend(values);
@@ -276,10 +267,7 @@ pub(crate) fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str)
 }
 
 /// An array that is computed.
-pub(crate) fn computed<A: Copy + Send + 'static>(
-    values: impl ExactSizeIterator<Item = A>,
-    what: &str,
-) -> Result<Vec<A>> {
+pub fn computed<A: Copy + Send + 'static>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
     let mut computed = Vec::new();
     reserve(&mut computed, values.len(), what)?;
     computed.extend(values);

@@ -9,7 +9,7 @@ mod pool;
 use std::sync::{Mutex, PoisonError};
 
 use pool::Pool;
-pub(crate) use pool::THREAD_NAME;
+pub use pool::THREAD_NAME;
 
 use crate::error::Result;
 
@@ -218,11 +218,11 @@ impl Threads {
 }
 
 /// Ends the threads that are kept, and that no solver holds.
-pub(crate) fn release() {
+pub fn release() {
     Pool::release();
 }
 
 /// Threads that are kept, beside those of the callers.
-pub(crate) fn kept() -> usize {
+pub fn kept() -> usize {
     Pool::kept()
 }
