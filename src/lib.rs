@@ -46,7 +46,7 @@
 //! | [`scene`] | what is simulated: bodies, undeformed distance, load, and the effects that it names |
 //! | [`effects`] | one file per effect, and the one list of them |
 //! | [`influence`] | kernels (half-space, periodic, the caller's tables) and the coefficients made of them |
-//! | [`operator`] | u = A p by FFT, and by direct summation |
+//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
@@ -73,9 +73,6 @@ pub mod grid;
 pub mod influence;
 pub mod methods;
 pub mod operator;
-#[cfg(feature = "test-panics")]
-#[doc(hidden)]
-pub mod panics;
 pub mod progress;
 pub mod scene;
 pub mod solver;
@@ -83,6 +80,9 @@ pub mod stress;
 
 pub use par::threads;
 pub(crate) use par::{memory, sums};
+#[cfg(feature = "test-panics")]
+#[doc(hidden)]
+pub use toeplitz::panics;
 
 #[cfg(panic = "abort")]
 compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");

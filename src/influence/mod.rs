@@ -30,7 +30,6 @@ use std::sync::Arc;
 pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
-pub(crate) use extremes::SYMMETRY;
 pub use half_space::HalfSpace;
 pub(crate) use half_space::{gauss, gauss_each};
 pub use patches::Patches;

@@ -253,6 +253,11 @@ pub fn keep_at_most(bytes: usize) {
     }
 }
 
+/// Bytes that may be kept.
+pub fn allowed() -> usize {
+    ALLOWED.load(Ordering::Relaxed)
+}
+
 /// Bytes that are kept.
 pub fn kept() -> usize {
     SHELF.try_lock().map_or(0, |shelf| shelf.bytes)

@@ -6,7 +6,7 @@
 
 mod pool;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use pool::Pool;
 pub use pool::THREAD_NAME;
@@ -25,6 +25,9 @@ pub enum Threads {
 
 /// Elements of a grid from which on a solve is faster if several threads share its products; a product alone is from 64 x 64 on.
 const WORTH_WAKING: usize = 110 * 110;
+
+/// How often a lock is tried before it counts as held for long.
+const PATIENCE: usize = 1000;
 
 /// Pieces that work is cut into, per thread: a thread held up by others leaves its share to them.
 const PIECES: usize = 8;
@@ -225,4 +228,17 @@ pub fn release() {
 /// Threads that are kept, beside those of the callers.
 pub fn kept() -> usize {
     Pool::kept()
+}
+
+/// The lock of what the process shares; none if another thread holds it for long. A process that was forked while another thread held it
+/// would wait for ever.
+pub fn lock<A>(shared: &Mutex<A>) -> Option<MutexGuard<'_, A>> {
+    for _ in 0..PATIENCE {
+        match shared.try_lock() {
+            Ok(held) => return Some(held),
+            Err(TryLockError::Poisoned(held)) => return Some(held.into_inner()),
+            Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+        }
+    }
+    None
 }
