@@ -27,6 +27,12 @@ pub enum Error {
     OutOfMemory(String),
 }
 
+impl From<par::OutOfMemory> for Error {
+    fn from(par::OutOfMemory(message): par::OutOfMemory) -> Error {
+        Error::OutOfMemory(message)
+    }
+}
+
 /// Result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 

@@ -46,15 +46,15 @@
 //! | [`scene`] | what is simulated: bodies, undeformed distance, load, and the effects that it names |
 //! | [`effects`] | one file per effect, and the one list of them |
 //! | [`influence`] | kernels (half-space, periodic, the caller's tables) and the coefficients made of them |
-//! | [`operator`] | u = A p by FFT, and by direct summation |
+//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
-//! | [`threads`] | the pool |
-//! | `blocks`, `bounding_box`, `sums` | passes over a grid, by all threads and in vectors |
+//! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
+//! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
 #![warn(missing_docs)]
@@ -71,18 +71,18 @@ pub mod ffi;
 pub mod friction;
 pub mod grid;
 pub mod influence;
-mod memory;
 pub mod methods;
 pub mod operator;
-#[cfg(feature = "test-panics")]
-#[doc(hidden)]
-pub mod panics;
 pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod stress;
-mod sums;
-pub mod threads;
+
+pub use par::threads;
+pub(crate) use par::{memory, sums};
+#[cfg(feature = "test-panics")]
+#[doc(hidden)]
+pub use toeplitz::panics;
 
 #[cfg(panic = "abort")]
 compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");

@@ -18,7 +18,7 @@ impl Snapshot {
     pub fn reserve(&mut self, state: &State, what: &str) -> Result<()> {
         reserve(&mut self.p, state.p.len(), what)?;
         reserve(&mut self.contact, state.p.len(), what)?;
-        reserve(&mut self.at_limit, state.at_limit.len(), what)
+        Ok(reserve(&mut self.at_limit, state.at_limit.len(), what)?)
     }
 
     /// Keeps what a state has found.

@@ -40,7 +40,7 @@ impl Patches<'_> {
             return Ok(None);
         }
         let of = |(h, patch): (&f64, &i32)| if *patch == NONE { f64::INFINITY } else { *h };
-        collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches").map(Some)
+        Ok(Some(collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches")?))
     }
 }
 

@@ -91,6 +91,12 @@ impl From<Error> for Refusal {
     }
 }
 
+impl From<par::OutOfMemory> for Refusal {
+    fn from(error: par::OutOfMemory) -> Refusal {
+        Error::from(error).into()
+    }
+}
+
 impl From<Outcome> for i32 {
     fn from(stop: Outcome) -> contact_normal_status {
         match stop {

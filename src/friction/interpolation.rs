@@ -139,7 +139,7 @@ fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
 /// Of each fine place the two coarse ones between which its centre lies, with their weights.
 fn places(fine: usize, coarse: usize) -> Result<Vec<[(usize, f64); 2]>> {
     let of = |i: usize| if fine == coarse { [(i, 1.0), (i, 0.0)] } else { neighbours(i, coarse) };
-    collected((0..fine).map(of), "the start from a coarser grid")
+    Ok(collected((0..fine).map(of), "the start from a coarser grid")?)
 }
 
 /// The two coarse places between which a fine one lies, and their weights.

@@ -11,7 +11,7 @@ use super::row_tables::{Full, RowTables};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, keep, zeros};
-use crate::operator::fft::{good_length, room_for_plans, Complex, Real};
+use crate::operator::fft::{good_length, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
@@ -91,8 +91,7 @@ impl RowProduct {
     ) -> Result<RowProduct> {
         let Grid { mx, my, .. } = *grid;
         let px = good_length(2 * mx - 1);
-        room_for_plans::<f64>(&[px])?;
-        let transform = RowTransform::<f64>::new(px);
+        let transform = RowTransform::<f64>::new(px)?;
         let nb = transform.bins();
         let size = my.checked_mul(my).and_then(|n| n.checked_mul(nb));
         let size =

@@ -12,7 +12,7 @@ use super::coefficients::Entry;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep, zeros};
-use crate::operator::fft::{room_for_plans, ColumnTransform, Complex, Real};
+use crate::operator::fft::{ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
@@ -43,8 +43,7 @@ pub fn general<T: Real>(
     unit: f64,
     threads: &Threads,
 ) -> Result<Spectrum<T>> {
-    room_for_plans::<f64>(&[px, py])?;
-    let (rows, columns) = (RowTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+    let (rows, columns) = (RowTransform::<f64>::new(px)?, ColumnTransform::<f64>::new(py)?);
     let (nb, mx, my) = (rows.bins(), grid.mx as i64, grid.my as i64);
     let nothing = Complex::new(f64::NAN, f64::NAN);
     let mut in_x = blank((2 * grid.my - 1) * nb, [nothing; 3], SPECTRUM)?;
@@ -91,8 +90,7 @@ pub fn even<T: Real>(
     unit: f64,
     threads: &Threads,
 ) -> Result<Option<Spectrum<T>>> {
-    room_for_plans::<f64>(&[px, py])?;
-    let (rows, columns) = (ColumnTransform::<f64>::new(px), ColumnTransform::<f64>::new(py));
+    let (rows, columns) = (ColumnTransform::<f64>::new(px)?, ColumnTransform::<f64>::new(py)?);
     let (nb, half) = (px / 2 + 1, py / 2 + 1);
     let of_transforms = rows.scratch_length().max(columns.scratch_length());
     let piece = |_| -> Result<(Vec<_>, Vec<_>)> { Ok((zeros(px.max(py), SPECTRUM)?, zeros(of_transforms, SPECTRUM)?)) };

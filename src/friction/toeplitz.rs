@@ -26,7 +26,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{computed, keep};
 use crate::operator::columns::for_each_mirrored_block;
-use crate::operator::fft::{good_length, room_for_plans, ColumnTransform, Complex, Real};
+use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
 use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
@@ -132,13 +132,12 @@ impl<T: Real> Toeplitz<T> {
         unit: f64,
         threads: &Threads,
     ) -> Result<Toeplitz<T>> {
-        room_for_plans::<T>(&[px, py])?;
         Ok(Toeplitz {
             mx: grid.mx,
             my: grid.my,
-            rows: ColumnTransform::new(px),
-            real_rows: RowTransform::new(px),
-            columns: ColumnTransform::new(py),
+            rows: ColumnTransform::new(px)?,
+            real_rows: RowTransform::new(px)?,
+            columns: ColumnTransform::new(py)?,
             spectrum,
             is_uncoupled,
             threads: threads.clone(),

@@ -3,8 +3,7 @@
 /// Values that are looked at together: that the compiler can vectorise.
 const LANES: usize = 8;
 
-/// Round-off allowed in a symmetric table, relative to its largest coefficient: single-precision tables pass.
-pub(crate) const SYMMETRY: f64 = 1e-7;
+pub(super) use toeplitz::coefficients::SYMMETRY;
 
 /// Of a table, or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

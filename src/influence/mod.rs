@@ -28,7 +28,6 @@ mod table;
 pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
-pub(crate) use extremes::SYMMETRY;
 pub use half_space::HalfSpace;
 pub(crate) use half_space::{gauss, gauss_each};
 pub use kernel::Kernel;

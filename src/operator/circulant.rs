@@ -7,10 +7,11 @@
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::fft::Real;
+use toeplitz::fft::Real;
+use toeplitz::{Even, Product, SetUp};
+
 use super::operator::Operator;
 use super::periods::even_periods;
-use super::set_up::{Even, SetUp};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -49,15 +50,15 @@ impl<T: Real> Operator<T> {
             }
             1.0 / (factor * value)
         };
-        let mut inverse = Operator::of_period(grid, period, threads)?;
+        let mut inverse = Product::new((grid.mx, grid.my), period, threads)?;
         if coefficients.wave(grid, 1.0 / grid.dx, 0.0).is_some() {
             inverse.set_values(|x, y| finish(wave_of(coefficients, grid, period, (x, y))))?;
-            return Ok(positive.into_inner().then_some(inverse));
+            return Ok(positive.into_inner().then(|| Operator::by(inverse, grid)));
         }
         let given = (period.0 / 2 + 1, period.1 / 2 + 1);
         let fill = |ky: i64, row: &mut [f64]| coefficients.fill_even_row(ky, row);
         inverse.set_even(&Even { given, fill, finish }, &mut SetUp::default())?;
-        Ok(positive.into_inner().then_some(inverse))
+        Ok(positive.into_inner().then(|| Operator::by(inverse, grid)))
     }
 }
 

@@ -2,46 +2,36 @@
 //!
 //! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
 //!
-//! The product is fused and pruned: transforms in x of those rows only that hold pressures ([`Rows`]); in y a [`Convolution`], or where
-//! A is Toeplitz in x only a product by matrices ([`PerRow`]); transforms back in x, to which a diagonal is added.
+//! The products are those of the crate toeplitz, or where A is Toeplitz in x only by matrices
+//! ([`row_tables`](super::row_tables)); the diagonal is added as they are transformed back.
 
 use std::iter::once;
-use std::ops::Range;
 
-use super::convolution::Convolution;
-use super::fft::{room_for_plans, Complex, Real};
-use super::lane_rows::LaneRows;
+use toeplitz::fft::Real;
+use toeplitz::{Even, Memory, Product, SetUp};
+
+use super::engine::Engine;
 use super::periods::{full_reach, periods, Reach};
 use super::row_tables::PerRow;
-use super::row_transform::RowTransform;
-use super::rows::{Product, Rows};
-use super::set_up::{Even, SetUp};
-use super::workspace::Workspace;
+use super::workspace::{Needs, Workspace};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Patches};
-use crate::memory::{computed, reserve, wake};
+use crate::memory::{computed, reserve};
 use crate::threads::Threads;
 
 /// What memory is for.
 const DIAGONAL: &str = "the operator's diagonal";
 
-/// The y direction.
-pub(super) enum Columns<T: Real> {
-    Convolution(Convolution<T>),
-    PerRow(PerRow<T>),
-}
-
 /// The operator of one grid.
 pub struct Operator<T: Real> {
-    pub(super) rows: Rows<T>,
-    pub(super) columns: Columns<T>,
+    engine: Engine<T>,
     /// Products with pressures that reach farther are wrong. Only even coefficients make use of it.
     reach: Reach,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
-    pub(super) coupling: Option<Patches>,
+    coupling: Option<Patches>,
 }
 
 impl<T: Real> Operator<T> {
@@ -70,51 +60,34 @@ impl<T: Real> Operator<T> {
         self.reach
     }
 
-    /// Plans of a period; the spectrum is still to be computed.
-    pub(super) fn of_period(grid: &Grid, (px, py): (usize, usize), threads: &Threads) -> Result<Operator<T>> {
-        room_for_plans::<T>(&[px, py])?;
-        room_for_plans::<f64>(&[px, py])?;
-        Ok(Operator {
-            rows: Rows::new(grid.mx, grid.my, px, threads),
-            columns: Columns::Convolution(Convolution::new((px, py))),
-            reach: full_reach(grid),
-            diagonal: Vec::new(),
-            coupling: None,
-        })
+    /// Plans of a period; the symbol is still to be computed.
+    fn of_period(grid: &Grid, period: (usize, usize), threads: &Threads) -> Result<Operator<T>> {
+        Ok(Operator::by(Product::new((grid.mx, grid.my), period, threads)?, grid))
+    }
+
+    /// By a product alone.
+    pub(super) fn by(product: Product<T>, grid: &Grid) -> Operator<T> {
+        Operator { engine: Engine::Toeplitz(product), reach: full_reach(grid), diagonal: Vec::new(), coupling: None }
     }
 
     /// The threads of its products.
     pub fn threads(&self) -> &Threads {
-        &self.rows.threads
-    }
-
-    /// The periods.
-    pub(super) fn periods(&self) -> (usize, usize) {
-        let in_y = match &self.columns {
-            Columns::Convolution(convolution) => convolution.columns.length(),
-            Columns::PerRow(_) => self.rows.my,
-        };
-        (self.rows.transform.length(), in_y)
+        self.engine.threads()
     }
 
     /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
     /// error, before it is renewed again.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
-        let (px, py) = periods(coefficients, grid, self.reach);
-        let threads = self.rows.threads.clone();
-        let is_new = px != self.rows.transform.length();
-        if is_new {
-            self.rows = Rows::new(grid.mx, grid.my, px, &threads);
-        }
+        let (period, threads) = (periods(coefficients, grid, self.reach), self.threads().clone());
         if let Some((tables, least)) = coefficients.row_tables() {
-            let per_row = PerRow::new(tables, (least, factor), &RowTransform::new(px), &threads)?;
-            self.columns = Columns::PerRow(per_row);
+            self.engine = Engine::PerRow(PerRow::new(tables, (least, factor), period.0, &threads)?);
         } else {
-            match &self.columns {
-                Columns::Convolution(convolution) if !is_new && convolution.columns.length() == py => {}
-                _ => self.columns = Columns::Convolution(Convolution::new((px, py))),
+            if !matches!(&self.engine, Engine::Toeplitz(product) if product.period() == period) {
+                self.engine = Engine::Toeplitz(Product::new((grid.mx, grid.my), period, &threads)?);
             }
-            self.set_spectrum(coefficients, factor, grid, set_up)?;
+            if let Engine::Toeplitz(product) = &mut self.engine {
+                set_symbol(product, (coefficients, factor), (grid, self.reach), set_up)?;
+            }
         }
         let diagonal = coefficients.diagonal().unwrap_or_default();
         self.diagonal.clear();
@@ -124,59 +97,11 @@ impl<T: Real> Operator<T> {
         Ok(())
     }
 
-    fn set_spectrum(
-        &mut self,
-        coefficients: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        set_up: &mut SetUp,
-    ) -> Result<()> {
-        if coefficients.is_even(grid) {
-            let repeats = coefficients.repeats(grid);
-            let given = |m: usize, reach: usize, repeats: bool| if repeats { m / 2 + 1 } else { reach + 1 };
-            let even = Even {
-                given: (given(grid.mx, self.reach.0, repeats.0), given(grid.my, self.reach.1, repeats.1)),
-                fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
-                finish: |value| factor * value,
-            };
-            return self.set_even(&even, set_up);
-        }
-        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        convolution.set_uneven((coefficients, factor), grid, rows.transform.length(), &rows.threads, set_up)
-    }
-
-    /// Computes a spectrum of even coefficients, of the period that there is.
-    pub(super) fn set_even<F, G>(&mut self, even: &Even<F, G>, set_up: &mut SetUp) -> Result<()>
-    where
-        F: Fn(i64, &mut [f64]) + Sync + Send,
-        G: Fn(f64) -> f64 + Sync + Send,
-    {
-        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        convolution.set_even(even, rows.transform.length(), &rows.threads, set_up)
-    }
-
-    /// A spectrum of even coefficients that is known: `value(x, y)` of bins >= 0.
-    pub(super) fn set_values(&mut self, value: impl Fn(usize, usize) -> f64) -> Result<()> {
-        let Operator { rows, columns: Columns::Convolution(convolution), .. } = self else { return Ok(()) };
-        convolution.set_values((rows.transform.bins(), rows.transform.length()), value)
-    }
-
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
         let diagonal = computed(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
-        Ok(Operator {
-            rows: Rows::new(self.rows.mx, self.rows.my, self.rows.transform.length(), &self.rows.threads),
-            columns: match &self.columns {
-                Columns::Convolution(convolution) => {
-                    let px = self.rows.transform.length();
-                    Columns::Convolution(convolution.in_precision(px, factor, &self.rows.threads)?)
-                }
-                Columns::PerRow(per_row) => Columns::PerRow(per_row.in_precision(factor)?),
-            },
-            reach: self.reach,
-            diagonal,
-            coupling: self.coupling.clone(),
-        })
+        let (engine, coupling) = (self.engine.in_precision(factor)?, self.coupling.clone());
+        Ok(Operator { engine, reach: self.reach, diagonal, coupling })
     }
 
     /// Memory for products by this operator.
@@ -186,7 +111,8 @@ impl<T: Real> Operator<T> {
 
     /// Elements of the grid.
     pub fn elements(&self) -> usize {
-        self.rows.mx * self.rows.my
+        let (mx, my) = self.engine.grid();
+        mx * my
     }
 
     /// Whether A has more on its diagonal than the coefficients.
@@ -196,77 +122,100 @@ impl<T: Real> Operator<T> {
 
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
-        let columns = match &self.columns {
-            Columns::Convolution(convolution) => convolution.bytes(),
-            Columns::PerRow(per_row) => per_row.bytes(),
-        };
-        columns + size_of_val(&self.diagonal[..])
+        self.engine.bytes() + size_of_val(&self.diagonal[..])
+    }
+
+    /// What its products need: the workspace of one operator serves another of the same needs.
+    pub fn needs(&self) -> Needs {
+        let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
+        Needs { room: self.engine.room(), masked }
     }
 
     /// `u = A p`.
     pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
-        let n = self.rows.mx * self.rows.my;
-        assert!(p.len() == n && u.len() == n);
-        let Workspace { product, masked, .. } = workspace;
+        let Workspace { memory, masked, .. } = workspace;
         match &self.coupling {
-            None => self.without_coupling(p, u, product),
-            Some(coupling) => apply_coupled(coupling, p, u, masked, |p, u| self.without_coupling(p, u, product)),
+            None => self.without_coupling(p, u, memory),
+            Some(coupling) => apply_coupled(coupling, p, u, masked, |p, u| self.without_coupling(p, u, memory)),
         }
     }
 
     /// `p = A p`.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
-        assert!(p.len() == self.rows.mx * self.rows.my);
-        let Workspace { product, masked, given, .. } = workspace;
+        let Workspace { memory, masked, given, .. } = workspace;
         if let Some(coupling) = &self.coupling {
             given.copy_from_slice(p);
-            return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, product));
+            return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, memory));
         }
-        let loaded = self.forward(p, product);
-        self.convolve(loaded, product);
+        self.engine.forward(p, memory);
         if self.diagonal.is_empty() {
-            return self.rows.back(p, product, self.lanes());
+            return self.engine.back(p, memory);
         }
-        self.rows.back_with(p, product, self.lanes(), |first, p, values| {
+        self.engine.back_with(p, memory, |first, p, values| {
             for ((p, value), d) in p.iter_mut().zip(values).zip(&self.diagonal[first..]) {
                 *p = *value + *d * *p;
             }
         });
     }
 
-    fn without_coupling(&self, p: &[T], u: &mut [T], product: &mut Product<T>) {
-        let loaded = self.forward(p, product);
-        self.convolve(loaded, product);
+    fn without_coupling(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
+        self.engine.forward(p, memory);
         if self.diagonal.is_empty() {
-            return self.rows.back(u, product, self.lanes());
+            return self.engine.back(u, memory);
         }
-        self.rows.back_with(u, product, self.lanes(), |first, u, values| {
+        self.engine.back_with(u, memory, |first, u, values| {
             for (((u, value), d), p) in u.iter_mut().zip(values).zip(&self.diagonal[first..]).zip(&p[first..]) {
                 *u = *value + *d * *p;
             }
         });
     }
+}
 
-    /// Transforms the rows that hold pressures; returns which.
-    fn forward(&self, p: &[T], product: &mut Product<T>) -> Range<usize> {
-        let n = product.bins.len().max(self.bins());
-        wake(&mut product.bins, n, Complex::new(T::nan(), T::nan()), self.threads());
-        self.rows.forward(p, product, self.lanes())
+/// Coefficients on a grid, as products ask for them.
+struct OnGrid<'a>(&'a Coefficients, &'a Grid);
+
+impl toeplitz::Coefficients for OnGrid<'_> {
+    fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        self.0.fill_row(kx, ky, out);
     }
 
-    /// The transforms of rows in the places of vectors; None: rows go by themselves.
-    pub(super) fn lanes(&self) -> Option<&LaneRows<T>> {
-        match &self.columns {
-            Columns::Convolution(convolution) => convolution.lanes(),
-            Columns::PerRow(_) => None,
-        }
+    fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        self.0.fill_symmetric_row(kx, ky, out);
     }
 
-    fn convolve(&self, loaded: Range<usize>, product: &mut Product<T>) {
-        match &self.columns {
-            Columns::Convolution(convolution) => convolution.apply(&self.rows, loaded, product),
-            Columns::PerRow(per_row) => per_row.apply(&self.rows, loaded, product),
-        }
+    fn are_symmetric(&self) -> bool {
+        self.0.is_symmetric(self.1)
+    }
+}
+
+/// Computes the symbol of coefficients times a factor, for pressures within a reach.
+fn set_symbol<T: Real>(
+    product: &mut Product<T>,
+    (coefficients, factor): (&Coefficients, f64),
+    (grid, reach): (&Grid, Reach),
+    set_up: &mut SetUp,
+) -> Result<()> {
+    if !coefficients.is_even(grid) {
+        return Ok(product.set_uneven((&OnGrid(coefficients, grid), factor), set_up)?);
+    }
+    let repeats = coefficients.repeats(grid);
+    let given = |m: usize, reach: usize, repeats: bool| if repeats { m / 2 + 1 } else { reach + 1 };
+    let even = Even {
+        given: (given(grid.mx, reach.0, repeats.0), given(grid.my, reach.1, repeats.1)),
+        fill: |ky, row: &mut [f64]| coefficients.fill_row(0, ky, row),
+        finish: |value| factor * value,
+    };
+    Ok(product.set_even(&even, set_up)?)
+}
+
+impl<T: Real> Workspace<T> {
+    /// Memory for products by any of these operators.
+    pub fn new<'a>(operators: impl Iterator<Item = &'a Operator<T>> + Clone) -> Result<Workspace<T>>
+    where
+        T: 'a,
+    {
+        let needs = operators.clone().map(Operator::needs).fold(Needs::default(), Needs::max);
+        Workspace::of(needs, operators.map(Operator::threads).next().unwrap_or(&Threads::One))
     }
 }
 

@@ -7,8 +7,8 @@
 //! A circulant in a direction   m: nothing is padded
 //! ```
 
-use super::fft::good_length;
-use super::stage_plan::{have_stages, length_for_stages};
+use toeplitz::lengths::{good_length, have_stages, length_for_stages};
+
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 

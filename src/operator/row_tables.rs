@@ -10,10 +10,11 @@
 
 use std::ops::Range;
 
-use super::columns::for_each_block;
-use super::fft::{ColumnTransform, Complex, Real};
-use super::row_transform::RowTransform;
-use super::rows::{Product, Rows};
+use toeplitz::block::for_each_block;
+use toeplitz::fft::row_transform::RowTransform;
+use toeplitz::fft::{ColumnTransform, Complex, Real};
+use toeplitz::{Memory, Room, Rows};
+
 use crate::error::{Error, Result};
 use crate::influence::RowTables;
 use crate::memory::{blank, computed, keep, zeros};
@@ -24,7 +25,8 @@ const MATRICES: &str = "the row tables' transforms";
 
 /// The matrices, with the normalisation `1/px` folded in.
 pub(super) struct PerRow<T: Real> {
-    my: usize,
+    /// Transforms in x.
+    pub rows: Rows<T>,
     /// 1: real, 2: and imaginary.
     planes: usize,
     /// `[bin][plane][jy][iy]`.
@@ -34,13 +36,13 @@ pub(super) struct PerRow<T: Real> {
 impl<T: Real> PerRow<T> {
     /// Of tables that are even in x: two of their rows are transformed at a time, one as the real and one as the imaginary part.
     fn even(tables: &RowTables, (least, factor): (f64, f64), px: usize, threads: &Threads) -> Result<PerRow<T>> {
-        let (mx, my, transform) = (tables.mx, tables.my, ColumnTransform::<f64>::new(px));
+        let (mx, my, transform) = (tables.mx, tables.my, ColumnTransform::<f64>::new(px)?);
         let mut values = matrices(my, 1, px / 2 + 1)?;
         let nan = Complex::new(f64::NAN, f64::NAN);
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
         // Rows may be long: their scratch is as large as an array of the grid then.
         let scratch = |_| zeros(transform.scratch_length(), MATRICES);
-        let mut pieces = (0..threads.count()).map(scratch).collect::<Result<Vec<_>>>()?;
+        let mut pieces = (0..threads.count()).map(scratch).collect::<par::Result<Vec<_>>>()?;
         let scale = factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
@@ -73,20 +75,16 @@ impl<T: Real> PerRow<T> {
             });
         }
         keep([&mut pairs]);
-        Ok(PerRow { my, planes: 1, values })
+        Ok(PerRow { rows: Rows::new((mx, my), px, threads)?, planes: 1, values })
     }
 
-    /// Of tables, transformed by `rows`; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
-    pub fn new(
-        tables: &RowTables,
-        (least, factor): (f64, f64),
-        rows: &RowTransform<f64>,
-        threads: &Threads,
-    ) -> Result<PerRow<T>> {
-        let (my, nb, px, planes) = (tables.my, rows.bins(), rows.length(), 2);
+    /// Of tables, with a period in x; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
+    pub fn new(tables: &RowTables, (least, factor): (f64, f64), px: usize, threads: &Threads) -> Result<PerRow<T>> {
         if tables.is_even_in_x() {
             return PerRow::even(tables, (least, factor), px, threads);
         }
+        let rows = RowTransform::<f64>::new(px)?;
+        let (my, nb, planes) = (tables.my, rows.bins(), 2);
         let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let piece = |_| Ok((zeros(px, MATRICES)?, rows.scratch()?));
@@ -111,26 +109,35 @@ impl<T: Real> PerRow<T> {
                 }
             });
         }
-        Ok(PerRow { my, planes, values })
+        Ok(PerRow { rows: Rows::new((tables.mx, my), px, threads)?, planes, values })
     }
 
     /// The same in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
         let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
-        Ok(PerRow { my: self.my, planes: self.planes, values })
+        let Rows { mx, my, transform, threads } = &self.rows;
+        Ok(PerRow { rows: Rows::new((*mx, *my), transform.length(), threads)?, planes: self.planes, values })
     }
 
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
     }
 
-    /// Multiplies all columns; rows `loaded` hold pressures.
-    pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, product: &mut Product<T>) {
-        let Product { bins, pieces } = product;
-        let (nb, length) = (rows.transform.bins(), self.my);
-        for_each_block(&mut bins[..length * nb], nb, &rows.threads, pieces, |block, piece| {
+    /// What its products need.
+    pub fn room(&self) -> Room {
+        let my = self.rows.my;
+        let room = self.rows.room(my, 0);
+        Room { row: room.row.max(2 * my), ..room }
+    }
+
+    /// `A p`, transformed in x.
+    pub fn forward(&self, p: &[T], memory: &mut Memory<T>) {
+        let loaded = self.rows.forward(p, memory);
+        let Memory { bins, pieces, .. } = memory;
+        let (nb, length) = (self.rows.transform.bins(), self.rows.my);
+        for_each_block(&mut bins[..length * nb], nb, &self.rows.threads, pieces, |block, piece| {
             #[cfg(feature = "test-panics")]
-            crate::panics::at_a_block();
+            toeplitz::panics::at_a_block();
             let columns = &mut piece.columns[..block.columns() * length];
             block.gather(loaded.clone(), length, columns);
             for (c, column) in columns.chunks_exact_mut(length).enumerate() {
@@ -142,7 +149,7 @@ impl<T: Real> PerRow<T> {
 
     /// Multiplies one column, that of x bin `bin`, which holds pressures in rows `loaded` only.
     fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
-        let my = self.my;
+        let my = self.rows.my;
         let (re, im) = sums[..2 * my].split_at_mut(my);
         re.fill(T::zero());
         im.fill(T::zero());
@@ -169,7 +176,7 @@ fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
     let size = (my * my).checked_mul(planes * bins);
     let size =
         size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
-    blank(size, T::nan(), MATRICES)
+    Ok(blank(size, T::nan(), MATRICES)?)
 }
 
 /// `u = u + M p`, row after row of M, four at a time.

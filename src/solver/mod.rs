@@ -144,7 +144,7 @@ impl Solver {
     fn set_up(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<(Solver, f64)> {
         let began = Instant::now();
         // The scene is refused first; threads that cannot be had, and options that are none, after it.
-        let threads = options.check().and_then(|()| Threads::new(options.threads));
+        let threads = options.check().and_then(|()| Ok(Threads::new(options.threads)?));
         let lowest = if !has_surface {
             scene.check_effects_and_bodies()?;
             f64::INFINITY

@@ -62,7 +62,7 @@ impl<'a> Loads<'a> {
             (Some(patches), Part::Patch(patch)) => patches.factor(patch, i),
             _ => 1.0,
         };
-        collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")
+        Ok(collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")?)
     }
 
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {

@@ -67,7 +67,7 @@ impl<'a> Product<'a> {
     pub fn new(body: &Body, loads: &Loads<'a>, near: bool) -> Result<Product<'a>> {
         let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
         let (px, py) = (period(body.grid.mx), period(body.grid.my));
-        let (transforms, scale) = (Transforms::new(px, py), loads.scale());
+        let (transforms, scale) = (Transforms::new(px, py)?, loads.scale());
         let factor = 1.0 / (px as f64 * py as f64);
         let mut parts = Vec::new();
         for part in loads.parts() {

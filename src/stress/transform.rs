@@ -30,8 +30,8 @@ pub struct Memory {
 
 impl Transforms {
     /// Plans for `px` by `py` values.
-    pub fn new(px: usize, py: usize) -> Transforms {
-        Transforms { rows: ColumnTransform::new(px), columns: ColumnTransform::new(py) }
+    pub fn new(px: usize, py: usize) -> Result<Transforms> {
+        Ok(Transforms { rows: ColumnTransform::new(px)?, columns: ColumnTransform::new(py)? })
     }
 
     /// Values of a period in x and in y.

@@ -191,7 +191,7 @@ impl Direction {
 /// Sums of cosines: the coefficients at offsets up to half the period that have these waves.
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     let (mx, my, (row, rows)) = (grid.mx, grid.my, bins(grid));
-    let (x, y) = (ColumnTransform::<f64>::new(mx), ColumnTransform::<f64>::new(my));
+    let (x, y) = (ColumnTransform::<f64>::new(mx)?, ColumnTransform::<f64>::new(my)?);
     let mut scratch = x.scratch()?;
     y.fit(&mut scratch)?;
     let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;

@@ -34,7 +34,7 @@ impl Krylov {
         self.elements.clear();
         self.elements.extend((0..state.p.len()).filter(|&i| state.contact[i]));
         reserve(&mut self.basis, (RESTART + 1) * self.elements.len(), "GMRES's directions")?;
-        reserve(&mut self.change, self.elements.len(), "GMRES")
+        Ok(reserve(&mut self.change, self.elements.len(), "GMRES")?)
     }
 
     /// The first direction is the residual, whose norm is `beta`.

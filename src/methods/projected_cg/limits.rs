@@ -57,7 +57,7 @@ impl Beyond {
 impl<T: Real> Iteration<T> {
     /// Memory that a scene with limits needs beyond that of one without.
     pub fn reserve_for_limits(&mut self) -> Result<()> {
-        reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")
+        Ok(reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")?)
     }
 
     /// Where elements are at their limit: carries the force as far as p and the deferred corrections can be scaled, and notes what is missing. Returns

@@ -19,7 +19,7 @@ pub(super) struct Truncation {
 impl Truncation {
     /// Room for n elements.
     pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
-        reserve(&mut self.gains, n, "truncated elements")
+        Ok(reserve(&mut self.gains, n, "truncated elements")?)
     }
 
     /// Nothing is to be corrected.

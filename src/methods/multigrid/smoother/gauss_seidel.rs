@@ -58,7 +58,7 @@ impl GaussSeidel {
     pub fn new(influence: &Coefficients, grid: &Grid) -> Result<GaussSeidel> {
         let (mx, my) = (grid.mx, grid.my);
         let px = good_length(2 * mx - 1);
-        let rows = RowTransform::new(px);
+        let rows = RowTransform::new(px)?;
         let nb = rows.bins();
         let mut row = vec![0.0; px];
         let mut scratch = rows.scratch()?;
@@ -77,7 +77,7 @@ impl GaussSeidel {
         let mut halves = Vec::new();
         let mut block = 2 * STRIP;
         while block < 2 * my && my > STRIP {
-            let transform = ColumnTransform::new(block);
+            let transform = ColumnTransform::new(block)?;
             transform.fit(&mut scratch)?;
             let mut kernel: Vec<Complex<f64>> = zeros(nb * block, "the smoother")?;
             for (bin, column) in kernel.chunks_exact_mut(block).enumerate() {

@@ -40,7 +40,7 @@ impl LongRows {
         let (mut halves, mut scratch, mut block) = (Vec::new(), Vec::new(), 2 * STRIP);
         let mut row = Vec::new();
         while block < 2 * mx {
-            let transform = RowTransform::new(block);
+            let transform = RowTransform::new(block)?;
             let mut kernel = zeros(transform.bins(), "the smoother")?;
             row = zeros(block, "the smoother")?;
             let known = block.min(mx);

@@ -77,7 +77,7 @@ impl Segments {
         for found in &mut found {
             reserve(&mut found.segments, block / EIGHT, "the contact area")?;
         }
-        let listed = (0..blocks).map(|_| sparse(block, "the contact area")).collect::<Result<_>>()?;
+        let listed = (0..blocks).map(|_| sparse(block, "the contact area")).collect::<par::Result<_>>()?;
         let sums = vec![[0.0; MOST_SUMS]; blocks];
         Ok(Segments { block, found, count: 0, version: 0, sums, listed, threads: threads.clone() })
     }

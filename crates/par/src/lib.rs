@@ -1,0 +1,34 @@
+//! What a program over large arrays needs of the machine: threads, memory, and sums.
+//!
+//! ```
+//! use par::sums::Sums;
+//! use par::{memory, threads::Threads};
+//!
+//! // The caller's thread and one of a pool.
+//! let threads = Threads::new(2)?;
+//! // An array of 1e6 values, or an error that says what it was for.
+//! let mut values: Vec<f64> = memory::zeros(1_000_000, "the example")?;
+//! threads.for_each_plain_row(&mut values, 1000, |row, values| values.fill(row as f64));
+//! let mut sums = Sums::new();
+//! sums.add::<f64, 1, 0>([&values], [], |[x], []| [x, x * x]);
+//! assert_eq!(sums.values()[0], 1000.0 * (999.0 * 1000.0 / 2.0));
+//! // The memory serves the next array of this type and size.
+//! memory::keep([&mut values]);
+//! # Ok::<(), par::OutOfMemory>(())
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`threads`] | one pool for a process, and work that is cut into pieces: the bits of a result do not depend on the number of threads |
+//! | [`memory`] | arrays whose lack of memory is an error, and the memory of arrays that are gone, for later ones |
+//! | [`sums`] | sums in a fixed order, which the compiler can vectorise |
+
+#![warn(missing_docs)]
+#![deny(unsafe_code)]
+
+mod error;
+pub mod memory;
+pub mod sums;
+pub mod threads;
+
+pub use error::{OutOfMemory, Result};

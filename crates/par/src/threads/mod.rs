@@ -1,0 +1,253 @@
+//! The threads of one solve, or of a batch of solves: none but the caller's own, or a pool of ours.
+//!
+//! Work is cut into pieces whose results do not depend on who computes them, so that the answer has the same bits for
+//! any number of threads. What the compiler inlines here is compiled for the vectors of this machine, on which no bit depends either: nothing is
+//! contracted or reordered.
+
+mod pool;
+
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+
+use pool::Pool;
+pub use pool::THREAD_NAME;
+
+use crate::error::Result;
+
+/// Who does the work.
+#[derive(Clone, Default)]
+pub enum Threads {
+    /// The calling thread.
+    #[default]
+    One,
+    /// A pool of our own.
+    Pool(Pool),
+}
+
+/// Elements of a grid from which on a solve is faster if several threads share its products; a product alone is from 64 x 64 on.
+const WORTH_WAKING: usize = 110 * 110;
+
+/// How often a lock is tried before it counts as held for long.
+const PATIENCE: usize = 1000;
+
+/// Pieces that work is cut into, per thread: a thread held up by others leaves its share to them.
+const PIECES: usize = 8;
+
+impl Threads {
+    /// `count` threads; 0: as many as the machine has cores.
+    pub fn new(count: usize) -> Result<Threads> {
+        let count = match count {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+            n => n,
+        };
+        Ok(if count == 1 { Threads::One } else { Threads::Pool(Pool::of(count)?) })
+    }
+
+    /// The workers; none: the calling thread works.
+    fn pool(&self) -> Option<Pool> {
+        match self {
+            Threads::One => None,
+            Threads::Pool(pool) => pool.here(),
+        }
+    }
+
+    /// Number of threads, each of which may need scratch of its own.
+    pub fn count(&self) -> usize {
+        match self {
+            Threads::One => 1,
+            Threads::Pool(pool) => pool.count(),
+        }
+    }
+
+    /// Calls `work(k, item)` on each of some items.
+    pub fn for_each<A: Send>(&self, items: &mut [A], work: impl Fn(usize, &mut A) + Sync + Send) {
+        self.share(
+            items.iter_mut().enumerate(),
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |(k, item), ()| work(k, item),
+        );
+    }
+
+    /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of the thread that does it.
+    ///
+    /// The threads take pieces until there are none. The caller begins at once, at the front, and does not wait for
+    /// others to wake; they begin at the back: so a thread finds in its cache much of what it worked on in the pass before.
+    pub fn share<P: Send, S: Send>(
+        &self,
+        pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
+        scratch: &mut [S],
+        work: impl Fn(P, &mut S) + Sync,
+    ) {
+        let work = |piece: P, scratch: &mut S| {
+            pulp::Arch::new().dispatch(
+                #[inline(always)]
+                || work(piece, scratch),
+            )
+        };
+        let Some((own, others)) = scratch.split_first_mut() else { return };
+        let pool = if pieces.len() > 1 { self.pool() } else { None };
+        let Some(pool) = pool else { return pieces.for_each(|piece| work(piece, own)) };
+        let pieces = Mutex::new(pieces);
+        let front = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let back = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next_back();
+        let from_behind = |scratch: &mut S| {
+            while let Some(piece) = back() {
+                work(piece, scratch);
+            }
+        };
+        pool.beside(others, from_behind, || {
+            while let Some(piece) = front() {
+                work(piece, own);
+            }
+        });
+    }
+
+    /// Work of the calling thread, compiled for the vectors of this machine.
+    #[inline(always)]
+    pub fn alone<R>(&self, work: impl FnOnce() -> R) -> R {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || work(),
+        )
+    }
+
+    /// Scratch of work that needs none.
+    fn no_scratch(&self) -> Vec<()> {
+        vec![(); self.count()]
+    }
+
+    /// Rows of each piece of work on so many.
+    fn rows_per_piece(&self, rows: usize) -> usize {
+        let pieces = if self.count() == 1 { 1 } else { PIECES * self.count() };
+        rows.div_ceil(pieces).max(1)
+    }
+
+    /// Calls `own(item)` for the first on the calling thread, and meanwhile `others(item)` for the rest on the others.
+    pub fn for_each_beside<A: Send>(
+        &self,
+        items: &mut [A],
+        own: impl FnOnce(&mut A),
+        others: impl Fn(&mut A) + Sync + Send,
+    ) {
+        let Some((first, rest)) = items.split_first_mut() else { return };
+        match self.pool() {
+            None => {
+                own(first);
+                rest.iter_mut().for_each(others);
+            }
+            Some(pool) => pool.beside(rest, others, || own(first)),
+        }
+    }
+
+    /// Calls `work(row, its data, scratch)` on each row of `data`; the last row may be shorter.
+    pub fn for_each_row<A: Send, S: Send>(
+        &self,
+        data: &mut [A],
+        length: usize,
+        scratch: &mut [S],
+        work: impl Fn(usize, &mut [A], &mut S) + Sync + Send,
+    ) {
+        let per_piece = self.rows_per_piece(data.len().div_ceil(length));
+        self.share(
+            data.chunks_mut(per_piece * length).enumerate(),
+            scratch,
+            #[inline(always)]
+            |(k, rows), scratch| {
+                for (i, row) in rows.chunks_mut(length).enumerate() {
+                    work(k * per_piece + i, row, scratch);
+                }
+            },
+        );
+    }
+
+    /// Calls `work(row, its data in a, its data in b, scratch)` on each row of both; the last row may be shorter.
+    pub fn for_each_row_pair_with<A: Send, B: Send, S: Send>(
+        &self,
+        (a, length_a): (&mut [A], usize),
+        (b, length_b): (&mut [B], usize),
+        scratch: &mut [S],
+        work: impl Fn(usize, &mut [A], &mut [B], &mut S) + Sync + Send,
+    ) {
+        let per_piece = self.rows_per_piece(a.len().div_ceil(length_a));
+        let pieces = a.chunks_mut(per_piece * length_a).zip(b.chunks_mut(per_piece * length_b)).enumerate();
+        self.share(
+            pieces,
+            scratch,
+            #[inline(always)]
+            |(k, (a, b)), scratch| {
+                for (i, (a, b)) in a.chunks_mut(length_a).zip(b.chunks_mut(length_b)).enumerate() {
+                    work(k * per_piece + i, a, b, scratch);
+                }
+            },
+        );
+    }
+
+    /// Calls `work(row, its data)` on each row of `data`; the last row may be shorter.
+    pub fn for_each_plain_row<A: Send>(
+        &self,
+        data: &mut [A],
+        length: usize,
+        work: impl Fn(usize, &mut [A]) + Sync + Send,
+    ) {
+        self.for_each_row(
+            data,
+            length,
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |k, row, ()| work(k, row),
+        );
+    }
+
+    /// Calls `work(row, its data in a, its data in b)` on each row of both; the last row may be shorter.
+    pub fn for_each_row_pair<A: Send, B: Send>(
+        &self,
+        a: (&mut [A], usize),
+        b: (&mut [B], usize),
+        work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
+    ) {
+        self.for_each_row_pair_with(
+            a,
+            b,
+            &mut self.no_scratch(),
+            #[inline(always)]
+            |k, a, b, ()| work(k, a, b),
+        );
+    }
+
+    /// These threads for a pass over arrays of so many elements, which gains by them from twice as many elements on.
+    pub fn for_a_pass(&self, elements: usize) -> Threads {
+        self.suited_to(elements / 2)
+    }
+
+    /// These threads for work on so many elements: the caller's own where waking the others takes longer than the work.
+    pub fn suited_to(&self, elements: usize) -> Threads {
+        if elements < WORTH_WAKING {
+            Threads::One
+        } else {
+            self.clone()
+        }
+    }
+}
+
+/// Ends the threads that are kept, and that no solver holds.
+pub fn release() {
+    Pool::release();
+}
+
+/// Threads that are kept, beside those of the callers.
+pub fn kept() -> usize {
+    Pool::kept()
+}
+
+/// The lock of what the process shares; none if another thread holds it for long. A process that was forked while another thread held it
+/// would wait for ever.
+pub fn lock<A>(shared: &Mutex<A>) -> Option<MutexGuard<'_, A>> {
+    for _ in 0..PATIENCE {
+        match shared.try_lock() {
+            Ok(held) => return Some(held),
+            Err(TryLockError::Poisoned(held)) => return Some(held.into_inner()),
+            Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+        }
+    }
+    None
+}

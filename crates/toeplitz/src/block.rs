@@ -1,0 +1,283 @@
+//! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and memory asked for
+//! ahead. Only this file has unsafe code.
+
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use crate::real::{Complex, Real};
+use par::threads::Threads;
+
+/// Columns in a block: of complex numbers four cache lines in double precision, two in single.
+pub const BLOCK: usize = 16;
+/// Rows that are gathered at a time.
+const TILE: usize = 8;
+
+/// Columns of so many values stand apart by [`GAP`] more: at a distance of a power of two they would share few lines of the nearest cache.
+const LONG: usize = 512;
+const GAP: usize = 8;
+
+/// Values from the beginning of a column in a block to that of the next.
+pub fn room_of_column(length: usize) -> usize {
+    if length < LONG {
+        length
+    } else {
+        length + GAP
+    }
+}
+
+/// The real and imaginary parts of complex values, in turns.
+pub fn parts<T: Real>(values: &[Complex<T>]) -> &[T] {
+    // SAFETY: a Complex is two values of T in the order of C (`repr(C)`), so the slice holds twice as many of them.
+    unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), 2 * values.len()) }
+}
+
+/// The same, to be written.
+pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
+    // SAFETY: as above; the values are borrowed mutably.
+    unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
+}
+
+/// Bytes of a line of the caches; where it is longer, some are asked for twice.
+const LINE: usize = 64;
+
+/// Asks for so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
+/// stands there; of values that do not begin at a line the last line is left out.
+#[inline(always)]
+pub fn ask_for<V>(first: *const V, count: usize) {
+    #[cfg(target_arch = "x86_64")]
+    for line in (0..count * size_of::<V>()).step_by(LINE) {
+        let line = first.cast::<i8>().wrapping_add(line);
+        // SAFETY: nothing is read, whatever the address; each x86_64 has the instruction.
+        unsafe { core::arch::x86_64::_mm_prefetch::<{ core::arch::x86_64::_MM_HINT_T1 }>(line) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (first, count, LINE);
+}
+
+/// One block of columns of a row-major matrix: no two of them overlap.
+pub struct Block<'a, T> {
+    data: *mut Complex<T>,
+    rows: usize,
+    width: usize,
+    first: usize,
+    columns: usize,
+    owner: PhantomData<&'a mut [Complex<T>]>,
+}
+
+/// Columns `k` of one half of a row-major matrix, and of the other half their mirror images `-k`, modulo the width. Column 0, and of an
+/// even width the one half-way, are their own.
+pub struct MirroredBlock<'a, T> {
+    here: Block<'a, T>,
+    /// Without those that are here: in the order of the matrix.
+    there: Block<'a, T>,
+}
+
+// SAFETY: a block is a mutable borrow of its columns, which no other block has.
+unsafe impl<T: Send> Send for Block<'_, T> {}
+
+/// The columns `columns` of the matrix `data`, `width` columns wide, in blocks of `count`; the last may have fewer.
+pub fn blocks_of<'a, T: Real>(
+    data: &'a mut [Complex<T>],
+    width: usize,
+    columns: Range<usize>,
+    count: usize,
+) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+    assert!(columns.end <= width);
+    let (matrix, end) = (Block::of(data, width), columns.end);
+    columns.step_by(count).map(move |first| matrix.part(first, count.min(end - first)))
+}
+
+/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that does it.
+pub fn for_each_block<T: Real, S: Send>(
+    data: &mut [Complex<T>],
+    width: usize,
+    threads: &Threads,
+    scratch: &mut [S],
+    work: impl Fn(&mut Block<'_, T>, &mut S) + Sync + Send,
+) {
+    threads.share(blocks_of(data, width, 0..width, BLOCK), scratch, |mut block, s| work(&mut block, s));
+}
+
+/// Calls `work` on each block of columns of the matrix `data` with their mirror images, with the scratch of the thread that does it.
+pub fn for_each_mirrored_block<T: Real, S: Send>(
+    data: &mut [Complex<T>],
+    width: usize,
+    threads: &Threads,
+    scratch: &mut [S],
+    work: impl Fn(&mut MirroredBlock<'_, T>, &mut S) + Sync + Send,
+) {
+    let (matrix, half) = (Block::of(data, width), width / 2 + 1);
+    let blocks = (0..half.div_ceil(BLOCK)).map(move |b| {
+        let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
+        // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
+        let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
+        MirroredBlock { here: matrix.part(first, end - first), there: matrix.part(mirrored, behind - mirrored) }
+    });
+    threads.share(blocks, scratch, |mut block, s| work(&mut block, s));
+}
+
+impl<T: Real> MirroredBlock<'_, T> {
+    /// The first column of the first half.
+    pub fn first(&self) -> usize {
+        self.here.first
+    }
+
+    /// Number of columns in the first half.
+    pub fn columns(&self) -> usize {
+        self.here.columns
+    }
+
+    /// Columns of the first half that are their own mirror image, before those that are not: column 0.
+    fn own(&self) -> usize {
+        usize::from(self.here.first == 0)
+    }
+
+    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere; to `mirrored` the conjugates of the mirror images,
+    /// in the same order.
+    pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>], mirrored: &mut [Complex<T>]) {
+        let (columns, own) = (self.here.columns, self.own());
+        self.here.gather(rows.clone(), length, out);
+        for column in mirrored.chunks_exact_mut(length).take(columns) {
+            column[..rows.start].fill(Complex::default());
+            column[rows.end..].fill(Complex::default());
+        }
+        let mut row = rows.start;
+        while row < rows.end {
+            let tile = TILE.min(rows.end - row);
+            let at = |k: usize| row + k.min(tile - 1);
+            let here: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.here.row(at(k)));
+            let there: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.there.row(at(k)));
+            for (c, column) in mirrored.chunks_exact_mut(length).take(columns).enumerate() {
+                // The mirror images are in the order of the matrix, from behind; a column without one is its own.
+                let (from, c) = match self.there.columns.checked_sub(c + 1 - own) {
+                    Some(image) if c >= own => (&there, image),
+                    _ => (&here, c),
+                };
+                column[row..row + tile].iter_mut().zip(from).for_each(|(value, from)| *value = from[c].conj());
+            }
+            row += tile;
+        }
+    }
+
+    /// Copies the columns in `from`, each `length` long, to rows `rows`, and the conjugates of those in `mirrored` to their mirror images.
+    pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>], mirrored: &[Complex<T>]) {
+        let (own, there) = (self.own(), self.there.columns);
+        self.here.scatter(rows.clone(), length, from);
+        for row in rows {
+            let columns = mirrored.chunks_exact(length).skip(own).take(there);
+            for (value, column) in self.there.row_mut(row).iter_mut().rev().zip(columns) {
+                *value = column[row].conj();
+            }
+        }
+    }
+}
+
+impl<'a, T: Real> Block<'a, T> {
+    /// All columns of a matrix.
+    pub fn of(data: &'a mut [Complex<T>], width: usize) -> Block<'a, T> {
+        assert_eq!(data.len() % width, 0);
+        Block { rows: data.len() / width, data: data.as_mut_ptr(), width, first: 0, columns: width, owner: PhantomData }
+    }
+
+    /// Some of its columns. Those who call it give each column to one block, and do not use this one.
+    fn part(&self, first: usize, columns: usize) -> Block<'a, T> {
+        assert!(first >= self.first && first + columns <= self.first + self.columns);
+        Block { first, columns, ..*self }
+    }
+
+    /// The first column.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
+    pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>]) {
+        let columns = self.columns();
+        assert!(rows.end <= self.rows.min(length) && out.len() >= columns * length);
+        for column in out.chunks_exact_mut(length).take(columns) {
+            column[..rows.start].fill(Complex::default());
+            column[rows.end..].fill(Complex::default());
+        }
+        // TILE rows at a time: the writes to each column are neighbours.
+        let mut row = rows.start;
+        while row + TILE <= rows.end {
+            let from: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.row(row + k));
+            for (c, column) in out.chunks_exact_mut(length).take(columns).enumerate() {
+                for (value, from) in column[row..row + TILE].iter_mut().zip(from) {
+                    *value = from[c];
+                }
+            }
+            row += TILE;
+        }
+        for row in row..rows.end {
+            for (column, &value) in out.chunks_exact_mut(length).zip(self.row(row)) {
+                column[row] = value;
+            }
+        }
+    }
+
+    /// Copies the columns in `from`, at most [`BLOCK`], each `length` long, to rows `rows`.
+    pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>]) {
+        let columns = self.columns();
+        assert!(columns <= BLOCK && rows.end <= self.rows.min(length) && from.len() >= columns * length);
+        // TILE rows at a time: the reads of each column are neighbours.
+        let mut row = rows.start;
+        let mut tile = [[Complex::default(); BLOCK]; TILE];
+        while row + TILE <= rows.end {
+            for (c, column) in from.chunks_exact(length).take(columns).enumerate() {
+                for (to, value) in tile.iter_mut().zip(&column[row..row + TILE]) {
+                    to[c] = *value;
+                }
+            }
+            for (k, values) in tile.iter().enumerate() {
+                self.row_mut(row + k).copy_from_slice(&values[..columns]);
+            }
+            row += TILE;
+        }
+        for row in row..rows.end {
+            for (value, column) in self.row_mut(row).iter_mut().zip(from.chunks_exact(length)) {
+                *value = column[row];
+            }
+        }
+    }
+
+    /// The block's part of a row.
+    #[inline(always)]
+    pub fn row(&self, row: usize) -> &[Complex<T>] {
+        assert!(row < self.rows);
+        // SAFETY: the row is one of the matrix, and the block lies within it: the slice is inside the matrix, which those who make
+        // blocks borrow exclusively, and no other block overlaps this one.
+        unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
+    }
+
+    /// Asks for part k of n of the block's part of a row, if there is such a row.
+    #[inline(always)]
+    pub fn ask_for(&self, row: usize, (k, n): (usize, usize)) {
+        if row < self.rows {
+            let count = self.columns / n;
+            ask_for(self.data.wrapping_add(row * self.width + self.first + k * count), count);
+        }
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
+        assert!(row < self.rows);
+        // SAFETY: as in `row`; this block is borrowed mutably.
+        unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width + self.first), self.columns()) }
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/block.rs"]
+mod tests;

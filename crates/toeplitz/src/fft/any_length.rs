@@ -1,0 +1,101 @@
+//! Complex transforms of any length: the only file that asks the FFT crate for one.
+//!
+//! Each length has a planner of its own: the crate's makes a plan from parts of the plans before it, so that bits would depend on what was
+//! planned before.
+
+use std::sync::Arc;
+
+use par::memory::{reserve, sparse};
+use par::Result;
+use rustfft::{Fft, FftPlanner};
+
+use crate::plan::{shared, Plan, PLAN};
+use crate::real::{Complex, Real};
+
+/// Values that the plans of a length take, both ways, relative to it: one in each stage, and what a stage is made from.
+const RELATIVE_SIZE: usize = 4;
+
+/// Makes the scratch of transforms so long, at least.
+pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> {
+    let length = scratch.len().max(length);
+    reserve(scratch, length, "the scratch of transforms")?;
+    scratch.resize(length, Complex::default());
+    Ok(())
+}
+
+/// Complex transforms of one length, many columns at a time (unnormalised).
+#[derive(Clone)]
+pub struct ColumnTransform<T: Real> {
+    forward: Arc<dyn Fft<T>>,
+    inverse: Arc<dyn Fft<T>>,
+}
+
+impl<T: Real> Plan for ColumnTransform<T> {
+    fn bytes(&self) -> usize {
+        RELATIVE_SIZE * self.length() * size_of::<Complex<T>>()
+    }
+}
+
+impl<T: Real> ColumnTransform<T> {
+    /// Plans for columns of length `n`. The FFT crate cannot refuse where there is no memory: room for its plans is asked for before.
+    pub fn new(n: usize) -> Result<ColumnTransform<T>> {
+        let plan = || {
+            drop(sparse::<Complex<T>>(n.saturating_mul(RELATIVE_SIZE), PLAN)?);
+            let mut planner = FftPlanner::new();
+            Ok(ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) })
+        };
+        Ok((*shared(n, plan)?).clone())
+    }
+
+    /// Length of a column.
+    pub fn length(&self) -> usize {
+        self.forward.len()
+    }
+
+    /// Scratch that both directions need.
+    pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
+        let mut scratch = Vec::new();
+        self.fit(&mut scratch)?;
+        Ok(scratch)
+    }
+
+    /// Makes scratch long enough.
+    pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
+        fit(scratch, self.scratch_length())
+    }
+
+    /// Its length.
+    pub fn scratch_length(&self) -> usize {
+        let length = |fft: &dyn Fft<T>| fft.get_inplace_scratch_len().max(fft.get_outofplace_scratch_len());
+        length(&*self.forward).max(length(&*self.inverse))
+    }
+
+    /// That of transforms to another place.
+    pub fn scratch_to(&self) -> usize {
+        self.forward.get_outofplace_scratch_len().max(self.inverse.get_outofplace_scratch_len())
+    }
+
+    /// Transforms one column to another place; it is overwritten.
+    pub fn forward_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.forward.process_outofplace_with_scratch(column, to, scratch);
+    }
+
+    /// The inverse, likewise.
+    pub fn inverse_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.inverse.process_outofplace_with_scratch(column, to, scratch);
+    }
+
+    /// Transforms the columns that stand one after the other in `columns`, in place.
+    pub fn forward(&self, columns: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.forward.process_with_scratch(columns, scratch);
+    }
+
+    /// The inverse, likewise.
+    pub fn inverse(&self, columns: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.inverse.process_with_scratch(columns, scratch);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/any_length.rs"]
+mod tests;

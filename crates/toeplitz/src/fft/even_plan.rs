@@ -1,0 +1,76 @@
+//! Where the symbol of even columns is kept.
+//!
+//! Bins stay in the order in which the stages leave them ([`stages`](crate::fft::stages)): of each block of bins that comes out of the
+//! last stage the mirror image, the bins py - k, is a block too, from behind. So one of the two is kept of S.
+
+use std::sync::Arc;
+
+use par::memory::{collected, reserve, zeros};
+use par::Result;
+
+use crate::fft::stage_plan::Stages;
+use crate::plan::{shared, Plan, PLAN};
+use crate::real::Real;
+
+/// The stages of one length, and the order of S.
+pub struct EvenPlan<T: Real> {
+    pub(crate) stages: Stages<T>,
+    /// Where S is kept, for each block of the last stage.
+    pub(crate) kept: Vec<Kept>,
+    /// The bin of each kept row, at most py/2.
+    pub(crate) bins: Vec<usize>,
+}
+
+/// The kept rows of a block: the first, and the step to the next.
+#[derive(Clone, Copy)]
+pub(crate) struct Kept {
+    pub first: usize,
+    pub step: isize,
+}
+
+impl<T: Real> EvenPlan<T> {
+    /// That of a length. None where it has no stages.
+    pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
+        if !Stages::<T>::exist(length) {
+            return Ok(None);
+        }
+        shared(length, || EvenPlan::new(length)).map(Some)
+    }
+
+    fn new(length: usize) -> Result<EvenPlan<T>> {
+        let stages = Stages::new(length)?;
+        let (kept, bins) = kept_rows(length, &stages.lowest_bins()?, stages.last)?;
+        Ok(EvenPlan { stages, kept, bins })
+    }
+}
+
+impl<T: Real> Plan for EvenPlan<T> {
+    fn bytes(&self) -> usize {
+        self.stages.bytes() + size_of_val(&self.kept[..]) + size_of_val(&self.bins[..])
+    }
+}
+
+/// Where S is kept of each block of the last stage, of which the lowest bin is given, and the bin of each kept row.
+fn kept_rows(length: usize, lowest: &[usize], last: usize) -> Result<(Vec<Kept>, Vec<usize>)> {
+    let blocks = lowest.len();
+    let (mut block_of, mut bins) = (zeros(blocks, PLAN)?, Vec::new());
+    reserve(&mut bins, (blocks / 2 + 1) * last, PLAN)?;
+    let is_kept = |bin: usize| 2 * bin <= blocks;
+    for &bin in lowest.iter().filter(|&&bin| is_kept(bin)) {
+        block_of[bin] = bins.len();
+        bins.extend((0..last).map(|q| bin + q * blocks).map(|bin| bin.min(length - bin)));
+    }
+    let kept = lowest.iter().map(|&bin| match is_kept(bin) {
+        true => Kept { first: block_of[bin], step: 1 },
+        false => Kept { first: block_of[blocks - bin] + last - 1, step: -1 },
+    });
+    Ok((collected(kept, PLAN)?, bins))
+}
+
+impl Kept {
+    /// The kept row of value q of the block.
+    #[inline(always)]
+    pub fn row(&self, q: usize) -> usize {
+        self.first.wrapping_add_signed(self.step * q as isize)
+    }
+}

@@ -1,0 +1,223 @@
+//! Between rows in memory and rows in the places of vectors: values, four columns at a time, and bins of real rows
+//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is asked for while the one before is
+//! worked on.
+
+use pulp::Simd;
+
+use crate::block::{parts, parts_mut, Block, BLOCK};
+use crate::fft::lanes::{places, Arithmetic, Parts};
+use crate::fft::row_plan::RowPlan;
+use crate::fft::stages::{inlined, Row};
+use crate::real::{Complex, Real};
+
+/// Places of the longest vector.
+const MOST: usize = BLOCK;
+/// Columns that become vectors together.
+const FOUR: usize = 4;
+
+/// Four values of each row, `values(row)`, as four vectors.
+#[inline(always)]
+fn from_rows<T: Real, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
+    let (n, mut rows) = (places::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    for (r, row) in rows.iter_mut().enumerate().take(n) {
+        *row = values(r);
+    }
+    let v = T::vectors::<S>(&rows.as_flattened()[..FOUR * n]);
+    T::from_rows(simd, [v[0], v[1], v[2], v[3]])
+}
+
+/// Back again, to `write(row, values)`.
+#[inline(always)]
+fn to_rows<T: Real, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
+    let (n, mut rows) = (places::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    T::vectors_mut::<S>(&mut rows.as_flattened_mut()[..FOUR * n]).copy_from_slice(&T::to_rows(simd, vectors));
+    for (r, row) in rows.into_iter().enumerate().take(n) {
+        write(r, row);
+    }
+}
+
+/// Fours of real parts, and as many of imaginary ones, that a row has in a block.
+const PER_BLOCK: usize = BLOCK / FOUR;
+
+/// z of rows, zero beyond them.
+#[inline(always)]
+pub(crate) fn load<T: Real, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
+    let count = rows.len() / width;
+    let row = |r: usize| &rows[r.min(count - 1) * width..][..width];
+    let mut fours: [&[[T; FOUR]]; MOST] = [&[]; MOST];
+    for (r, fours) in fours.iter_mut().enumerate() {
+        *fours = pulp::as_arrays::<FOUR, _>(row(r)).0;
+    }
+    let (whole, rest) = (width / FOUR, width % FOUR);
+    let x = z.as_flattened_mut();
+    for c in 0..whole {
+        let vectors = from_rows::<T, S>(
+            a.simd,
+            #[inline(always)]
+            |r: usize| fours[r][c],
+        );
+        x[FOUR * c..][..FOUR].copy_from_slice(&vectors);
+    }
+    x[FOUR * whole..].fill(a.splat(T::zero()));
+    if rest > 0 {
+        let vectors = from_rows::<T, S>(
+            a.simd,
+            inlined(
+                #[inline(always)]
+                |r: usize| {
+                    let mut four = [T::zero(); FOUR];
+                    four[..rest].copy_from_slice(&row(r)[FOUR * whole..]);
+                    four
+                },
+            ),
+        );
+        x[FOUR * whole..][..rest].copy_from_slice(&vectors[..rest]);
+    }
+}
+
+/// X of all bins, of Z in the order of the stages.
+#[inline(always)]
+pub(crate) fn store_bins<T: Real, S: Simd>(
+    a: Arithmetic<T, S>,
+    plan: &RowPlan<T>,
+    z: &[Row<T, S>],
+    bins: &mut Block<'_, T>,
+) {
+    let (h, half, zero) = (plan.length(), a.splat(T::of(0.5)), a.splat(T::zero()));
+    let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
+    let value = inlined(
+        #[inline(always)]
+        |k: usize| {
+            let ([re, im], [mirrored_re, mirrored_im]) = (z[row_of[k]], z[row_of[h - k]]);
+            let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
+            let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
+            // -i w (difference.re + i sum.im)
+            let turned = a.turn(Parts { re: sum.im, im: difference.re }, conjugate(twiddles[k]));
+            let mean = a.scale(Parts { re: sum.re, im: difference.im }, half);
+            Parts { re: a.add_real(mean.re, turned.re), im: a.sub_real(mean.im, turned.im) }
+        },
+    );
+    for block in 0..plan.blocks() {
+        for at in 0..PER_BLOCK {
+            bins.ask_for(block + 1, (at, PER_BLOCK));
+            let fours = pulp::as_arrays_mut::<FOUR, _>(parts_mut(bins.row_mut(block))).0;
+            let (mut re, mut im) = ([zero; FOUR], [zero; FOUR]);
+            for i in 0..FOUR {
+                let k = block * BLOCK + FOUR * at + i;
+                if k <= h {
+                    Parts { re: re[i], im: im[i] } = value(k);
+                }
+            }
+            to_rows::<T, S>(
+                a.simd,
+                re,
+                #[inline(always)]
+                |r: usize, four| fours[2 * PER_BLOCK * r + at] = four,
+            );
+            to_rows::<T, S>(
+                a.simd,
+                im,
+                #[inline(always)]
+                |r: usize, four| fours[2 * PER_BLOCK * r + PER_BLOCK + at] = four,
+            );
+        }
+    }
+}
+
+/// w*.
+#[inline(always)]
+fn conjugate<T: Real>(w: Complex<T>) -> Complex<T> {
+    Complex::new(w.re, -w.im)
+}
+
+/// Z of all bins in the order of the stages, their real and imaginary parts swapped. Bins come from the front and from behind, four at a time.
+#[inline(always)]
+pub(crate) fn load_bins<T: Real, S: Simd>(
+    a: Arithmetic<T, S>,
+    plan: &RowPlan<T>,
+    bins: &Block<'_, T>,
+    z: &mut [Row<T, S>],
+) {
+    let h = plan.length();
+    let (row_of, twiddles) = (&plan.row_of[..h + 1], &plan.twiddles[..h + 1]);
+    let four = inlined(
+        #[inline(always)]
+        |q: usize| {
+            let (fours, at) = (pulp::as_arrays::<FOUR, _>(parts(bins.row(q / PER_BLOCK))).0, q % PER_BLOCK);
+            let re = from_rows::<T, S>(
+                a.simd,
+                #[inline(always)]
+                |r| fours[2 * PER_BLOCK * r + at],
+            );
+            let im = from_rows::<T, S>(
+                a.simd,
+                #[inline(always)]
+                |r| fours[2 * PER_BLOCK * r + PER_BLOCK + at],
+            );
+            [[re[0], im[0]], [re[1], im[1]], [re[2], im[2]], [re[3], im[3]]]
+        },
+    );
+    let (mut front, mut behind) = (four(0), four(h / FOUR));
+    for k in 0..=h / 2 {
+        let m = h - k;
+        if k % FOUR == 0 {
+            bins.ask_for(k / BLOCK + 1, (k / FOUR % PER_BLOCK, PER_BLOCK));
+            front = four(k / FOUR);
+        }
+        if m % FOUR == FOUR - 1 {
+            bins.ask_for((m / BLOCK).wrapping_sub(1), (m / FOUR % PER_BLOCK, PER_BLOCK));
+            behind = four(m / FOUR);
+        }
+        let ([re, im], [mirrored_re, mirrored_im]) = (front[k % FOUR], behind[m % FOUR]);
+        let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
+        let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
+        // w* (difference.re + i sum.im), of which i times is added to Z_k; for Z_(h-k) w is -w*.
+        let turned = a.turn(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
+        let turned = a.add(turned, turned);
+        z[row_of[k]] = [a.add_real(turned.re, difference.im), a.sub_real(sum.re, turned.im)];
+        z[row_of[m]] = [a.sub_real(turned.re, difference.im), a.add_real(sum.re, turned.im)];
+    }
+}
+
+/// The first values of z as rows; its real and imaginary parts are swapped.
+#[inline(always)]
+pub(crate) fn store<T: Real, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
+    let (whole, rest) = (width / FOUR, width % FOUR);
+    let four = inlined(
+        #[inline(always)]
+        |c: usize| {
+            let ([im, re], next) = (z[2 * c], z.get(2 * c + 1));
+            let [next_im, next_re] = next.copied().unwrap_or([re, im]);
+            [re, im, next_re, next_im]
+        },
+    );
+    if rest > 0 {
+        to_rows::<T, S>(
+            a.simd,
+            four(whole),
+            #[inline(always)]
+            |r, four| {
+                if let Some(row) = rows.get_mut(r * width + FOUR * whole..(r + 1) * width) {
+                    row.copy_from_slice(&four[..rest]);
+                }
+            },
+        );
+    }
+    // Rows that are not there are empty.
+    let mut fours: [&mut [[T; FOUR]]; MOST] = Default::default();
+    for (row, fours) in rows.chunks_exact_mut(width).zip(&mut fours) {
+        *fours = pulp::as_arrays_mut::<FOUR, _>(row).0;
+    }
+    for c in 0..whole {
+        to_rows::<T, S>(
+            a.simd,
+            four(c),
+            #[inline(always)]
+            |r, four| {
+                if let Some(to) = fours[r].get_mut(c) {
+                    *to = four;
+                }
+            },
+        );
+    }
+}

@@ -1,0 +1,163 @@
+//! Transforms of real rows, one row in each place of the machine's vectors: an even length n by a complex transform of h = n/2 values.
+//!
+//! ```text
+//! z_j = x_2j + i x_(2j+1),   Z = F z,   w_k = exp(-2 pi i k/n)        (Cooley, Lewis and Welch 1970)
+//! X_k = (Z_k + Z*_(h-k))/2 - i w_k (Z_k - Z*_(h-k))/2                  k = 0 .. h, Z_h = Z_0
+//! Z_k = X_k + X*_(h-k) + i w*_k (X_k - X*_(h-k))                       backwards, unnormalised: 2 h times z
+//! ```
+//!
+//! Bins stand in blocks of [`BLOCK`], `[block][row][part][bin]`, the real parts of a row before its imaginary ones: so columns, which are loaded
+//! afterwards, find all of a block in one piece, and some rows are columns of the matrix whose rows are blocks. Values of rows become vectors
+//! four columns at a time, and back.
+
+use std::sync::Arc;
+
+use par::Result;
+use pulp::{Simd, WithSimd};
+
+use crate::block::{Block, BLOCK};
+use crate::fft::half_stages::{backwards_to_half, forward_of_half};
+use crate::fft::lane_passes::{load, load_bins, store, store_bins};
+use crate::fft::lanes::{places, Arithmetic};
+use crate::fft::row_plan::RowPlan;
+use crate::fft::stage_plan::Stages;
+use crate::fft::stages::{backwards, before_a_line, end, forward, of_radix, rows_of};
+use crate::real::{Complex, Real};
+
+/// Transforms of rows of one length.
+pub(crate) struct LaneRows<T: Real> {
+    plan: Arc<RowPlan<T>>,
+    arch: pulp::Arch,
+    places: usize,
+}
+
+impl<T: Real> LaneRows<T> {
+    /// None where the length has no plan, or the machine no vectors.
+    pub fn new(n: usize) -> Result<Option<LaneRows<T>>> {
+        LaneRows::on(pulp::Arch::new(), n)
+    }
+
+    /// With the vectors of these instructions; no bit depends on them.
+    pub(crate) fn on(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
+        let Some(places) = arch.dispatch(Places::<T>(std::marker::PhantomData)) else { return Ok(None) };
+        Ok(RowPlan::shared(n)?.map(|plan| LaneRows { plan, arch, places }))
+    }
+
+    /// Number of complex bins.
+    pub fn bins(&self) -> usize {
+        self.plan.length() + 1
+    }
+
+    /// Blocks of bins; those beyond n/2 have no meaning.
+    pub fn blocks(&self) -> usize {
+        self.plan.blocks()
+    }
+
+    /// Rows that are transformed together.
+    pub fn at_a_time(&self) -> usize {
+        self.places
+    }
+
+    /// Complex numbers that both directions need.
+    pub fn scratch_length(&self) -> usize {
+        self.plan.length() * self.places + before_a_line::<T>()
+    }
+
+    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][part][bin]`, which have room for all of
+    /// these even where there are fewer rows. What rows lack of their length is zero.
+    pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
+        assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
+        self.arch.dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
+    }
+
+    /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
+    pub fn inverse(&self, bins: &Block<'_, T>, rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
+        assert!(self.fits(bins) && width <= 2 * self.plan.length() && width > 0);
+        self.arch.dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
+    }
+
+    fn fits(&self, bins: &Block<'_, T>) -> bool {
+        bins.rows() == self.blocks() && bins.columns() == self.places * BLOCK
+    }
+}
+
+/// Places of this machine's vectors; the same answer for no vectors in either precision.
+struct Places<T>(std::marker::PhantomData<T>);
+
+impl<T: Real> WithSimd for Places<T> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        (S::F64_LANES > 1 && S::F32_LANES <= BLOCK).then(places::<T, S>)
+    }
+}
+
+struct Forward<'a, 'b, T: Real> {
+    plan: &'a RowPlan<T>,
+    rows: &'a [T],
+    width: usize,
+    bins: &'a mut Block<'b, T>,
+    scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Real> WithSimd for Forward<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Forward { plan, rows, width, bins, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load::<T, S>(a, rows, width, z);
+        let first = &plan.stages.first;
+        if first.is_of_half(width.div_ceil(2)) {
+            forward_of_half(a, first, z);
+        } else {
+            of_radix!(first.radix, forward, a, first, z);
+        }
+        plan.stages.forward_after_first(a, z);
+        store_bins::<T, S>(a, plan, z, bins);
+    }
+}
+
+struct Inverse<'a, 'b, T: Real> {
+    plan: &'a RowPlan<T>,
+    bins: &'a Block<'b, T>,
+    rows: &'a mut [T],
+    width: usize,
+    scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Real> WithSimd for Inverse<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Inverse { plan, bins, rows, width, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load_bins::<T, S>(a, plan, bins, z);
+        let Stages { middle, wide, part, last, first } = &plan.stages;
+        let (wide, near) = middle.split_at(*wide);
+        for z in z.chunks_exact_mut(*part) {
+            of_radix!(*last, end, a, z);
+            for stage in near.iter().rev() {
+                of_radix!(stage.radix, backwards, a, stage, z);
+            }
+        }
+        for stage in wide.iter().rev() {
+            of_radix!(stage.radix, backwards, a, stage, z);
+        }
+        if first.is_of_half(width.div_ceil(2)) {
+            backwards_to_half(a, first, z);
+        } else {
+            of_radix!(first.radix, backwards, a, first, z);
+        }
+        store::<T, S>(a, z, rows, width);
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/lane_rows.rs"]
+mod tests;

@@ -1,0 +1,18 @@
+//! Transforms of rows and columns: any length by rustfft, others by stages of our own, one row or column in each lane of a vector.
+
+pub(crate) mod any_length;
+pub(crate) mod butterflies;
+pub(crate) mod even_columns;
+pub(crate) mod even_plan;
+pub(crate) mod half_stages;
+pub(crate) mod lane_passes;
+pub(crate) mod lane_rows;
+pub(crate) mod lanes;
+pub(crate) mod row_plan;
+pub mod row_transform;
+pub(crate) mod stage_plan;
+pub(crate) mod stages;
+
+pub use crate::lengths::{good_length, length_for_stages};
+pub use crate::real::{Complex, Real};
+pub use any_length::ColumnTransform;

@@ -1,0 +1,57 @@
+//! Where the stages leave the bins of real rows.
+
+use std::sync::Arc;
+
+use par::memory::{collected, zeros};
+use par::Result;
+
+use crate::block::BLOCK;
+use crate::fft::stage_plan::Stages;
+use crate::plan::{shared, Plan, PLAN};
+use crate::real::{twiddle, Complex, Real};
+
+/// The stages of one length, and where they leave bins.
+pub struct RowPlan<T: Real> {
+    pub(crate) stages: Stages<T>,
+    /// The row in which the stages leave each bin 0 .. h (Z_h = Z_0).
+    pub(crate) row_of: Vec<usize>,
+    /// `w_k/2`, k = 0 .. h.
+    pub(crate) twiddles: Vec<Complex<T>>,
+}
+
+impl<T: Real> Plan for RowPlan<T> {
+    fn bytes(&self) -> usize {
+        self.stages.bytes() + size_of_val(&self.row_of[..]) + size_of_val(&self.twiddles[..])
+    }
+}
+
+impl<T: Real> RowPlan<T> {
+    /// That of a length. None where n is odd, or h has no stages.
+    pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
+        if n % 2 == 1 || !Stages::<T>::exist(n / 2) {
+            return Ok(None);
+        }
+        shared(n, || RowPlan::new(n)).map(Some)
+    }
+
+    fn new(n: usize) -> Result<RowPlan<T>> {
+        let (h, stages) = (n / 2, Stages::new(n / 2)?);
+        let mut row_of = zeros(h + 1, PLAN)?;
+        stages.bins()?.into_iter().enumerate().for_each(|(row, bin)| row_of[bin] = row);
+        row_of[h] = row_of[0];
+        let half = T::of(0.5);
+        let mut twiddles = collected((0..h + 1).map(|k| twiddle::<T>(k, n) * half), PLAN)?;
+        twiddles[h] = Complex::new(-half, T::zero());
+        Ok(RowPlan { stages, row_of, twiddles })
+    }
+
+    /// h.
+    pub(crate) fn length(&self) -> usize {
+        self.row_of.len() - 1
+    }
+
+    /// Blocks of bins; those beyond h have no meaning.
+    pub(crate) fn blocks(&self) -> usize {
+        (self.length() + 1).div_ceil(BLOCK)
+    }
+}

@@ -1,0 +1,252 @@
+//! The stages of transforms of many columns, or rows, at a time (Cooley and Tukey 1965).
+//!
+//! A stage of radix R cuts a transform of `n = R m` rows in R of m rows, with `w = exp(-2 pi i/n)`:
+//!
+//! ```text
+//! forward     x_(j + q m) <- w^(q j) sum_k x_(j + k m) exp(-2 pi i q k/R)      bins q, q + R, q + 2 R .. are now in rows q m .. (q + 1) m
+//! backwards   x_(j + k m) <- sum_q w^(q j) x_(j + q m) exp(-2 pi i q k/R)
+//! ```
+//!
+//! So all is done in place, and bins stay in the order in which the stages leave them. The inverse is the transform of numbers whose real
+//! and imaginary parts are swapped, swapped back.
+//!
+//! Loops run over indices of slices of one length: with iterators they take 3 to 7 % longer.
+#![allow(clippy::needless_range_loop)]
+
+use std::marker::PhantomData;
+
+use pulp::{Simd, WithSimd};
+
+use crate::block::parts_mut;
+use crate::fft::butterflies::butterfly;
+use crate::fft::lanes::{places, Arithmetic, Lanes, Parts, C};
+use crate::lengths::LONGEST;
+use crate::real::{Complex, Real};
+
+/// One row of a vector of columns: the real and the imaginary parts.
+pub(crate) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
+
+/// Of one radix.
+pub(crate) struct Stage<T: Real> {
+    pub radix: usize,
+    /// `w^(q j)` of q = 1 .. R - 1 for j = 0, the same for j = 1 ..
+    pub twiddles: Vec<Complex<T>>,
+}
+
+impl<T: Real> Stage<T> {
+    /// m.
+    pub fn stride(&self) -> usize {
+        self.twiddles.len() / (self.radix - 1)
+    }
+}
+
+/// Bytes of a line of the cache, as long as the longest vector.
+const LINE: usize = 64;
+
+/// Complex numbers that may stand before the first line.
+pub(crate) const fn before_a_line<T>() -> usize {
+    LINE / size_of::<Complex<T>>() - 1
+}
+
+/// Memory from a line of the cache on: vectors of 64 bytes that lie across two take twice as long.
+#[inline(always)]
+pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
+    let before = memory.as_ptr().align_offset(LINE).min(before_a_line::<T>());
+    &mut memory[before..]
+}
+
+/// Rows of vectors, from a line of the cache on.
+#[inline(always)]
+pub(crate) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
+    let values = parts_mut(from_a_line(memory));
+    let whole = values.len() - values.len() % places::<T, S>();
+    pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
+}
+
+/// A closure with an attribute, which expressions alone may not have.
+#[inline(always)]
+pub(crate) fn inlined<F>(closure: F) -> F {
+    closure
+}
+
+/// Bytes of a row on this machine.
+pub(crate) fn bytes_of_a_row<T: Real>() -> usize {
+    pulp::Arch::new().dispatch(BytesOfARow::<T>(PhantomData))
+}
+
+struct BytesOfARow<T>(PhantomData<T>);
+
+impl<T: Real> WithSimd for BytesOfARow<T> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        size_of::<Row<T, S>>()
+    }
+}
+
+/// Calls a stage of the radix that there is.
+macro_rules! of_radix {
+    ($radix:expr, $stage:ident, $($argument:expr),*) => {
+        match $radix {
+            2 => $stage::<_, S, 2>($($argument),*),
+            3 => $stage::<_, S, 3>($($argument),*),
+            4 => $stage::<_, S, 4>($($argument),*),
+            _ => $stage::<_, S, 5>($($argument),*),
+        }
+    };
+}
+pub(crate) use of_radix;
+
+#[inline(always)]
+pub(crate) fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {
+    Parts { re: row[0], im: row[1] }
+}
+
+#[inline(always)]
+pub(crate) fn put<T: Real, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
+    (row[0], row[1]) = (value.re, value.im);
+}
+
+/// Rows 0 .. m, m .. 2 m, .., R times.
+#[inline(always)]
+pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
+    let mut cut: [&mut [A]; LONGEST] = [&mut [], &mut [], &mut [], &mut [], &mut []];
+    let mut rest = &mut rows[..R * m];
+    for k in 0..R {
+        let (part, behind) = rest.split_at_mut(m);
+        (cut[k], rest) = (&mut part[..m], behind);
+    }
+    cut
+}
+
+/// The first stage, of rows that `load(row)` gives.
+#[inline(always)]
+pub(crate) fn first<T: Real, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S>],
+    load: impl Fn(usize) -> C<T, S>,
+) {
+    let m = stage.stride();
+    let rows = cut::<_, R>(rows, m);
+    for j in 0..m {
+        let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+        let mut x = [load(j); LONGEST];
+        for k in 1..R {
+            x[k] = load(j + k * m);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        put::<T, S>(&mut rows[0][j], x[0]);
+        for q in 1..R {
+            put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
+        }
+    }
+}
+
+/// A stage forward.
+#[inline(always)]
+pub(crate) fn forward<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, stage: &Stage<T>, rows: &mut [Row<T, S>]) {
+    let m = stage.stride();
+    for rows in rows.chunks_exact_mut(R * m) {
+        let rows = cut::<_, R>(rows, m);
+        for j in 0..m {
+            let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+            let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+            for k in 1..R {
+                x[k] = get::<T, S>(&rows[k][j]);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            put::<T, S>(&mut rows[0][j], x[0]);
+            for q in 1..R {
+                put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
+            }
+        }
+    }
+}
+
+/// The last stage forward, the product by `factor(block of R rows, q)`, and the first stage backwards.
+#[inline(always)]
+pub(crate) fn multiply<T: Real, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    rows: &mut [Row<T, S>],
+    factor: impl Fn(usize, usize) -> T::Vector<S>,
+) {
+    for (b, rows) in rows.chunks_exact_mut(R).enumerate() {
+        let mut x = [get::<T, S>(&rows[0]); LONGEST];
+        for k in 1..R {
+            x[k] = get::<T, S>(&rows[k]);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for q in 0..R {
+            let Parts { re, im } = a.scale(x[q], factor(b, q));
+            x[q] = Parts { re: im, im: re };
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            put::<T, S>(&mut rows[k], x[k]);
+        }
+    }
+}
+
+/// The last stage forward.
+#[inline(always)]
+pub(crate) fn end<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
+    for rows in rows.chunks_exact_mut(R) {
+        let mut x = [get::<T, S>(&rows[0]); LONGEST];
+        for k in 1..R {
+            x[k] = get::<T, S>(&rows[k]);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            put::<T, S>(&mut rows[k], x[k]);
+        }
+    }
+}
+
+/// A stage backwards.
+#[inline(always)]
+pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S>],
+) {
+    let m = stage.stride();
+    for rows in rows.chunks_exact_mut(R * m) {
+        let rows = cut::<_, R>(rows, m);
+        for j in 0..m {
+            let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+            let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+            for q in 1..R {
+                x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+            }
+            butterfly::<T, S, R>(a, &mut x);
+            for k in 0..R {
+                put::<T, S>(&mut rows[k][j], x[k]);
+            }
+        }
+    }
+}
+
+/// The last stage backwards, to `store(row, value)`.
+#[inline(always)]
+pub(crate) fn last<T: Real, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S>],
+    mut store: impl FnMut(usize, C<T, S>),
+) {
+    let m = stage.stride();
+    let rows = cut::<_, R>(rows, m);
+    for j in 0..m {
+        let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+        let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+        for q in 1..R {
+            x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+        }
+        butterfly::<T, S, R>(a, &mut x);
+        for k in 0..R {
+            store(j + k * m, Parts { re: x[k].im, im: x[k].re });
+        }
+    }
+}

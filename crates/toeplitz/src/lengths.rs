@@ -1,0 +1,80 @@
+//! Lengths of transforms that are fast.
+
+/// The longest stage of our own.
+pub(crate) const LONGEST: usize = 5;
+
+/// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
+/// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives, unless one stands beside many twos alone.
+fn relative_work(twos: u32, threes: u32, fives: u32) -> f64 {
+    let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);
+    let of_fives = match (threes > 0, fives) {
+        (_, 0) => 1.0,
+        (false, 1) if twos >= 5 => 1.0,
+        (_, 1) => 1.12,
+        (_, 2) => 1.3,
+        _ => 1.6,
+    };
+    of_twos * of_fives
+}
+
+/// The even `2^a 3^b 5^c >= n` the transform of which by rustfft is fastest: lengths with a large prime factor cost six times as much.
+pub fn good_length(n: usize) -> usize {
+    length_of_least_work(n, relative_work)
+}
+
+/// The length for stages of our own: the even `2^a 3^b 5^c >= n` of which products go through them fastest. Measured: a stage of 3 takes as
+/// long as two of 2, one of 5 as three of 2, and what goes between memory and vectors as ten.
+pub fn length_for_stages(n: usize) -> usize {
+    length_of_least_work(n, |twos, threes, fives| f64::from(10 + twos + 2 * threes + 3 * fives))
+}
+
+/// The even `2^a 3^b 5^c >= n` of which `length * relative_work(a, b, c)` is least.
+fn length_of_least_work(n: usize, relative_work: impl Fn(u32, u32, u32) -> f64) -> usize {
+    let longest = n.max(2).next_power_of_two();
+    let (mut best, mut least) = (longest, f64::INFINITY);
+    let (mut fives, mut power_of_five) = (0, 1);
+    while power_of_five < longest {
+        let (mut threes, mut odd) = (0, power_of_five);
+        while odd < longest {
+            let even = n.div_ceil(odd).max(2).next_power_of_two();
+            let work = (odd * even) as f64 * relative_work(even.trailing_zeros(), threes, fives);
+            if work < least {
+                (best, least) = (odd * even, work);
+            }
+            (threes, odd) = (threes + 1, 3 * odd);
+        }
+        (fives, power_of_five) = (fives + 1, 5 * power_of_five);
+    }
+    best
+}
+
+/// Whether products of these periods go through stages of our own, in both directions, on a machine that has vectors.
+pub fn have_stages((px, py): (usize, usize)) -> bool {
+    px % 2 == 0 && has_stages(px / 2) && has_stages(py)
+}
+
+/// Whether there are stages for a length: none up to the longest radix, which are one stage.
+fn has_stages(length: usize) -> bool {
+    length > LONGEST && radices(length).is_some()
+}
+
+/// Factors of a length: a four first, the other fours last, what else there is between them.
+pub(crate) fn radices(length: usize) -> Option<Vec<usize>> {
+    let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
+    while rest > 0 && rest % 4 == 0 {
+        (rest, fours) = (rest / 4, fours + 1);
+    }
+    for radix in [5, 3, 2] {
+        while rest > 0 && rest % radix == 0 {
+            rest /= radix;
+            others.push(radix);
+        }
+    }
+    let first = fours.min(1);
+    let radices = [vec![4; first], others, vec![4; fours - first]].concat();
+    (rest == 1 && radices.len() > 1).then_some(radices)
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/lengths.rs"]
+mod tests;

@@ -1,0 +1,77 @@
+//! Plans of transforms, which all threads of the process share: a second product of the same period costs no planning.
+//!
+//! A plan depends on its length only, so that no bit of a result depends on what was planned before. The least recently used plans go first
+//! when they are more than a part of what the process may keep; those in use live on with who uses them.
+
+use std::any::{Any, TypeId};
+use std::sync::{Arc, Mutex};
+
+use par::{memory, threads, Result};
+
+/// What memory is for.
+pub(crate) const PLAN: &str = "the plans of transforms";
+
+/// Plans are at most this part of what may be kept.
+const PART: usize = 8;
+
+/// What is computed once for a length.
+pub(crate) trait Plan: Any + Send + Sync {
+    /// Bytes held.
+    fn bytes(&self) -> usize;
+}
+
+/// A plan and its bytes.
+struct Known {
+    kind: TypeId,
+    length: usize,
+    bytes: usize,
+    plan: Arc<dyn Any + Send + Sync>,
+}
+
+/// The least recently used first.
+static KNOWN: Mutex<Vec<Known>> = Mutex::new(Vec::new());
+
+/// The plan of a length, which is made if nobody has.
+pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -> Result<Arc<P>> {
+    if let Some(known) = find(length) {
+        return Ok(known);
+    }
+    // The others do not wait for it. Two threads may make the same.
+    let plan = Arc::new(make()?);
+    let bytes = plan.bytes();
+    if let Some(mut known) = threads::lock(&KNOWN) {
+        known.push(Known { kind: TypeId::of::<P>(), length, bytes, plan: plan.clone() });
+        let (mut all, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), memory::allowed() / PART);
+        let mut old = 0;
+        while all > most && old < known.len() {
+            all -= known[old].bytes;
+            old += 1;
+        }
+        known.drain(..old);
+    }
+    Ok(plan)
+}
+
+/// The plan of a length if it is known.
+fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
+    let mut known = threads::lock(&KNOWN)?;
+    let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
+    known[i..].rotate_left(1);
+    known.last()?.plan.clone().downcast().ok()
+}
+
+/// Forgets all plans. Those in use live on with who uses them.
+pub fn release() {
+    if let Some(mut known) = threads::lock(&KNOWN) {
+        known.clear();
+    }
+}
+
+/// Bytes of the plans that are kept.
+pub fn kept() -> usize {
+    threads::lock(&KNOWN).map_or(0, |known| known.iter().map(|known| known.bytes).sum())
+}
+
+#[cfg(test)]
+#[path = "../tests/unit/plan.rs"]
+mod tests;

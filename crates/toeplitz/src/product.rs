@@ -1,0 +1,147 @@
+//! `u = A p` on a grid: transforms in x of the rows that hold values, the y direction, and transforms back in x.
+
+use par::threads::Threads;
+use par::Result;
+
+use crate::coefficients::{Coefficients, Even};
+use crate::convolution::Convolution;
+use crate::fft::lane_rows::LaneRows;
+use crate::lengths::{good_length, have_stages, length_for_stages};
+use crate::real::Real;
+use crate::rows::Rows;
+use crate::set_up::SetUp;
+use crate::workspace::{Memory, Room};
+
+/// Products by one block Toeplitz matrix on a grid of `mx * my` elements. Arrays on it are `[my][mx]`, x fastest.
+pub struct Product<T: Real> {
+    rows: Rows<T>,
+    columns: Convolution<T>,
+}
+
+impl<T: Real> Product<T> {
+    /// Plans of a period, at least as long as the grid in either direction; the symbol is still to be computed. An error: there is no memory.
+    pub fn new(grid: (usize, usize), period: (usize, usize), threads: &Threads) -> Result<Product<T>> {
+        Ok(Product { rows: Rows::new(grid, period.0, threads)?, columns: Convolution::new(period)? })
+    }
+
+    /// A whole product of even coefficients, `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`, which are given at offsets >= 0.
+    pub fn even(
+        (mx, my): (usize, usize),
+        c: impl Fn(usize, usize) -> f64 + Sync + Send,
+        threads: &Threads,
+    ) -> Result<Product<T>> {
+        let mut product = Product::new((mx, my), even_period((mx, my)), threads)?;
+        let fill =
+            |ky: i64, row: &mut [f64]| row.iter_mut().enumerate().for_each(|(kx, value)| *value = c(kx, ky as usize));
+        product.set_even(&Even { given: (mx, my), fill, finish: |value| value }, &mut SetUp::default())?;
+        Ok(product)
+    }
+
+    /// A whole product of any coefficients.
+    pub fn uneven(grid: (usize, usize), coefficients: &impl Coefficients, threads: &Threads) -> Result<Product<T>> {
+        let period = (good_length(2 * grid.0 - 1), good_length(2 * grid.1 - 1));
+        let mut product = Product::new(grid, period, threads)?;
+        product.set_uneven((coefficients, 1.0), &mut SetUp::default())?;
+        Ok(product)
+    }
+
+    /// Elements in x and y.
+    pub fn grid(&self) -> (usize, usize) {
+        (self.rows.mx, self.rows.my)
+    }
+
+    /// The periods in x and y.
+    pub fn period(&self) -> (usize, usize) {
+        (self.rows.transform.length(), self.columns.columns.length())
+    }
+
+    /// The threads of its products.
+    pub fn threads(&self) -> &Threads {
+        &self.rows.threads
+    }
+
+    /// Bytes of the symbol.
+    pub fn bytes(&self) -> usize {
+        self.columns.bytes()
+    }
+
+    /// What its products need, whatever the coefficients are.
+    pub fn room(&self) -> Room {
+        self.rows.room_with(self.columns.lanes_if_even(), self.period().1, self.columns.columns.scratch_length())
+    }
+
+    /// Memory for its products.
+    pub fn memory(&self) -> Result<Memory<T>> {
+        Memory::new(self.room(), self.threads())
+    }
+
+    /// Computes the symbol of even coefficients. After an error it is not to be used before it is set again.
+    pub fn set_even<F, G>(&mut self, even: &Even<F, G>, set_up: &mut SetUp) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        self.columns.set_even(even, self.rows.transform.length(), &self.rows.threads, set_up)
+    }
+
+    /// Computes the symbol of any coefficients, times a factor.
+    pub fn set_uneven(&mut self, by: (&impl Coefficients, f64), set_up: &mut SetUp) -> Result<()> {
+        let (grid, px) = (self.grid(), self.rows.transform.length());
+        self.columns.set_uneven(by, grid, px, &self.rows.threads, set_up)
+    }
+
+    /// Takes an even symbol that is known: `value(x, y)` of the bins `0 ..= px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`.
+    pub fn set_values(&mut self, value: impl Fn(usize, usize) -> f64) -> Result<()> {
+        self.columns.set_values((self.rows.transform.bins(), self.rows.transform.length()), value)
+    }
+
+    /// The same product in another precision, times a factor.
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Product<S>> {
+        let (px, threads) = (self.rows.transform.length(), &self.rows.threads);
+        Ok(Product {
+            rows: Rows::new(self.grid(), px, threads)?,
+            columns: self.columns.in_precision(px, factor, threads)?,
+        })
+    }
+
+    /// `u = A p`.
+    pub fn apply(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
+        self.forward(p, memory);
+        self.back(u, memory);
+    }
+
+    /// The first half of a product: A p, transformed in x.
+    pub fn forward(&self, p: &[T], memory: &mut Memory<T>) {
+        assert_eq!(p.len(), self.rows.mx * self.rows.my, "values of another grid");
+        memory.wake(self.room().bins, self.threads());
+        let loaded = self.rows.forward_by(p, memory, self.lanes());
+        self.columns.apply(&self.rows, loaded, memory);
+    }
+
+    /// The second half: u.
+    pub fn back(&self, u: &mut [T], memory: &mut Memory<T>) {
+        assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
+        self.rows.back_by(u, memory, self.lanes());
+    }
+
+    /// The second half: `write(first element, values of u, values of A p)` takes some rows at a time.
+    pub fn back_with(&self, u: &mut [T], memory: &mut Memory<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
+        assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
+        self.rows.write_by(u, memory, self.lanes(), write);
+    }
+
+    fn lanes(&self) -> Option<&LaneRows<T>> {
+        self.columns.lanes()
+    }
+}
+
+/// The shortest fast period of even coefficients: offsets `m - 1` and `-(m - 1)` are alike.
+pub fn even_period((mx, my): (usize, usize)) -> (usize, usize) {
+    let of = |length: fn(usize) -> usize| (length(2 * mx - 2), length(2 * my - 2));
+    let by_stages = of(length_for_stages);
+    if have_stages(by_stages) {
+        by_stages
+    } else {
+        of(good_length)
+    }
+}

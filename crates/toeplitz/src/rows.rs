@@ -1,0 +1,183 @@
+//! The transforms in x of a memory: of those rows only that hold pressures, and back.
+
+use std::ops::Range;
+
+use crate::block::{blocks_of, room_of_column, Block, BLOCK};
+use crate::fft::lane_rows::LaneRows;
+use crate::fft::row_transform::RowTransform;
+use crate::fft::stages::{before_a_line, from_a_line};
+use crate::real::{Complex, Real};
+use par::threads::Threads;
+use par::Result;
+
+use crate::workspace::{Memory, Piece, Room};
+
+/// Rows of a grid, padded to the period in x.
+pub struct Rows<T: Real> {
+    /// Elements in x.
+    pub mx: usize,
+    /// Elements in y.
+    pub my: usize,
+    /// Of one row.
+    pub transform: RowTransform<T>,
+    /// Who transforms.
+    pub threads: Threads,
+}
+
+impl<T: Real> Rows<T> {
+    /// Plans for rows of a period.
+    pub fn new((mx, my): (usize, usize), period: usize, threads: &Threads) -> Result<Rows<T>> {
+        Ok(Rows { mx, my, transform: RowTransform::new(period)?, threads: threads.clone() })
+    }
+
+    /// The memory of products whose columns are not in lanes and need so many values of scratch.
+    pub fn room(&self, period_in_y: usize, scratch: usize) -> Room {
+        self.room_with(None, period_in_y, scratch)
+    }
+
+    /// The same with these transforms or without.
+    pub(crate) fn room_with(&self, lanes: Option<&LaneRows<T>>, period_in_y: usize, scratch: usize) -> Room {
+        Room {
+            bins: self.bins(lanes),
+            row: self.at_a_time(lanes).max(self.transform.at_a_time()) * self.mx,
+            columns: BLOCK * room_of_column(period_in_y) + before_a_line::<T>(),
+            scratch: self.scratch_length(lanes).max(scratch),
+            pieces: self.threads.count(),
+        }
+    }
+
+    /// Rows that are transformed together.
+    fn at_a_time(&self, lanes: Option<&LaneRows<T>>) -> usize {
+        lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
+    }
+
+    /// Rows that a block of bins has room for in the places of vectors: a group of rows that are transformed together may begin at the last row of
+    /// the grid, and is always whole.
+    pub(crate) fn height(&self, lanes: &LaneRows<T>) -> usize {
+        self.my + lanes.at_a_time() - 1
+    }
+
+    /// The blocks of bins in the places of vectors, from a line of the cache on, and the pieces.
+    pub(crate) fn blocks_of_bins<'a>(
+        &self,
+        lanes: &LaneRows<T>,
+        memory: &'a mut Memory<T>,
+    ) -> (&'a mut [Complex<T>], &'a mut [Piece<T>]) {
+        let bins = from_a_line(&mut memory.bins);
+        (&mut bins[..lanes.blocks() * self.height(lanes) * BLOCK], &mut memory.pieces)
+    }
+
+    /// Bins of all rows, with these transforms or without.
+    fn bins(&self, lanes: Option<&LaneRows<T>>) -> usize {
+        let in_vectors = |lanes: &LaneRows<T>| lanes.blocks() * self.height(lanes) * BLOCK + before_a_line::<T>();
+        lanes.map_or(0, in_vectors).max(self.my * self.transform.bins())
+    }
+
+    /// Scratch that transforms need, with these or without.
+    fn scratch_length(&self, lanes: Option<&LaneRows<T>>) -> usize {
+        lanes.map_or(0, LaneRows::scratch_length).max(self.transform.scratch_length())
+    }
+
+    /// Transforms the rows that hold values; returns which.
+    pub fn forward(&self, p: &[T], memory: &mut Memory<T>) -> Range<usize> {
+        memory.wake(self.bins(None), &self.threads);
+        self.forward_by(p, memory, None)
+    }
+
+    /// The same with these transforms or without.
+    pub(crate) fn forward_by(&self, p: &[T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
+        let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
+        if let Some(lanes) = lanes {
+            let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
+            let (bins, pieces) = self.blocks_of_bins(lanes, memory);
+            let bins = self.some_rows(lanes, bins, loaded.clone());
+            self.threads.share(rows.zip(bins), pieces, |(rows, mut bins), piece| {
+                lanes.forward(rows, mx, &mut bins, &mut piece.scratch);
+            });
+        } else {
+            let nb = self.transform.bins();
+            let bins = &mut memory.bins[loaded.start * nb..loaded.end * nb];
+            self.threads.for_each_row(bins, together * nb, &mut memory.pieces, |i, bins, piece| {
+                let rows = &p[(loaded.start + i * together) * mx..][..bins.len() / nb * mx];
+                self.transform.forward_together(rows, mx, bins, &mut piece.scratch);
+            });
+        }
+        loaded
+    }
+
+    /// Those rows of blocks, as many at a time as are transformed together: the last of them may lie beyond `rows`.
+    fn some_rows<'a>(
+        &self,
+        lanes: &LaneRows<T>,
+        bins: &'a mut [Complex<T>],
+        rows: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+        let together = lanes.at_a_time();
+        let end = rows.start + rows.len().next_multiple_of(together);
+        blocks_of(bins, self.height(lanes) * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
+    }
+
+    /// Transforms all rows back to u.
+    pub fn back(&self, u: &mut [T], memory: &mut Memory<T>) {
+        self.back_by(u, memory, None);
+    }
+
+    /// The same; `write(first element, values of u, values)` takes some rows at a time.
+    pub fn back_with(&self, u: &mut [T], memory: &mut Memory<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
+        self.write_by(u, memory, None, write);
+    }
+
+    /// The same with these transforms or without.
+    pub(crate) fn back_by(&self, u: &mut [T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) {
+        self.each_back(u, memory, lanes, |_, u, piece, inverse| inverse(u, &mut piece.scratch));
+    }
+
+    /// Transforms all rows back; `write(first element, values of u, values)` takes some of them.
+    pub(crate) fn write_by(
+        &self,
+        u: &mut [T],
+        memory: &mut Memory<T>,
+        lanes: Option<&LaneRows<T>>,
+        write: impl Fn(usize, &mut [T], &[T]) + Sync + Send,
+    ) {
+        let together = self.at_a_time(lanes);
+        self.each_back(u, memory, lanes, |i, u, piece, inverse| {
+            let rows = &mut piece.row[..u.len()];
+            inverse(rows, &mut piece.scratch);
+            write(i * together * self.mx, u, rows);
+        });
+    }
+
+    /// `work(i, values of u, piece, inverse)` for all rows that are transformed together; `inverse(rows, scratch)` transforms them.
+    fn each_back(
+        &self,
+        u: &mut [T],
+        memory: &mut Memory<T>,
+        lanes: Option<&LaneRows<T>>,
+        work: impl Fn(usize, &mut [T], &mut Piece<T>, &mut dyn FnMut(&mut [T], &mut [Complex<T>])) + Sync + Send,
+    ) {
+        let (mx, together) = (self.mx, self.at_a_time(lanes));
+        if let Some(lanes) = lanes {
+            let u = u.chunks_mut(together * mx).enumerate();
+            let (bins, pieces) = self.blocks_of_bins(lanes, memory);
+            let bins = self.some_rows(lanes, bins, 0..self.my);
+            return self.threads.share(u.zip(bins), pieces, |((i, u), bins), piece| {
+                work(i, u, piece, &mut |rows, scratch| lanes.inverse(&bins, rows, mx, scratch));
+            });
+        }
+        let nb = self.transform.bins();
+        let bins = (&mut memory.bins[..self.my * nb], together * nb);
+        self.threads.for_each_row_pair_with((u, together * mx), bins, &mut memory.pieces, |i, u, bins, piece| {
+            work(i, u, piece, &mut |rows, scratch| self.transform.inverse_together(bins, rows, mx, scratch));
+        });
+    }
+}
+
+/// The run of rows outside of which `p` is zero.
+fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
+    // All of a row, which the compiler can vectorise.
+    let loaded = |row: &[T]| row.iter().fold(false, |any, &value| any | (value != T::zero()));
+    let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
+    let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);
+    first..last + 1
+}

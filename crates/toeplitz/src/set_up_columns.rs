@@ -1,0 +1,125 @@
+//! Columns of a symbol that is set up: gathered from a matrix of rows, and converted to the precision of products.
+
+use std::ops::Range;
+
+use crate::block::BLOCK;
+use crate::real::{Complex, Real};
+
+/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: the pairs of a block, whole cache lines.
+pub(crate) const PAIRS: usize = BLOCK / 2;
+
+/// A column times a factor, in another precision. Compiled for the vectors of this machine, as the next.
+pub(crate) struct Scaled<'a, T> {
+    pub(crate) column: &'a [Complex<f64>],
+    pub(crate) scale: f64,
+    pub(crate) out: &'a mut [Complex<T>],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Scaled { column, scale, out } = self;
+        for (value, bin) in out.iter_mut().zip(column) {
+            *value = Complex::new(T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Its real and its imaginary parts.
+pub(crate) struct Parts<'a, T> {
+    pub(crate) column: &'a [Complex<f64>],
+    pub(crate) scale: f64,
+    pub(crate) re: &'a mut [T],
+    pub(crate) im: &'a mut [T],
+}
+
+impl<T: Real> pulp::NullaryFnOnce for Parts<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Parts { column, scale, re, im } = self;
+        for ((bin, re), im) in column.iter().zip(re).zip(im) {
+            (*re, *im) = (T::of(scale * bin.re), T::of(scale * bin.im));
+        }
+    }
+}
+
+/// Copies the columns from `first` on of rows `rows` of a matrix, `nb` columns wide, to those of a block, each `py` long, from row `to` on.
+pub(crate) fn gather<V: Copy>(
+    matrix: (&[V], usize),
+    rows: Range<usize>,
+    first: usize,
+    (block, py): (&mut [V], usize),
+    to: usize,
+) {
+    // Of a known number the compiler makes one step.
+    match block.len() / py {
+        PAIRS => copy_columns(matrix, rows, (first, PAIRS), (block, py), to),
+        count => copy_columns(matrix, rows, (first, count), (block, py), to),
+    }
+}
+
+#[inline(always)]
+fn copy_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
+    rows: Range<usize>,
+    (first, count): (usize, usize),
+    (block, py): (&mut [V], usize),
+    to: usize,
+) {
+    for (row, y) in rows.zip(to..) {
+        let row = &matrix[row * nb + first..][..count];
+        for c in 0..count {
+            block[c * py + y] = row[c];
+        }
+    }
+}
+
+/// A period of even coefficients in row ky, of which `fill` gives those at offsets 0 .. `given`.
+pub(crate) fn fill_even(ky: i64, given: usize, row: &mut [f64], fill: impl Fn(i64, &mut [f64])) {
+    let px = row.len();
+    row.fill(0.0);
+    fill(ky, &mut row[..given]);
+    for kx in 1..given {
+        row[px - kx] = row[kx];
+    }
+}
+
+/// Fills columns of a block, each `py` long, with pairs of columns from `first` on of a matrix of rows ky >= 0, `nb` columns wide:
+/// `values(a, b)` of the pair's values in row ky are those at ky and -ky, zero beyond. The last column of an odd number is its own pair.
+pub(crate) fn fill_pairs<V: Copy>(
+    matrix: (&[V], usize),
+    rows: usize,
+    first: usize,
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for column in block.chunks_exact_mut(py) {
+        column[rows..(py + 1 - rows).max(rows)].fill(Complex::default());
+    }
+    match (block.len() / py, (matrix.1 - first).min(2 * PAIRS)) {
+        (PAIRS, count) if count == 2 * PAIRS => join_columns(matrix, rows, (first, 2 * PAIRS), (block, py), values),
+        (_, count) => join_columns(matrix, rows, (first, count), (block, py), values),
+    }
+}
+
+#[inline(always)]
+fn join_columns<V: Copy>(
+    (matrix, nb): (&[V], usize),
+    rows: usize,
+    (first, count): (usize, usize),
+    (block, py): (&mut [Complex<f64>], usize),
+    values: impl Fn(V, V) -> [Complex<f64>; 2],
+) {
+    for ky in 0..rows {
+        let (row, opposite) = (&matrix[ky * nb + first..][..count], if ky == 0 { 0 } else { py - ky });
+        for pair in 0..count.div_ceil(2) {
+            let [here, there] = values(row[2 * pair], row[(2 * pair + 1).min(count - 1)]);
+            block[pair * py + opposite] = there;
+            block[pair * py + ky] = here;
+        }
+    }
+}

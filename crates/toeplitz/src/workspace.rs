@@ -1,0 +1,102 @@
+//! The memory of products.
+
+use par::memory::{asleep, blank, keep, rest, wake, zeros};
+use par::threads::Threads;
+use par::Result;
+
+use crate::real::{Complex, Real};
+
+/// What memory is for.
+const WORKSPACE: &str = "the product's workspace";
+
+/// Numbers of values that a product needs. Memory for one product serves all that need no more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Room {
+    /// Bins of all rows.
+    pub bins: usize,
+    /// Values of rows, of each piece of the work.
+    pub row: usize,
+    /// Values of a block of columns, of each piece.
+    pub columns: usize,
+    /// Values of scratch, of each piece.
+    pub scratch: usize,
+    /// Pieces: one for each thread.
+    pub pieces: usize,
+}
+
+impl Room {
+    /// Room for either product.
+    #[must_use]
+    pub fn max(self, other: Room) -> Room {
+        Room {
+            bins: self.bins.max(other.bins),
+            row: self.row.max(other.row),
+            columns: self.columns.max(other.columns),
+            scratch: self.scratch.max(other.scratch),
+            pieces: self.pieces.max(other.pieces),
+        }
+    }
+}
+
+/// Memory that a product needs, so that it allocates nothing.
+pub struct Memory<T: Real> {
+    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes, blocks as [`LaneRows`](crate::fft::lane_rows::LaneRows) have them.
+    pub bins: Vec<Complex<T>>,
+    /// One for each thread.
+    pub pieces: Vec<Piece<T>>,
+    /// Bins that a product needs, at rest or not.
+    most: usize,
+}
+
+/// What one thread works with.
+pub struct Piece<T: Real> {
+    /// The block of columns that was worked on last.
+    pub(crate) block: usize,
+    /// Values of rows.
+    pub row: Vec<T>,
+    /// A block of columns.
+    pub columns: Vec<Complex<T>>,
+    /// Scratch of transforms.
+    pub scratch: Vec<Complex<T>>,
+}
+
+impl<T: Real> Memory<T> {
+    /// Memory for products that need no more than this.
+    pub fn new(room: Room, threads: &Threads) -> Result<Memory<T>> {
+        let piece = |_| {
+            let (columns, scratch) = (blank(room.columns, nan(), WORKSPACE)?, blank(room.scratch, nan(), WORKSPACE)?);
+            Ok(Piece { block: 0, row: zeros(room.row, WORKSPACE)?, columns, scratch })
+        };
+        let mut bins = Vec::new();
+        asleep(&mut bins, room.bins, nan(), WORKSPACE, threads)?;
+        Ok(Memory { bins, pieces: (0..room.pieces).map(piece).collect::<Result<_>>()?, most: room.bins })
+    }
+
+    /// Wakes bins, so many at least.
+    pub(crate) fn wake(&mut self, least: usize, threads: &Threads) {
+        let n = self.bins.len().max(least);
+        wake(&mut self.bins, n, nan(), threads);
+    }
+
+    /// It is not needed for a while.
+    pub fn rest(&mut self) {
+        rest(&mut self.bins);
+    }
+
+    /// Bytes held in bins.
+    pub fn bytes(&self) -> usize {
+        self.most * size_of::<Complex<T>>()
+    }
+}
+
+/// Neither part is a number.
+fn nan<T: Real>() -> Complex<T> {
+    Complex::new(T::nan(), T::nan())
+}
+
+impl<T: Real> Drop for Memory<T> {
+    fn drop(&mut self) {
+        keep([&mut self.bins]);
+        self.pieces.iter_mut().for_each(|piece| keep([&mut piece.columns, &mut piece.scratch]));
+    }
+}

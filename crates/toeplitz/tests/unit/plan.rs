@@ -1,0 +1,44 @@
+//! Plans are shared, and the least recently used go. The tests share one list: each uses a type of its own.
+
+use super::*;
+
+/// A plan of so many bytes.
+struct Own<const KIND: usize>(usize);
+
+impl<const KIND: usize> Plan for Own<KIND> {
+    fn bytes(&self) -> usize {
+        self.0
+    }
+}
+
+#[test]
+fn a_plan_serves_again_on_any_thread() {
+    let first = shared(7, || Ok(Own::<0>(1))).unwrap();
+    let again =
+        std::thread::spawn(|| shared(7, || -> Result<Own<0>> { panic!("it is known") }).unwrap()).join().unwrap();
+    assert!(Arc::ptr_eq(&first, &again));
+    let other = shared(8, || Ok(Own::<0>(1))).unwrap();
+    assert!(!Arc::ptr_eq(&first, &other));
+}
+
+#[test]
+fn plans_beyond_the_bound_are_forgotten() {
+    let most = memory::allowed() / PART;
+    let made = |length: usize| shared(length, || Ok(Own::<1>(most / 4))).unwrap();
+    let kept = made(0);
+    for length in 1..20 {
+        made(length);
+        assert!(Arc::ptr_eq(&kept, &made(0)), "what is used stays");
+        assert!(super::kept() <= most);
+    }
+    // What is larger by itself is not kept, and serves who asked for it.
+    assert_eq!(shared(99, || Ok(Own::<1>(most + 1))).unwrap().0, most + 1);
+    assert!(find::<Own<1>>(99).is_none());
+}
+
+#[test]
+fn a_plan_that_cannot_be_made_is_not_known() {
+    let refuse = || Err(par::OutOfMemory("no memory".into()));
+    assert!(shared::<Own<2>>(3, refuse).is_err());
+    assert_eq!(shared(3, || Ok(Own::<2>(5))).unwrap().0, 5);
+}
