@@ -31,7 +31,12 @@ pub struct Slide {
 
 impl Slide {
     pub fn has_forces(&self) -> bool {
-        self.prescribed.contains(&CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE)
+        self.is_force(0) || self.is_force(1)
+    }
+
+    /// Whether the force is given in that direction.
+    pub fn is_force(&self, k: usize) -> bool {
+        self.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
     }
 
     fn length(&self, grid: &Grid) -> f64 {
@@ -191,8 +196,8 @@ impl Case {
 
     /// Why the forces may be refused, if they may: any force below mu N is reached by a creepage that is large enough.
     pub fn may_be_infeasible(&self) -> Option<&'static str> {
-        let Slide { prescribed, amount, .. } = &self.slide;
-        let given = |k: usize| prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
+        let amount = &self.slide.amount;
+        let given = |k: usize| self.slide.is_force(k);
         let force = [0, 1].map(|k| if given(k) { amount[k] } else { 0.0 });
         let size = force[0].hypot(force[1]);
         // Tractions change the pressures of unlike bodies: not their sum, where that is given.

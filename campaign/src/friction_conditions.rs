@@ -12,6 +12,9 @@ use crate::tangential::{Operator, Vector};
 /// Tractions of more than this part of the bound slip, by the library's documents.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
+/// Lengths are compared with at least this part of those whose difference they are, by the library's documents.
+const ROUND_OFF: f64 = 1.5e-8;
+
 pub fn length(v: Vector) -> f64 {
     v[0].hypot(v[1])
 }
@@ -74,12 +77,14 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
     let d = displacements(case, found, before);
     let mut rounding = d.rounding;
     let (mut left, mut rigid, mut displaced, mut slip_error) = (Vec::new(), Vec::new(), Vec::new(), 0.0f64);
+    let (mut without_found, creepage) = (Vec::new(), found.report.tangential.creepage);
+    let given = [0, 1].map(|k| if slide.is_force(k) { 0.0 } else { creepage[k] });
     for i in 0..found.q.len() {
         let (q, bound) = (found.q[i], slide.mu[i] * found.p[i]);
         if !(found.p[i] > 0.0) {
             continue;
         }
-        let (own, largest) = slide.rigid_slip(&case.place.grid, i, found.report.tangential.creepage);
+        let (own, largest) = slide.rigid_slip(&case.place.grid, i, creepage);
         let w = [0, 1].map(|k: usize| own[k] + d.sideways[i][k]);
         rounding = rounding.max(8.0 * f64::EPSILON * largest + d.rounding);
         let s = [0, 1].map(|k: usize| w[k] + d.by_q[i][k] - d.before[i][k]);
@@ -95,6 +100,8 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         }
         left.push(length(rest));
         rigid.push(length(w));
+        let (own, _) = slide.rigid_slip(&case.place.grid, i, given);
+        without_found.push(length([0, 1].map(|k: usize| own[k] + d.sideways[i][k])));
         let step = [0, 1].map(|k: usize| d.by_q[i][k] - if is_steady { d.before[i][k] } else { 0.0 });
         displaced.push(length(step));
     }
@@ -102,9 +109,11 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         CONTACT_NORMAL_MOTION_SHIFT => 1.0,
         CONTACT_NORMAL_MOTION_STEADY_ROLLING if slide.has_forces() => 1.0,
         // Rolling slowly: what round-off of the displacements leaves.
-        _ => 1.5e-8,
+        _ => ROUND_OFF,
     };
-    let scale = rms(&rigid).max(or_displacements * rms(&displaced));
+    // Creepages that are found may cancel the rigid slip: what round-off leaves of it.
+    let cancelled = if slide.has_forces() { ROUND_OFF * rms(&without_found) } else { 0.0 };
+    let scale = rms(&rigid).max(or_displacements * rms(&displaced)).max(cancelled);
     let along_normal = d.by_q.iter().map(|u| u[2]).collect();
     Conditions { left: rms(&left), scale, rounding, slip_error, along_normal, normal_rounding: d.normal_rounding }
 }

@@ -143,8 +143,12 @@ impl State {
 
     /// Whether u is known in all of the contact area: that may have grown beyond the window of a coarser grid, outside of which it is infinite.
     pub fn has_displacements(&self) -> bool {
-        let known = |touches: &[bool]| touches.iter().zip(&self.u).all(|(touches, u)| !touches || u.is_finite());
-        known(&self.contact) && (!self.has_limited() || known(&self.at_limit))
+        // All of a row, which the compiler can vectorise.
+        let known = |touches: &[bool], u: &[f64]| {
+            touches.iter().zip(u).fold(true, |all, (touches, u)| all & (!touches | u.is_finite()))
+        };
+        self.rows_with_contact().all(|row| known(&self.contact[row.clone()], &self.u[row]))
+            && (!self.has_limited() || known(&self.at_limit, &self.u))
     }
 
     /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.

@@ -23,7 +23,7 @@ use crate::progress::Outcome;
 
 /// Where more than this part of C slips the natural map is tried first.
 const MOSTLY_SLIP: f64 = 0.8;
-/// A trial is good if it leaves at most this part of what was missing.
+/// A trial is good if it leaves at most this part of the least that was missing.
 const PROGRESS: f64 = 0.5;
 /// Where trials miss this part of what they missed before, Newton's method with balanced creepages tries to finish, by so many products.
 const CLOSE: f64 = 0.1;
@@ -43,8 +43,8 @@ struct Trials {
     by_map: bool,
     /// Trials in succession that were not good.
     bad: u32,
-    /// What was missing last.
-    last: Option<f64>,
+    /// The least that was missing. (Than the last one every other trial of two that lead to each other may be better.)
+    least: Option<f64>,
 }
 
 /// Solves from what the state and the offset hold.
@@ -62,18 +62,14 @@ pub fn solve(
     problem.refresh(state);
     let bounds = sum_of_bounds(problem);
     let mut trials = Trials::new(problem, forces, bounds);
-    let (mut tried, mut inner, mut before) = (1.0, tolerance, [f64::NAN; 2]);
+    let (mut tried, mut inner, mut before, mut is_exact) = (1.0, tolerance, [f64::NAN; 2], false);
     for _ in 0..MOST_TRIALS {
         let left = limit.saturating_sub(problem.operators.products - made);
         if left == 0 {
             return Ok(Outcome::IterationLimit);
         }
-        let end = by_creepages(
-            problem,
-            state,
-            memory,
-            Goal { tolerance: inner, limit: left, certified, watch: &mut *watch },
-        )?;
+        let of_trial = Goal { tolerance: inner, limit: left, certified, watch: &mut *watch };
+        let end = by_creepages(problem, state, memory, of_trial)?;
         let residual = Certificate::of(problem, state).residual;
         if end != Outcome::Converged && !(end == Outcome::Stagnated && residual < tolerance) {
             return Ok(end);
@@ -101,10 +97,14 @@ pub fn solve(
         }
         before = excess;
         let next = trials.next(problem, state, memory, (forces, excess, missing))?;
-        if next == problem.offset {
+        if next != problem.offset {
+            problem.offset = next;
+        } else if is_exact {
             break;
+        } else {
+            // A residual on one element alone may hide that forces are too small: such a solve cuts off the creepages that are wanted.
+            (is_exact, inner, trials) = (true, inner.min(LEAST_INNER), Trials::new(problem, forces, bounds));
         }
-        problem.offset = next;
     }
     Ok(Outcome::Stagnated)
 }
@@ -176,7 +176,7 @@ impl Trials {
         });
         let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
         let half = problem.farthest_creepage() * 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
-        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, last: None }
+        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, least: None }
     }
 
     /// The creepages to try next; those of now where there are no others.
@@ -191,12 +191,12 @@ impl Trials {
         self.corral.cut(at, excess);
         let rho = 1.0 / compliance(problem);
         memory.tangent.predict(problem, state, rho);
-        match self.last {
-            Some(before) if missing > PROGRESS * before => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
+        match self.least {
+            Some(least) if missing > PROGRESS * least => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
             Some(_) => self.bad = 0,
             None => self.by_map = memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64,
         }
-        self.last = Some(missing);
+        self.least = Some(self.least.map_or(missing, |least| least.min(missing)));
         if self.bad % 3 == 2 {
             return Ok(self.corral.centre());
         }

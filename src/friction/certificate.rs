@@ -6,6 +6,7 @@
 //! rest = s - min(s_n, 0) n       on it: what of -s does not point outwards along the normal
 //! residual = rms_C(rest)/S,      S = max(rms_C(rigid slip), f rms_C(u));  u: displacements of a shift or of a step, f = 1 for a shift and
 //!                                for steady rolling by a force; else f = 1.5e-8, which is what round-off leaves
+//!                                where forces are given, S is at least 1.5e-8 rms_C(rigid slip without the creepages that are found)
 //! gap      = sum_C (s.q + g |s|) / sum_C g |rigid slip|     >= 0, and 0 for the solution only
 //! ```
 //!

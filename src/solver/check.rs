@@ -135,8 +135,9 @@ pub fn range(
                 None if lowest.is_finite() => (approach - lowest).max(0.0),
                 None => 0.0,
             };
-            // A single element of two periods has an influence of 0, and without a depth there is no pressure.
-            let pressure = if depth == 0.0 { 0.0 } else { depth / influence };
+            // A single element of two periods has an influence of 0: it carries its limit. Without a depth there is no pressure.
+            let limit = scene.pressure_limit.filter(|_| influence == 0.0).map(|limit| limit.at(0));
+            let pressure = if depth == 0.0 { 0.0 } else { limit.unwrap_or(depth / influence) };
             (pressure, depth, 0.0)
         }
         Load::Force(force) => {

@@ -166,3 +166,48 @@ fn a_shift_of_a_line_contact_takes_few_products() {
         assert!(report.certificate.stick_count > m / 4 && report.certificate.slip_count > m / 10, "{report:?}");
     }
 }
+
+/// Two creepages of all slip, with too much force and too little, of which the natural map leads from each to the other: the second one leaves
+/// less than half of what the first one leaves. Between them one element sticks.
+#[test]
+fn creepages_that_lead_to_each_other_are_left() {
+    let grid = Grid::new(17, 1, 2.2 / 17.0, 26.83).unwrap();
+    let h: Vec<f64> = (0..17).map(|i| 0.01 * ((f64::from(i) - 8.0) * grid.dx - 0.0071067).powi(2)).collect();
+    let bodies = Bodies { shear_modulus: [1e4, 13854.3], poisson_ratio: [0.32794, 0.25354] };
+    let (force, mu) = (9658.8, 10f64.powf(-3.5));
+    for part in [0.3, -0.3, 0.29, 0.31] {
+        let friction = Friction {
+            motion: Motion::Shift,
+            prescribed: [Prescribed::Force(part * mu * force), Prescribed::Creepage(0.0)],
+            ..Friction::new(mu)
+        };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(force)) };
+        let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+        let found = report.friction.unwrap();
+        assert_eq!(stop, Outcome::Converged, "{part}: {found:?}");
+        assert!((found.force[0] - part * mu * force).abs() <= TOLERANCE * mu * force, "{part}: {:?}", found.force);
+        assert_eq!(found.certificate.stick_count, 1, "{part}");
+        assert!(found.products <= 200.0, "{part}: {} products", found.products);
+    }
+}
+
+/// A residual that one element of 1735 has alone hides its tractions: a trial that is only that good says that forces are too small where they are too large.
+#[test]
+fn forces_are_met_where_the_residual_hides_one_element() {
+    let grid = Grid::new(2000, 1, 1.1e-3, 268.0051990031252).unwrap();
+    let h: Vec<f64> =
+        (0..2000).map(|i| 0.01 * ((f64::from(i) - 999.5) * grid.dx - 0.0006413204950350693).powi(2)).collect();
+    let bodies =
+        Bodies { shear_modulus: [1e4, 55154.930364037245], poisson_ratio: [0.33582673180342015, 0.2807889637012225] };
+    let (force, mu) = (96481.87164112506, 10f64.powf(-2.5));
+    let friction = Friction {
+        motion: Motion::Shift,
+        prescribed: [Prescribed::Force(0.99 * mu * force), Prescribed::Creepage(0.0)],
+        ..Friction::new(mu)
+    };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(force)) };
+    let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
+    let found = report.friction.unwrap();
+    assert_eq!(stop, Outcome::Converged, "{found:?}");
+    assert!((found.force[0] / (mu * force) - 0.99).abs() <= TOLERANCE, "{:?}", found.force);
+}

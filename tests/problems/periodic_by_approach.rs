@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, Scene};
+use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 /// A random surface of all waves up to `m/part`, their amplitudes falling as `k^-1.8`.
@@ -92,5 +92,22 @@ fn a_single_element_has_its_own_distance_for_an_approach() {
     match solve(&scene(0.3), &Options::default()) {
         Ok((solver, stop, _)) => assert_eq!((stop, &solver.state().p[..]), (Outcome::Converged, &[0.0][..])),
         Err(refused) => assert!(refused.to_string().contains("contact is full"), "{refused}"),
+    }
+}
+
+/// Beyond its own distance a single element carries its limit, however deep it is.
+#[test]
+fn a_single_element_carries_its_limit() {
+    let (grid, h) = (Grid::new(1, 1, 0.8, 0.8).unwrap(), [0.3]);
+    for approach in [0.3 + 1e-9, 0.4, 7.0] {
+        for limit in [PressureLimit::Uniform(2.0), PressureLimit::PerElement(&[2.0])] {
+            let scene = Scene {
+                period: Some(Period { x: true, y: true }),
+                pressure_limit: Some(limit),
+                ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(approach))
+            };
+            let (solver, stop, _) = solve(&scene, &Options::default()).unwrap();
+            assert_eq!((stop, &solver.state().p[..]), (Outcome::Converged, &[2.0][..]), "{approach} {limit:?}");
+        }
     }
 }

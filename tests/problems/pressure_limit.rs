@@ -288,10 +288,11 @@ fn what_is_no_limit_is_refused_by_name() {
     assert!(error.contains("FIXED") && error.contains("pressure_limit"), "{error}");
 }
 
-/// A limit is a bound inside the iteration: about three times the products of the plain scene at most, 47.6 for 15.3. Counts, not times. What it
-/// costs on 140 scenes prints `examples/pressure_limits`.
+/// A limit is a bound inside the iteration: at most three times the products of the plain scene, measured 1.1 to 2.8. On one scene of 42 iterations by
+/// approach stand still for nine times, and it takes 47.6 for 15.3. Counts, not times. What limits cost on 140 scenes prints `examples/pressure_limits`.
 #[test]
-fn a_limit_costs_about_three_times_the_plain_scene_at_most() {
+fn a_limit_costs_at_most_three_times_the_plain_scene_but_for_one() {
+    let mut beyond = 0;
     for m in [64, 128, 256, 512] {
         let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).unwrap();
         for h in [ball(&grid), rough(&grid)].into_iter().take(if m < 512 { 2 } else { 1 }) {
@@ -309,9 +310,12 @@ fn a_limit_costs_about_three_times_the_plain_scene_at_most() {
                         format!("{m}, {load:?}, {share}: {} for {}", report.count.work_units, alone.count.work_units);
                     assert_eq!(stop, Outcome::Converged, "{what}");
                     assert!(solver.state().at_limit.contains(&true), "{what}: no limit is reached");
-                    assert!(report.count.work_units <= 3.2 * alone.count.work_units, "{what}");
+                    let ratio = report.count.work_units / alone.count.work_units;
+                    assert!(ratio <= 3.2, "{what}");
+                    beyond += usize::from(ratio > 3.0);
                 }
             }
         }
     }
+    assert!(beyond <= 1, "{beyond} scenes take more than three times the plain one");
 }

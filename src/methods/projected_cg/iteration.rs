@@ -157,7 +157,7 @@ impl<T: Real> Iteration<T> {
             iterations += 1;
             cycle = self.iterate(state, set, &mut search);
             let Some(cycle) = &mut cycle else { return End::Breakdown };
-            if self.is_another_area(state, cycle, iterations) {
+            if self.is_another_area(cycle, iterations) {
                 cycle.products += self.deflate::<S>(state, is_mean_free);
             }
         }

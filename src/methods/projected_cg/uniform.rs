@@ -41,9 +41,10 @@ impl<T: Real> Iteration<T> {
         if is_known || !by_approach || S::FIXED || state.reached_limit {
             return 0;
         }
-        let is_nearly_full = is_mean_free && 2 * state.contact_count() > state.p.len();
+        let is_nearly_full = is_mean_free && 2 * self.segments.count() > state.p.len();
         // Below a layer that differs between elements, few carry much for another reason, and 1 is no direction.
-        let is_of_few = !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state);
+        let is_of_few =
+            !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state, self.segments.count());
         if !(is_nearly_full || is_of_few) || self.deflation.reserve(state.p.len()).is_err() {
             return 0;
         }
@@ -57,8 +58,8 @@ impl<T: Real> Iteration<T> {
     }
 
     /// Whether so much of C has changed that a direction on it is to be made anew, or for the first time.
-    pub(super) fn is_another_area(&self, state: &State, cycle: &Cycle, iterations: u64) -> bool {
-        let count = state.contact_count() as u64;
+    pub(super) fn is_another_area(&self, cycle: &Cycle, iterations: u64) -> bool {
+        let count = self.segments.count() as u64;
         if self.deflation.is_there() {
             self.deflation.is_uniform && ANOTHER * self.deflation.left() as u64 > count
         } else {
@@ -67,10 +68,10 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Whether few elements of C carry much of the force.
-fn few_carry_much(state: &State) -> bool {
+/// Whether few elements of C, which has `count` of them, carry much of the force.
+fn few_carry_much(state: &State, count: usize) -> bool {
     let sum = in_blocks(state.p.iter().map(|p| p.max(0.0)));
-    let (mean, mut sums) = (sum / state.contact_count() as f64, Sums::new());
+    let (mean, mut sums) = (sum / count as f64, Sums::new());
     sums.add::<f64, 1, 0>([&state.p], [], |[p], []| [(p - FEW * mean).max(0.0)]);
     let [beyond] = sums.values();
     beyond > MUCH * sum
