@@ -3,8 +3,6 @@
 //! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
 //! are alike; it is solved first.
 
-use std::f64::consts::PI;
-
 use super::effect::{check_values, Effect};
 use super::tangential_influence::TangentialInfluence;
 use crate::error::{invalid, require, Error, Result};
@@ -30,14 +28,8 @@ impl Coefficient<'_> {
     }
 }
 
-/// Steps of rolling are at most so many elements long,
-const LONGEST_STEP: f64 = 1e6;
-/// and those of steady rolling at least so many.
-const SHORTEST_STEADY_STEP: f64 = 0.1;
-
 /// Slips and tractions are smaller: their squares are numbers.
-const LARGEST: f64 = 1e140;
-const OTHER_UNITS: &str = "friction needs numbers below 1e140: choose other units";
+pub(super) const LARGEST: f64 = 1e140;
 
 /// Of angles and lengths.
 const ROUND_OFF: f64 = 1e-14;
@@ -191,90 +183,6 @@ impl Friction<'_> {
             k => unit.prescribed[k] = Prescribed::Creepage(1.0),
         }
         unit.rigid_slip_at(grid, i)
-    }
-
-    /// Refuses steps beyond all grids, and steps of steady rolling that elements do not resolve.
-    fn check_step(&self, grid: &Grid) -> Result<()> {
-        let (name, distance) = ("friction->rolling_distance", self.distance(grid));
-        let (x, y) = self.elements_rolled(grid);
-        let longest = x.abs().max(y.abs());
-        match self.motion {
-            Motion::Shift => Ok(()),
-            Motion::TransientRolling => {
-                let rule = "a step of transient rolling must be at most a million elements long";
-                require(longest <= LONGEST_STEP, name, distance, rule)
-            }
-            Motion::SteadyRolling => {
-                let rule =
-                    "a step of steady rolling must be at least a tenth of an element long, and at most a million elements";
-                require((SHORTEST_STEADY_STEP..=LONGEST_STEP).contains(&longest), name, distance, rule)
-            }
-        }
-    }
-
-    /// Refuses slips and tractions that are no numbers, or whose squares leave the range of double precision.
-    fn check_range(&self, grid: &Grid) -> Result<()> {
-        let small = |name: &str, value: f64| match value.is_finite() {
-            true => require(value.abs() < LARGEST, name, value, OTHER_UNITS),
-            false => Err(Error::NotFinite(format!("{name} is {value}; it must be finite"))),
-        };
-        let finite = |name: &str, value: f64| if value.is_finite() { Ok(()) } else { small(name, value) };
-        // Slips by creepages and spin are largest in a corner.
-        let corners = [0, grid.mx - 1, grid.len() - grid.mx, grid.len() - 1];
-        for slip in
-            corners.iter().flat_map(|&i| Friction { rigid_slip: None, weights: None, ..*self }.rigid_slip_at(grid, i))
-        {
-            require(slip.abs() < LARGEST, "the rigid slip by friction->creepage and spin", slip, OTHER_UNITS)?;
-        }
-        for (name, own) in
-            ["friction->rigid_slip[0]", "friction->rigid_slip[1]"].iter().zip(self.rigid_slip.iter().flatten())
-        {
-            check_values(name, own, grid, small)?;
-        }
-        let weights = ["friction->creepage_weight[0]", "friction->creepage_weight[1]"];
-        for (name, weights) in weights.iter().zip(self.weights.iter().flatten()) {
-            let rule = "a weight must lie in [-1, 1]";
-            check_values(name, weights, grid, |name, weight| require(weight.abs() <= 1.0, name, weight, rule))?;
-        }
-        let starts = ["friction->initial_traction[0]", "friction->initial_traction[1]"];
-        for (name, q) in starts.iter().zip(self.initial.iter().flatten()) {
-            check_values(name, q, grid, finite)?;
-        }
-        let Previous::Given(before) = self.previous else { return Ok(()) };
-        for (name, q) in ["friction->previous_traction[0]", "friction->previous_traction[1]"].iter().zip(before) {
-            match self.motion {
-                // There they are only where the iteration starts.
-                Motion::SteadyRolling => check_values(name, q, grid, finite)?,
-                _ => check_values(name, q, grid, small)?,
-            }
-        }
-        Ok(())
-    }
-
-    /// Refuses numbers that are none.
-    fn check_numbers(&self) -> Result<()> {
-        let finite = |name: &str, value: f64| require(value.is_finite(), name, value, "it must be finite");
-        for (k, prescribed) in self.prescribed.iter().enumerate() {
-            match prescribed {
-                Prescribed::Creepage(creepage) => {
-                    finite(["friction->creepage[0]", "friction->creepage[1]"][k], *creepage)?
-                }
-                Prescribed::Force(force) => finite(["friction->force[0]", "friction->force[1]"][k], *force)?,
-            }
-        }
-        finite("friction->spin", self.spin)?;
-        finite("friction->spin_centre[0]", self.spin_centre[0])?;
-        finite("friction->spin_centre[1]", self.spin_centre[1])?;
-        finite("friction->spin_offset", self.spin_offset)?;
-        let (distance, direction) = (self.rolling_distance, self.rolling_direction);
-        require(
-            distance >= 0.0 && distance.is_finite(),
-            "friction->rolling_distance",
-            distance,
-            "it must be positive and finite, or 0 for dx",
-        )?;
-        let turns = "an angle must lie in [-2 pi, 2 pi]";
-        require(direction.abs() <= 2.0 * PI, "friction->rolling_direction", direction, turns)
     }
 }
 

@@ -16,6 +16,7 @@
 mod coating;
 mod effect;
 mod friction;
+mod friction_checks;
 mod layer;
 mod list;
 mod named;

@@ -1,6 +1,5 @@
-//! Tangential influence coefficients of the caller's own, beside [`Friction`]: what they must be.
+//! Tangential influence coefficients of the caller's own, beside [`Friction`](super::Friction): what they must be.
 
-use super::friction::{Friction, Motion};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::collected;
@@ -24,9 +23,6 @@ pub struct TangentialInfluence<'a> {
     /// Every coefficient is multiplied by this, positive.
     pub scale: f64,
 }
-
-/// A step of rolling is of whole elements if it is so near.
-const WHOLE: f64 = 1e-9;
 
 /// What a component is to a mirrored offset.
 #[derive(Clone, Copy)]
@@ -79,7 +75,7 @@ impl TangentialInfluence<'_> {
     }
 
     /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are.
-    fn check(&self, grid: &Grid) -> Result<()> {
+    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, SCALE)?;
         for (name, c, m) in [("cx", self.cx, grid.mx), ("cy", self.cy, grid.my)] {
             if c < m {
@@ -201,32 +197,5 @@ impl KeptInfluence {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.coefficients.iter().chain(self.cross.iter().flatten()).map(|values| size_of_val(&values[..])).sum()
-    }
-}
-
-impl Friction<'_> {
-    /// Refuses tables that do not suit the grid and the step: between whole offsets they say nothing.
-    pub(super) fn check_influence(&self, grid: &Grid) -> Result<()> {
-        let Some(influence) = &self.influence else { return Ok(()) };
-        if self.motion != Motion::Shift {
-            let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
-            let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
-            if influence.by_row && y.abs() > WHOLE {
-                return Err(Error::Unsupported(format!(
-                    "friction->row_tables are given, and a step of rolling goes ({x}, {y}) elements far; it must go along x"
-                )));
-            }
-            if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE {
-                return Err(Error::Unsupported(format!(
-                    "{} is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements",
-                    influence.name()
-                )));
-            }
-        }
-        if influence.by_row {
-            influence.check_rows(grid)
-        } else {
-            influence.check(grid)
-        }
     }
 }

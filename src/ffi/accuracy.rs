@@ -3,6 +3,7 @@
 use libc::c_void;
 
 use super::arguments::Regions;
+use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::floating_point::in_host_environment;
 use super::guard::guard;
@@ -10,7 +11,6 @@ use super::options::{self, contact_normal_options};
 use super::outputs::Outputs;
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
-use super::solve::Conclusion;
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned};

@@ -4,6 +4,7 @@ use std::ptr::null_mut;
 use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, Regions};
+use super::conclusion::Conclusion;
 use super::dump::{Given, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
@@ -11,7 +12,7 @@ use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
-use super::solve::{run, Conclusion};
+use super::solve::run;
 use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,

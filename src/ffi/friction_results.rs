@@ -1,7 +1,7 @@
 //! `contact_normal_friction_results`: where the results of tangential problems are written.
 
 use super::arguments::Regions;
-use super::solve::Conclusion;
+use super::conclusion::Conclusion;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::versioned;
 use super::watcher::why;

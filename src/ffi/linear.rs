@@ -1,8 +1,8 @@
 //! What a solver handle gives beside solutions: products, and the stiffness of its result.
 
 use super::arguments::{required, Regions};
+use super::conclusion::Conclusion;
 use super::guard::guard;
-use super::solve::Conclusion;
 use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::watcher::why;

@@ -2,7 +2,7 @@
 
 use std::mem::offset_of;
 
-use super::by_name::{Kind::*, Member, Struct};
+use super::member::{Kind::*, Member, Struct};
 use super::*;
 
 /// Without CONTACT_NORMAL_.

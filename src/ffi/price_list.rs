@@ -4,11 +4,11 @@ use std::cell::Cell;
 
 use super::accuracy::{self, contact_normal_accuracy};
 use super::arguments::{count, required, Regions};
+use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::scene::{contact_normal_scene, Named};
-use super::solve::Conclusion;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned, Rows, Versioned};
 use super::watcher::{watched, why, Watcher};

@@ -1,6 +1,7 @@
 //! `contact_normal_solve`, and what it shares with the solver handle.
 
 use super::arguments::Regions;
+use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
@@ -8,8 +9,7 @@ use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
-use super::status::{contact_normal_status, set_last_error, set_last_text, Refusal, CONTACT_NORMAL_OK};
-use super::warnings;
+use super::status::{contact_normal_status, Refusal};
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::scene::{Previous, Scene};
@@ -112,44 +112,6 @@ impl Request<'_> {
     pub fn goes_on(&self) -> bool {
         let continues = self.scene.friction.is_some_and(|friction| friction.previous == Previous::Kept);
         continues || self.options.options.initial_guess == InitialGuess::Previous
-    }
-}
-
-/// How a solve ended, and its message; none after OK.
-#[derive(Default)]
-pub(super) struct Conclusion {
-    pub status: contact_normal_status,
-    pub message: String,
-    /// CONTACT_NORMAL_WARNING_... bits.
-    pub warnings: i32,
-}
-
-impl From<Refusal> for Conclusion {
-    fn from(refusal: Refusal) -> Conclusion {
-        Conclusion { status: refusal.status, message: refusal.message, warnings: 0 }
-    }
-}
-
-impl Conclusion {
-    /// Of an outcome; what is not solved has a message.
-    pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
-        let message = if outcome == Outcome::Converged { String::new() } else { message() };
-        Conclusion { status: outcome.into(), message, warnings: 0 }
-    }
-
-    /// The end of an export: the message becomes that of this thread.
-    pub fn conclude(self) -> Result<contact_normal_status, Refusal> {
-        if self.status < CONTACT_NORMAL_OK {
-            return Err(Refusal::new(self.status, self.message));
-        }
-        let warned = warnings::text(self.warnings);
-        match (self.status > CONTACT_NORMAL_OK, warned.is_empty()) {
-            (true, true) => set_last_error(&self.message),
-            (true, false) => set_last_error(&format!("{}; {}", self.message, warned.to_string_lossy())),
-            (false, false) => set_last_text(warned),
-            (false, true) => {}
-        }
-        Ok(self.status)
     }
 }
 

@@ -1,11 +1,11 @@
 //! Stresses below the surface: `contact_normal_subsurface_stress`, `contact_normal_stress_at_points`.
 
 use super::arguments::{not_negative, optional, required, Regions};
+use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
-use super::solve::Conclusion;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;

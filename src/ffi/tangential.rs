@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::arguments::{not_negative, optional, required, Regions};
 use super::batch::NotOk;
+use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
@@ -12,7 +13,7 @@ use super::options::{contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{explain, Conclusion, Needs, Request};
+use super::solve::{explain, Needs, Request};
 use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs;

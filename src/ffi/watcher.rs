@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 
+use super::conclusion::Conclusion;
 use super::floating_point::in_host_environment;
 use super::options::{contact_normal_options, Translated};
 use super::progress::contact_normal_progress;
-use super::solve::Conclusion;
 use super::status::{Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_ITERATION_LIMIT};
 use crate::solver::{Outcome, Progress, ProgressCallback};
 

@@ -8,7 +8,8 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::tangential::{measures, positive, Tangent, Turn};
+use super::tangential::{Tangent, Turn};
+use super::tangential_calls::{measures, positive};
 use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects::{Effect, Previous};
 use crate::error::{invalid, Result};

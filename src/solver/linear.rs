@@ -1,6 +1,6 @@
 //! What the operator of a solver gives beside solutions: products with pressures of the caller's, and the stiffness of a result.
 
-use super::tangential::finite;
+use super::tangential_calls::finite;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
 use crate::contact::Survey;
 use crate::error::{invalid, Error, Result};

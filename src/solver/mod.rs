@@ -25,6 +25,7 @@ mod report;
 mod superposition;
 mod take_over;
 mod tangential;
+mod tangential_calls;
 mod tangential_estimates;
 mod turns;
 mod unlike_sensitivities;
@@ -44,7 +45,7 @@ pub use refinement::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Quantity, Refinement, SurfaceCallback,
 };
 pub use report::{Halving, Limit, Report};
-pub use tangential::solve_tangential;
+pub use tangential_calls::solve_tangential;
 
 use crate::contact::{self, Curvature, Freshness, State};
 use crate::effects::{self, Effect, KeptInfluence, Named};

@@ -46,7 +46,7 @@ impl Solver {
         let Some(given) = &friction.influence else {
             return invalid("friction->influence is not given: there is nothing to set".into());
         };
-        if !self.own_tables.as_ref().is_some_and(|own| own.view().by_row == given.by_row) {
+        if self.own_tables.as_ref().is_none_or(|own| own.view().by_row != given.by_row) {
             return invalid(format!("{} is given, but this solver was set up without", given.name()));
         }
         Effect::check(friction, &self.problem.grid)

@@ -1,18 +1,14 @@
 //! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
 
-use std::borrow::Cow;
-
 use super::coupled::Coupled;
-use super::{InitialGuess, Measures, Options, Outcome, ProgressCallback, Solver as Handle};
+use super::{Options, Outcome};
 use crate::contact::State;
-use crate::error::{invalid, Error, Result};
+use crate::error::{Error, Result};
 use crate::friction::{Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential};
 use crate::grid::Grid;
-use crate::memory::zeros;
 use crate::operator::Precision;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
-use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// What a solver keeps for scenes with friction.
@@ -66,7 +62,7 @@ impl Tangent {
     }
 
     /// The last result, or an empty one.
-    fn into_solution(self) -> Solution {
+    pub(super) fn into_solution(self) -> Solution {
         self.solver.into_solution()
     }
 
@@ -105,7 +101,7 @@ impl Tangent {
         self.solve_from(if again { Start::Again } else { turn.start() }, turn, pressure, monitor)
     }
 
-    fn solve_from(
+    pub(super) fn solve_from(
         &mut self,
         start: Start<'_>,
         turn: &Turn<'_>,
@@ -191,122 +187,5 @@ impl Tangent {
         if self.coupled.is_some() {
             self.solver.go_back(last);
         }
-    }
-}
-
-impl Handle {
-    /// What solves friction, to be put back; made where there is none.
-    pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
-        match self.friction.take() {
-            Some(tangent) => Ok(tangent),
-            None => Ok(Box::new(Tangent::new(scene, options, &self.problem.threads)?)),
-        }
-    }
-
-    /// [`solve_tangential`] with what this solver keeps: coefficients, and the tractions of the step before.
-    pub fn solve_tangential(
-        &mut self,
-        scene: &Scene<'_>,
-        pressure: &[f64],
-        options: &Options,
-        progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Outcome, &Solution, super::Report)> {
-        let own = self.own_tables.clone();
-        let scene = &*self.with_own_tables(scene, own.as_deref())?;
-        let friction = self.check_tangential(scene, options)?;
-        let pressure = &*positive(&scene.grid, pressure)?;
-        let threads = self.problem.threads.clone();
-        let mut tangent = self.take_tangent(scene, options)?;
-        let turn = Turn { scene, friction, options, threads: &threads };
-        let solved = alone(&mut tangent, &turn, pressure, progress);
-        let tangent = &*self.friction.insert(tangent);
-        let (stop, report) = solved?;
-        // A solve that ends has a result.
-        let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
-        Ok((stop, solution, report))
-    }
-
-    /// The friction of a scene, which must be as at the set-up. Its distance and its load are not looked at.
-    pub(super) fn check_tangential<'s>(&self, scene: &'s Scene<'_>, options: &Options) -> Result<&'s Friction<'s>> {
-        let friction = scene.tangential()?;
-        self.set_up.check_options(options)?;
-        self.set_up.check_scene(scene, &self.problem)?;
-        Ok(friction)
-    }
-
-    /// The tractions, slip and stick area that were found last, with pressures of the normal problem or with given ones.
-    pub fn tractions(&self) -> Option<&Solution> {
-        self.friction.as_deref().and_then(Tangent::solution)
-    }
-}
-
-/// Solves the tangential problem of a scene alone, with pressures that are given: `[my][mx]`; those that are not positive count as no
-/// contact. Its distance and its load are not looked at. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not
-/// change the pressures.
-pub fn solve_tangential(
-    scene: &Scene<'_>,
-    pressure: &[f64],
-    options: &Options,
-    progress: Option<ProgressCallback<'_>>,
-) -> Result<(Outcome, Solution, super::Report)> {
-    let friction = scene.check_tangential()?;
-    options.check()?;
-    let pressure = &*positive(&scene.grid, pressure)?;
-    let threads = Threads::new(options.threads)?;
-    let mut tangent = Tangent::new(scene, options, &threads)?;
-    let turn = Turn { scene, friction, options, threads: &threads };
-    let (stop, report) = alone(&mut tangent, &turn, pressure, progress)?;
-    Ok((stop, tangent.into_solution(), report))
-}
-
-/// One step with pressures that are given.
-fn alone(
-    tangent: &mut Tangent,
-    turn: &Turn<'_>,
-    pressure: &[f64],
-    progress: Option<ProgressCallback<'_>>,
-) -> Result<(Outcome, super::Report)> {
-    let mut monitor = Monitor::new(progress, Vec::new(), false);
-    let start = match turn.options.initial_guess {
-        InitialGuess::Previous if tangent.solution().is_some() => Start::Last,
-        _ => turn.start(),
-    };
-    let (stop, found) = tangent.solve_from(start, turn, pressure, &mut monitor)?;
-    tangent.keep_pressures(pressure);
-    let measures = measures(&turn.scene.grid, pressure);
-    let (friction, tolerance, solve_seconds) = (Some(found), turn.options.tolerance, monitor.seconds());
-    Ok((stop, super::Report { measures, friction, tolerance, solve_seconds, ..super::Report::default() }))
-}
-
-/// The pressures of what is in contact: negative ones are 0. Refuses those that are not one finite value per element.
-pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [f64]>> {
-    if pressure.len() != grid.len() {
-        let (values, elements) = (pressure.len(), grid.len());
-        return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
-    }
-    finite(grid, pressure)?;
-    if pressure.iter().all(|p| *p >= 0.0) {
-        return Ok(Cow::Borrowed(pressure));
-    }
-    let mut positive: Vec<f64> = zeros(pressure.len(), "the pressures of what is in contact")?;
-    positive.iter_mut().zip(pressure).for_each(|(to, p)| *to = p.max(0.0));
-    Ok(Cow::Owned(positive))
-}
-
-/// Refuses pressures that are not finite.
-pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
-    let Some(i) = pressure.iter().position(|p| !p.is_finite()) else { return Ok(()) };
-    let (element, p) = (grid.element(i), pressure[i]);
-    Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")))
-}
-
-/// What is to be said of pressures that are given.
-pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
-    let pressing = || pressure.iter().filter(|p| **p > 0.0);
-    Measures {
-        force: in_blocks(pressing().copied()) * grid.element_area(),
-        max_pressure: pressing().copied().fold(0.0, f64::max),
-        contact_count: pressing().count(),
-        ..Measures::default()
     }
 }

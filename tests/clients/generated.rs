@@ -210,7 +210,7 @@ fn rust_members(described: &Description) -> String {
 
 use std::mem::offset_of;
 
-use super::by_name::{Kind::*, Member, Struct};
+use super::member::{Kind::*, Member, Struct};
 use super::*;
 
 /// Without CONTACT_NORMAL_.

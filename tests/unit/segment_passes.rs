@@ -5,7 +5,7 @@ use super::super::passes::{Changes, Sum};
 use super::*;
 use crate::contact::{AdmissibleSet, Fixed, NonNegative};
 use crate::methods::projected_cg::formulas::*;
-use crate::methods::projected_cg::passes::Update;
+use crate::methods::projected_cg::sums::Update;
 use crate::scene::PressureLimit;
 
 /// Some contact area, and values that differ.
@@ -31,8 +31,8 @@ fn given(n: usize) -> Given {
 }
 
 const UPDATES: [Update; 2] = [
-    Update { alpha: 0.7, gamma: 0.0, settled: false, factor: 1.1 },
-    Update { alpha: 0.7, gamma: 0.2, settled: true, factor: 0.5 },
+    Update { alpha: 0.7, gamma: 0.0, is_corrected: false, factor: 1.1 },
+    Update { alpha: 0.7, gamma: 0.2, is_corrected: true, factor: 0.5 },
 ];
 
 /// Sums with the vectors of a machine, as bits.
@@ -170,12 +170,12 @@ fn check_who_enters<S: AdmissibleSet>(set: S, n: usize) {
     let entering = Entering { approach: 0.1, is_fixed: S::FIXED, held };
     for update in &UPDATES {
         let (mut u, mut list) = (before.clone(), Vec::new());
-        match update.settled {
+        match update.is_corrected {
             true => block.change_and_list_outside(&mut u, &mut list, [&h], [&q[..], q, z], MovedU(update), entering),
             false => block.change_and_list_outside(&mut u, &mut list, [&h], [&q[..]], MovedU(update), entering),
         }
         for (i, u) in u.iter().enumerate() {
-            let repair = if update.settled { update.gamma * f64::from(q[i]) + f64::from(z[i]) } else { 0.0 };
+            let repair = if update.is_corrected { update.gamma * f64::from(q[i]) + f64::from(z[i]) } else { 0.0 };
             let expected = update.factor * (before[i] + update.alpha * f64::from(q[i]) + repair);
             assert!((u - expected).abs() < 1e-15, "element {i} of {n}");
         }
@@ -250,10 +250,10 @@ fn sums_of_a_step_are_what_they_say() {
     check(block.sum([], [of_t, of_d, of_q], Conjugate), plain(contact, |i| [t(i), d(i), q(i), d(i) * q(i)]), "beta");
     for update in &UPDATES {
         let moved = |i: usize, w: f64, repair: f64| u[i] + update.alpha * q(i) + w + repair;
-        let settled = f64::from(u8::from(update.settled));
-        let distance = |i: usize| [h[i] + update.factor * moved(i, 0.0, settled * d(i))];
+        let is_corrected = f64::from(u8::from(update.is_corrected));
+        let distance = |i: usize| [h[i] + update.factor * moved(i, 0.0, is_corrected * d(i))];
         check(block.sum([a, b], [of_q, of_d], Distance(update)), plain(contact, distance), "a mean distance");
-        let work = |i: usize| [p[i] * depth(i), p[i] * moved(i, update.gamma * t(i), settled * d(i))];
+        let work = |i: usize| [p[i] * depth(i), p[i] * moved(i, update.gamma * t(i), is_corrected * d(i))];
         let formula = WorkAndEnergy { approach: 0.1, update };
         check(block.sum([a, b, c], [of_q, of_d, of_t], formula), plain(contact, work), "work and energy");
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Argument;
+use super::argument::Argument;
 use crate::ffi::arguments::{Element, Region, Regions};
 use crate::ffi::by_name::{structure, Kind, Member};
 use crate::ffi::structs::LARGEST;

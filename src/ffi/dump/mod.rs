@@ -4,6 +4,7 @@
 //! long as the call has told `Regions`, which knows all that is read. So a new effect, or a new member, is in the file without a line
 //! here. docs/dump.md has the format.
 
+mod argument;
 mod file;
 mod image;
 mod parse;
@@ -23,10 +24,11 @@ use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{
     contact_normal_status, last_error_text, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
 };
-use super::structs::{self, Versioned};
+use super::structs;
 use crate::contact::State;
 use crate::effects::TangentialInfluence;
 use crate::solver::Solver;
+pub(super) use argument::{Argument, Given};
 use image::Image;
 
 /// The first line of a file: the format and its version.
@@ -44,51 +46,6 @@ const TANGENTIAL_TABLES: [&str; 5] = [
 /// And those of tables per loaded row.
 const TANGENTIAL_ROW_TABLES: [&str; 3] =
     ["handle.tangential_rows_xx", "handle.tangential_rows_yy", "handle.tangential_rows_xy"];
-
-/// An argument of a call.
-#[derive(Clone, Copy)]
-pub(super) enum Argument {
-    /// A struct of this name.
-    Struct(&'static str, usize),
-    /// Numbers.
-    Array(usize),
-    Integer(i64),
-}
-
-/// What can be an argument.
-pub(super) trait Given {
-    fn given(self) -> Argument;
-}
-
-impl<T: Versioned> Given for *const T {
-    fn given(self) -> Argument {
-        Argument::Struct(T::NAME, self as usize)
-    }
-}
-
-impl<T: Versioned> Given for *mut T {
-    fn given(self) -> Argument {
-        self.cast_const().given()
-    }
-}
-
-impl Given for *const f64 {
-    fn given(self) -> Argument {
-        Argument::Array(self as usize)
-    }
-}
-
-impl Given for *mut f64 {
-    fn given(self) -> Argument {
-        Argument::Array(self as usize)
-    }
-}
-
-impl Given for i32 {
-    fn given(self) -> Argument {
-        Argument::Integer(self.into())
-    }
-}
 
 /// The arguments of a call, each with its name.
 macro_rules! given {

@@ -105,10 +105,7 @@ impl Threads {
     /// Work of the calling thread, compiled for the vectors of this machine.
     #[inline(always)]
     pub fn alone<R>(&self, work: impl FnOnce() -> R) -> R {
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || work(),
-        )
+        pulp::Arch::new().dispatch(work)
     }
 
     /// Scratch of work that needs none.

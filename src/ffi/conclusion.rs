@@ -1,0 +1,43 @@
+//! How a call ended, and what it says.
+
+use super::status::{contact_normal_status, set_last_error, set_last_text, Refusal, CONTACT_NORMAL_OK};
+use super::warnings;
+use crate::solver::Outcome;
+
+/// How a solve ended, and its message; none after OK.
+#[derive(Default)]
+pub(super) struct Conclusion {
+    pub status: contact_normal_status,
+    pub message: String,
+    /// CONTACT_NORMAL_WARNING_... bits.
+    pub warnings: i32,
+}
+
+impl From<Refusal> for Conclusion {
+    fn from(refusal: Refusal) -> Conclusion {
+        Conclusion { status: refusal.status, message: refusal.message, warnings: 0 }
+    }
+}
+
+impl Conclusion {
+    /// Of an outcome; what is not solved has a message.
+    pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
+        let message = if outcome == Outcome::Converged { String::new() } else { message() };
+        Conclusion { status: outcome.into(), message, warnings: 0 }
+    }
+
+    /// The end of an export: the message becomes that of this thread.
+    pub fn conclude(self) -> Result<contact_normal_status, Refusal> {
+        if self.status < CONTACT_NORMAL_OK {
+            return Err(Refusal::new(self.status, self.message));
+        }
+        let warned = warnings::text(self.warnings);
+        match (self.status > CONTACT_NORMAL_OK, warned.is_empty()) {
+            (true, true) => set_last_error(&self.message),
+            (true, false) => set_last_error(&format!("{}; {}", self.message, warned.to_string_lossy())),
+            (false, false) => set_last_text(warned),
+            (false, true) => {}
+        }
+        Ok(self.status)
+    }
+}

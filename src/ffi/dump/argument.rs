@@ -1,0 +1,48 @@
+//! What the arguments of a call are for a dump.
+
+use crate::ffi::structs::Versioned;
+
+/// An argument of a call.
+#[derive(Clone, Copy)]
+pub(in crate::ffi) enum Argument {
+    /// A struct of this name.
+    Struct(&'static str, usize),
+    /// Numbers.
+    Array(usize),
+    Integer(i64),
+}
+
+/// What can be an argument.
+pub(in crate::ffi) trait Given {
+    fn given(self) -> Argument;
+}
+
+impl<T: Versioned> Given for *const T {
+    fn given(self) -> Argument {
+        Argument::Struct(T::NAME, self as usize)
+    }
+}
+
+impl<T: Versioned> Given for *mut T {
+    fn given(self) -> Argument {
+        self.cast_const().given()
+    }
+}
+
+impl Given for *const f64 {
+    fn given(self) -> Argument {
+        Argument::Array(self as usize)
+    }
+}
+
+impl Given for *mut f64 {
+    fn given(self) -> Argument {
+        Argument::Array(self as usize)
+    }
+}
+
+impl Given for i32 {
+    fn given(self) -> Argument {
+        Argument::Integer(self.into())
+    }
+}

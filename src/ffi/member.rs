@@ -1,0 +1,42 @@
+//! A struct of the ABI and its members, by name.
+
+/// What a member is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Int32,
+    Int64,
+    Double,
+    /// A callback, a text or anything: only the host knows what it points to.
+    OfTheHost,
+    /// It points to numbers.
+    Array,
+    /// It points to a struct of this name, or to many.
+    Structs(&'static str),
+}
+
+/// A member of a struct; of an array each of its values is one.
+#[derive(Debug)]
+pub(super) struct Member {
+    pub name: &'static str,
+    /// Bytes from the beginning of the struct.
+    pub at: usize,
+    pub kind: Kind,
+}
+
+impl Member {
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        if self.kind == Kind::Int32 {
+            4
+        } else {
+            8
+        }
+    }
+}
+
+/// A struct of the ABI.
+#[derive(Debug)]
+pub(super) struct Struct {
+    pub name: &'static str,
+    pub members: &'static [Member],
+}
