@@ -34,6 +34,12 @@ value!(f32, f64, bool);
 /// Sums over elements, in lanes.
 pub struct Sums<const K: usize>([[f64; LANES]; K]);
 
+impl<const K: usize> Default for Sums<K> {
+    fn default() -> Sums<K> {
+        Sums::new()
+    }
+}
+
 impl<const K: usize> Sums<K> {
     /// Nothing yet.
     pub fn new() -> Sums<K> {
