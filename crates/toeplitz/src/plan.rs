@@ -69,7 +69,7 @@ pub fn keep_at_most(bytes: usize) {
 }
 
 /// The plan of a length if it is known.
-fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
+pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
     let mut known = threads::lock(&KNOWN)?;
     let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
     known[i..].rotate_left(1);
