@@ -77,7 +77,7 @@ impl Solver {
         }
         let (next, refusal) = (AtomicUsize::new(0), Mutex::new(None));
         let foreman = &*self;
-        self.problem.threads.for_each(&mut crew[..workers], |_, worker| {
+        let take = |worker: &mut Option<Solver>| {
             if worker.is_none() {
                 // Where this fails the other workers do its share.
                 match foreman.worker() {
@@ -93,7 +93,8 @@ impl Solver {
                 }
                 work(i, worker);
             }
-        });
+        };
+        self.problem.threads.for_each_beside(&mut crew[..workers], take, take);
         self.workers = crew;
         match refusal.into_inner().unwrap_or_else(PoisonError::into_inner) {
             Some(error) if next.into_inner() < count => Err(error),

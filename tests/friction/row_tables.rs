@@ -273,7 +273,7 @@ fn a_handle_keeps_them_beside_row_tables_of_pressures() {
     handle.set_tangential_influence(friction).unwrap();
     // Later scenes need not name them.
     let unnamed = Scene { friction: Some(Friction { influence: None, ..*friction }), ..own.clone() };
-    let cold = Options { initial_guess: solver::InitialGuess::default(), ..options.clone() };
+    let cold = Options { initial_guess: solver::InitialGuess::default(), ..options };
     handle.solve(&unnamed, &cold, None, None).unwrap();
     let (fresh, ..) = solve(&scene(&half), &options).unwrap();
     assert_eq!(tractions(&handle), tractions(&fresh));

@@ -1,18 +1,21 @@
 //! Plans of transforms, which all threads of the process share: a second product of the same period costs no planning.
 //!
 //! A plan depends on its length only, so that no bit of a result depends on what was planned before. The least recently used plans go first
-//! when they are more than a part of what the process may keep; those in use live on with who uses them.
+//! when they are more than the process may keep; those in use live on with who uses them.
 
 use std::any::{Any, TypeId};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use par::{memory, threads, Result};
+use par::{threads, Result};
 
 /// What memory is for.
 pub(crate) const PLAN: &str = "the plans of transforms";
 
-/// Plans are at most this part of what may be kept.
-const PART: usize = 8;
+/// Bytes of plans that are kept at most, unless the caller says how many: those of periods up to 4096 x 4096 take less than 2 MiB.
+const MOST_KEPT: usize = 16 << 20;
+/// As many as the caller allows.
+static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 
 /// What is computed once for a length.
 pub(crate) trait Plan: Any + Send + Sync {
@@ -41,19 +44,32 @@ pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -
     let bytes = plan.bytes();
     if let Some(mut known) = threads::lock(&KNOWN) {
         known.push(Known { kind: TypeId::of::<P>(), length, bytes, plan: plan.clone() });
-        let (mut all, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), memory::allowed() / PART);
-        let mut old = 0;
-        while all > most && old < known.len() {
-            all -= known[old].bytes;
-            old += 1;
-        }
-        known.drain(..old);
+        shrink(&mut known);
     }
     Ok(plan)
 }
 
+/// Forgets the least recently used plans beyond the bound.
+fn shrink(known: &mut Vec<Known>) {
+    let (mut all, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), ALLOWED.load(Ordering::Relaxed));
+    let mut old = 0;
+    while all > most && old < known.len() {
+        all -= known[old].bytes;
+        old += 1;
+    }
+    known.drain(..old);
+}
+
+/// Keeps no more than so many bytes of plans from here on.
+pub fn keep_at_most(bytes: usize) {
+    ALLOWED.store(bytes, Ordering::Relaxed);
+    if let Some(mut known) = threads::lock(&KNOWN) {
+        shrink(&mut known);
+    }
+}
+
 /// The plan of a length if it is known.
-fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
+pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
     let mut known = threads::lock(&KNOWN)?;
     let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
     known[i..].rotate_left(1);
@@ -63,7 +79,7 @@ fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
 /// Forgets all plans. Those in use live on with who uses them.
 pub fn release() {
     if let Some(mut known) = threads::lock(&KNOWN) {
-        known.clear();
+        *known = Vec::new();
     }
 }
 

@@ -40,7 +40,7 @@ impl Room {
 
 /// Memory that a product needs, so that it allocates nothing.
 pub struct Memory<T: Real> {
-    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes, blocks as [`LaneRows`](crate::fft::lane_rows::LaneRows) have them.
+    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes, blocks of columns `[block][row][part][column]`.
     pub bins: Vec<Complex<T>>,
     /// One for each thread.
     pub pieces: Vec<Piece<T>>,

@@ -1,8 +1,7 @@
-//! Memory by the size of the grid: asked for, so that a lack of it is a status and not the end of the process; in huge pages, where
-//! the system has them for those who ask (Linux then enters 2 MiB at the first touch, in the place of 4 KiB); and kept.
+//! Large arrays: asked for, so that a lack of memory is an error and not the end of the process; and kept.
 //!
 //! *Kept.* A page that the system gives is cleared and entered first, which takes as long as several passes over it: a tenth to a fifth of
-//! a whole call. So the arrays of a solver that is gone serve the next one, of up to [`MOST_KEPT`] bytes in the process; what is more than
+//! a whole call. So the arrays of a solver that is gone serve the next one, of up to so many bytes in the process ([`keep_at_most`]); what is more than
 //! that goes back to the system, the longest kept first. [`release`] gives all of it back. Any thread may keep and take. A process
 //! forked while another thread did keeps nothing of its own: nobody waits for the lock.
 //!
@@ -20,12 +19,11 @@ use std::sync::Mutex;
 
 use crate::error::{OutOfMemory, Result};
 use crate::threads::Threads;
-use pages::{ask_for_huge_pages, give_pages_back, lengthen};
+use pages::{give_pages_back, lengthen};
 
 /// Bytes that are kept in the process, at most, unless the caller says how many: of many processes on a node, too. Measured with calls
-/// that set up anew: up to 768 x 768 elements, which keep 46 MiB, nothing is lost beside 512 MiB; 1024 x 1024 and 2048 x 2048 take 5 and 20 to
-/// 30 % longer.
-const MOST_KEPT: usize = 64 << 20;
+/// that set up anew: up to 768 x 768 elements, which keep 46 MiB, nothing is lost beside 512 MiB.
+const MOST_KEPT: usize = 112 << 20;
 /// As many as the caller allows.
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 /// Smaller blocks the allocator keeps by itself.
@@ -110,24 +108,18 @@ pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -
     allocate(v, n, what)
 }
 
-/// The same where few of them may be put there: in small pages, so that the others take no memory.
+/// The same where few of them may be put there: not of what is kept, so that the others take no memory.
 pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
-    ask_for_room(&mut v, n, what)?;
+    allocate(&mut v, n, what)?;
     Ok(v)
 }
 
-/// Room for n values from the system, in huge pages.
+/// Room for n values from the system.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {
         release();
     }
-    ask_for_room(v, n, what)?;
-    ask_for_huge_pages(v.as_mut_ptr().cast(), v.capacity() * size_of::<A>());
-    Ok(())
-}
-
-fn ask_for_room<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     let refused = |_| OutOfMemory(format!("no memory for {n} values of {what}"));
     v.try_reserve_exact(n - v.len()).map_err(refused)
 }
@@ -138,7 +130,7 @@ fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
         return None;
     }
     let mut shelf = SHELF.try_lock().ok()?;
-    let fits = |kept: &Kept| kept.kind == TypeId::of::<Vec<A>>() && (n..=2 * n).contains(&kept.room);
+    let fits = |kept: &Kept| kept.kind == TypeId::of::<Vec<A>>() && (n..=n + n / 4).contains(&kept.room);
     let fitting = shelf.blocks.iter().enumerate().filter(|(_, kept)| fits(kept));
     let (_, i) = fitting.map(|(i, kept)| (kept.room, i)).min()?;
     let kept = shelf.blocks.remove(i)?;
@@ -251,11 +243,6 @@ pub fn keep_at_most(bytes: usize) {
     if let Ok(mut shelf) = SHELF.try_lock() {
         shelf.shrink_to(bytes);
     }
-}
-
-/// Bytes that may be kept.
-pub fn allowed() -> usize {
-    ALLOWED.load(Ordering::Relaxed)
 }
 
 /// Bytes that are kept.

@@ -4,12 +4,18 @@
 //! any number of threads. What the compiler inlines here is compiled for the vectors of this machine, on which no bit depends either: nothing is
 //! contracted or reordered.
 
+mod busy;
+#[allow(unsafe_code)] // lifetimes of work that workers share
+mod crew;
+#[allow(unsafe_code)] // what a process has
 mod pool;
+#[allow(unsafe_code)] // lifetimes of work that workers share
+mod region;
 
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
+pub use crew::THREAD_NAME;
 use pool::Pool;
-pub use pool::THREAD_NAME;
 
 use crate::error::Result;
 
@@ -85,7 +91,7 @@ impl Threads {
             )
         };
         let Some((own, others)) = scratch.split_first_mut() else { return };
-        let pool = if pieces.len() > 1 { self.pool() } else { None };
+        let pool = if pieces.len() > 1 { self.pool().filter(Pool::may_help) } else { None };
         let Some(pool) = pool else { return pieces.for_each(|piece| work(piece, own)) };
         let pieces = Mutex::new(pieces);
         let front = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -95,10 +101,13 @@ impl Threads {
                 work(piece, scratch);
             }
         };
-        pool.beside(others, from_behind, || {
+        pool.share(others, from_behind, || {
+            let mut count = 0;
             while let Some(piece) = front() {
                 work(piece, own);
+                count += 1;
             }
+            count
         });
     }
 

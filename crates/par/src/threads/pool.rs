@@ -1,84 +1,72 @@
-//! Pools of workers: made when first asked for, and shared by all solves of a process.
+//! The pool of a process: its workers are started when first asked for, as many as were ever asked for at once, and serve all solves.
 //!
-//! Each is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads
-//! that are not there; so does an operator that was set up before the fork.
-//!
-//! *Between two passes* workers look for work for a while before they sleep: a solve has hundreds of passes of some 10 to 1000 us, with work of
-//! one thread between them, and waking a thread that sleeps takes some 50. They do not yield their core meanwhile (docs/notes/2026-11-performance-targets.md).
+//! It is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are
+//! not there; so does an operator that was set up before the fork. The child touches no lock of its parent, which another thread may have held.
 
-use std::mem::take;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicPtr, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
-use crate::error::{OutOfMemory, Result};
+use super::busy::{time_of_this_thread, LOSS};
+use super::crew::Crew;
+use crate::error::Result;
 
-/// The workers beside a calling thread, and the process that has them.
+/// Some threads: the caller's own, and workers of the process.
 #[derive(Clone)]
 pub struct Pool {
-    process: u32,
-    /// Threads, the caller's own among them.
+    /// With the caller's own.
     count: usize,
-    workers: Arc<rayon::ThreadPool>,
-    /// Workers that look for work.
-    awake: Arc<AtomicUsize>,
+    crew: Arc<Crew>,
 }
 
-/// So long workers look for more work before they sleep, and a caller for the end of theirs.
-const AWAKE: Duration = Duration::from_micros(150);
+/// What a process has: its crew, while it is kept.
+struct Process {
+    id: u32,
+    crew: Mutex<Option<Arc<Crew>>>,
+}
 
-/// Prefix of the names of our threads.
-pub const THREAD_NAME: &str = "contact-normal-";
+/// That of this process; after a fork, until it is asked for, that of the parent.
+static PROCESS: AtomicPtr<Process> = AtomicPtr::new(std::ptr::null_mut());
 
-static POOLS: Mutex<Vec<Pool>> = Mutex::new(Vec::new());
+/// The crew of this process.
+fn crew() -> MutexGuard<'static, Option<Arc<Crew>>> {
+    let id = std::process::id();
+    loop {
+        let known = PROCESS.load(Ordering::Acquire);
+        // SAFETY: NULL, or made below and never freed.
+        if let Some(process) = unsafe { known.as_ref() }.filter(|process| process.id == id) {
+            return process.crew.lock().unwrap_or_else(PoisonError::into_inner);
+        }
+        let new = Box::into_raw(Box::new(Process { id, crew: Mutex::new(None) }));
+        if PROCESS.compare_exchange(known, new, Ordering::AcqRel, Ordering::Relaxed).is_err() {
+            // SAFETY: made above, and nobody has it: another thread was first.
+            drop(unsafe { Box::from_raw(new) });
+        }
+    }
+}
 
 impl Pool {
-    /// The pool of this process with so many threads, the caller's own among them.
+    /// So many threads, the caller's own among them.
     pub fn of(count: usize) -> Result<Pool> {
-        let process = std::process::id();
-        let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = pools.iter().find(|known| known.process == process && known.count == count) {
-            return Ok(known.clone());
-        }
-        // Pools of a parent process have no workers here, and dropping one would wait for them: forget it.
-        pools.retain_mut(|known| {
-            let ours = known.process == process;
-            if !ours {
-                std::mem::forget(known.workers.clone());
-            }
-            ours
-        });
-        let workers = rayon::ThreadPoolBuilder::new()
-            .num_threads(count - 1)
-            .thread_name(|i| format!("{THREAD_NAME}{i}"))
-            .build()
-            .map_err(|e| OutOfMemory(format!("threads is {count}; the threads could not be started: {e}")))?;
-        let pool = Pool { process, count, workers: Arc::new(workers), awake: Arc::default() };
-        pools.push(pool.clone());
-        Ok(pool)
+        let mut kept = crew();
+        let crew = kept.get_or_insert_with(|| Arc::new(Crew::new())).clone();
+        crew.grow_to(count - 1)?;
+        Ok(Pool { count, crew })
     }
 
-    /// Ends the threads that no solver holds; those of others end with them.
+    /// Ends the threads when no solver holds them.
     pub fn release() {
-        let process = std::process::id();
-        for pool in take(&mut *POOLS.lock().unwrap_or_else(PoisonError::into_inner)) {
-            // Those of a parent process have no workers here, and dropping one would wait for them.
-            if pool.process != process {
-                std::mem::forget(pool.workers);
-            }
-        }
+        drop(crew().take());
     }
 
     /// Threads that are kept in this process, beside those of the callers.
     pub fn kept() -> usize {
-        let process = std::process::id();
-        let pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-        pools.iter().filter(|pool| pool.process == process).map(|pool| pool.count - 1).sum()
+        crew().as_ref().map_or(0, |crew| crew.len())
     }
 
     /// This pool, or after a fork another one; none: it could not be made.
     pub fn here(&self) -> Option<Pool> {
-        if self.process == std::process::id() {
+        if self.crew.process == std::process::id() {
             return Some(self.clone());
         }
         Pool::of(self.count).ok()
@@ -89,42 +77,49 @@ impl Pool {
         self.count
     }
 
-    /// Calls `work(item)` for each of some items on the workers, and meanwhile `own` on the calling thread.
-    pub fn beside<A: Send>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce()) {
-        self.stay_awake();
-        let (work, left) = (&work, &AtomicUsize::new(items.len()));
-        self.workers.in_place_scope(|scope| {
-            for item in items {
-                scope.spawn(move |_| {
-                    work(item);
-                    left.fetch_sub(1, Ordering::Release);
-                });
-            }
-            own();
-            // The end of the scope would put this thread to sleep.
-            let began = Instant::now();
-            while left.load(Ordering::Acquire) > 0 && began.elapsed() < AWAKE {
-                std::hint::spin_loop();
-            }
-        });
+    /// Whether it may help: not while others use the cores.
+    pub fn may_help(&self) -> bool {
+        self.crew.busy.is_over(self.crew.busy.now())
     }
 
-    /// Workers look for work until there was none for a while.
-    fn stay_awake(&self) {
-        let all = self.count - 1;
-        if self.awake.compare_exchange(0, all, Ordering::AcqRel, Ordering::Relaxed).is_err() {
-            return;
-        }
-        let awake = self.awake.clone();
-        self.workers.spawn_broadcast(move |_| {
-            let mut last = Instant::now();
-            while last.elapsed() < AWAKE {
-                match rayon::yield_now() {
-                    Some(rayon::Yield::Executed) => last = Instant::now(),
-                    _ => std::hint::spin_loop(),
-                }
+    /// Calls `work(item)` for items on workers that are free, and meanwhile `own` on the calling thread. What no worker has begun when that is
+    /// done is left alone.
+    pub fn beside<A: Send, R>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce() -> R) -> R {
+        self.waiting(items, work, own).0
+    }
+
+    /// The same with small pieces of work, of which `own` returns how many it did: notes whether time was lost by it.
+    pub fn share<A: Send>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce() -> u32) {
+        let (began, time) = (Instant::now(), time_of_this_thread());
+        let timed = || {
+            let pieces = own();
+            (pieces, began.elapsed(), time_of_this_thread())
+        };
+        let ((pieces, took, time_then), waited) = self.waiting(items, work, timed);
+        let worked = time.zip(time_then).map_or(took, |(before, then)| then.saturating_sub(before));
+        // A worker's last piece takes as long as one of the caller's, or twice as long.
+        let is_lost = took.saturating_sub(worked) > LOSS || waited > 2 * took / pieces.max(1) + LOSS;
+        let busy = &self.crew.busy;
+        busy.note(busy.now(), is_lost);
+    }
+
+    fn waiting<A: Send, R>(
+        &self,
+        items: &mut [A],
+        work: impl Fn(&mut A) + Sync,
+        own: impl FnOnce() -> R,
+    ) -> (R, std::time::Duration) {
+        let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();
+        let of_seat = |seat: usize| {
+            let item = items[seat].lock().unwrap_or_else(PoisonError::into_inner).take();
+            if let Some(item) = item {
+                work(item);
             }
-            awake.fetch_sub(1, Ordering::AcqRel);
-        });
+        };
+        self.crew.beside(items.len(), &of_seat, own)
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/pool.rs"]
+mod tests;

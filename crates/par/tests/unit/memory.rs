@@ -11,8 +11,8 @@ fn a_kept_block_serves_the_next_request_of_its_type_and_size() {
     first.fill(Own([7; 2]));
     let address = first.as_ptr();
     keep_one(first);
-    // Too large by more than two times, too small, of another type: none of them takes it.
-    let others = [zeros::<Own>(n / 2 - 1, "the test").unwrap(), zeros(n + 1, "the test").unwrap()];
+    // Too large by more than a quarter, too small, of another type: none of them takes it.
+    let others = [zeros::<Own>(n * 4 / 5 - 1, "the test").unwrap(), zeros(n + 1, "the test").unwrap()];
     assert!(others.iter().all(|other| other.as_ptr() != address));
     let of_another_type: Vec<[u64; 2]> = zeros(n, "the test").unwrap();
     assert!(of_another_type.as_ptr().cast() != address);

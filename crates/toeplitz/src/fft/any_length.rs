@@ -12,8 +12,23 @@ use rustfft::{Fft, FftPlanner};
 use crate::plan::{shared, Plan, PLAN};
 use crate::real::{Complex, Real};
 
-/// Values that the plans of a length take, both ways, relative to it: one in each stage, and what a stage is made from.
-const RELATIVE_SIZE: usize = 4;
+/// Values that the plans of a length take while they are made, both ways, relative to it: measured at all lengths up to 100000 in steps of 257 and
+/// at longer ones, up to 2.3 where all prime factors are small, and 16.5 for primes, which go through a transform of more than twice the length.
+const RELATIVE_SIZES: [usize; 2] = [3, 17];
+/// The largest prime whose transform is one step.
+const SMALL_PRIME: usize = 31;
+
+/// Values for which room is asked before a length is planned.
+fn room(length: usize) -> usize {
+    let (mut rest, mut prime) = (length, 2);
+    while rest > 1 && prime <= SMALL_PRIME {
+        match rest % prime {
+            0 => rest /= prime,
+            _ => prime += 1,
+        }
+    }
+    length.saturating_mul(RELATIVE_SIZES[usize::from(rest > 1)])
+}
 
 /// Makes the scratch of transforms so long, at least.
 pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> {
@@ -32,7 +47,7 @@ pub struct ColumnTransform<T: Real> {
 
 impl<T: Real> Plan for ColumnTransform<T> {
     fn bytes(&self) -> usize {
-        RELATIVE_SIZE * self.length() * size_of::<Complex<T>>()
+        room(self.length()) * size_of::<Complex<T>>()
     }
 }
 
@@ -40,7 +55,7 @@ impl<T: Real> ColumnTransform<T> {
     /// Plans for columns of length `n`. The FFT crate cannot refuse where there is no memory: room for its plans is asked for before.
     pub fn new(n: usize) -> Result<ColumnTransform<T>> {
         let plan = || {
-            drop(sparse::<Complex<T>>(n.saturating_mul(RELATIVE_SIZE), PLAN)?);
+            drop(sparse::<Complex<T>>(room(n), PLAN)?);
             let mut planner = FftPlanner::new();
             Ok(ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) })
         };

@@ -17,7 +17,6 @@ use pulp::{Simd, WithSimd};
 
 use crate::block::{ask_for, parts, parts_mut, BLOCK};
 use crate::fft::even_plan::{EvenPlan, Kept};
-use crate::fft::half_stages::{first_of_half, last_to_half};
 use crate::fft::lanes::{places, Arithmetic, Parts, C};
 use crate::fft::stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of, Row};
 use crate::real::{Complex, Real};
@@ -114,11 +113,7 @@ impl<T: Real> Multiply<'_, T> {
                 Parts { re: values[at], im: values[at + vectors] }
             },
         );
-        if stages.first.is_of_half(loaded.end) {
-            first_of_half(a, &stages.first, rows, load);
-        } else {
-            of_radix!(stages.first.radix, first, a, &stages.first, rows, load);
-        }
+        of_radix!(stages.first.radix, first, a, &stages.first, rows, load);
         let symbol = &T::vectors::<S>(symbol)[..plan.bins.len() * vectors];
         let factor = inlined(
             #[inline(always)]
@@ -146,11 +141,7 @@ impl<T: Real> Multiply<'_, T> {
                 }
             },
         );
-        if stages.first.is_of_half(my) {
-            last_to_half(a, &stages.first, rows, store);
-        } else {
-            of_radix!(stages.first.radix, last, a, &stages.first, rows, store);
-        }
+        of_radix!(stages.first.radix, last, a, &stages.first, rows, store);
     }
 }
 

@@ -9,7 +9,7 @@ use par::memory::{collected, reserve, zeros};
 use par::Result;
 
 use crate::fft::stage_plan::Stages;
-use crate::plan::{shared, Plan, PLAN};
+use crate::plan::{find, shared, Plan, PLAN};
 use crate::real::Real;
 
 /// The stages of one length, and the order of S.
@@ -31,10 +31,12 @@ pub(crate) struct Kept {
 impl<T: Real> EvenPlan<T> {
     /// That of a length. None where it has no stages.
     pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
-        if !Stages::<T>::exist(length) {
-            return Ok(None);
+        // What is known is found without an allocation.
+        match find(length) {
+            None if !Stages::<T>::exist(length) => Ok(None),
+            None => shared(length, || EvenPlan::new(length)).map(Some),
+            known => Ok(known),
         }
-        shared(length, || EvenPlan::new(length)).map(Some)
     }
 
     fn new(length: usize) -> Result<EvenPlan<T>> {

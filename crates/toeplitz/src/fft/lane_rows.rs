@@ -16,7 +16,6 @@ use par::Result;
 use pulp::{Simd, WithSimd};
 
 use crate::block::{Block, BLOCK};
-use crate::fft::half_stages::{backwards_to_half, forward_of_half};
 use crate::fft::lane_passes::{load, load_bins, store, store_bins};
 use crate::fft::lanes::{places, Arithmetic};
 use crate::fft::row_plan::RowPlan;
@@ -111,11 +110,7 @@ impl<T: Real> WithSimd for Forward<'_, '_, T> {
         let z = &mut rows_of::<T, S>(scratch)[..h];
         load::<T, S>(a, rows, width, z);
         let first = &plan.stages.first;
-        if first.is_of_half(width.div_ceil(2)) {
-            forward_of_half(a, first, z);
-        } else {
-            of_radix!(first.radix, forward, a, first, z);
-        }
+        of_radix!(first.radix, forward, a, first, z);
         plan.stages.forward_after_first(a, z);
         store_bins::<T, S>(a, plan, z, bins);
     }
@@ -149,11 +144,7 @@ impl<T: Real> WithSimd for Inverse<'_, '_, T> {
         for stage in wide.iter().rev() {
             of_radix!(stage.radix, backwards, a, stage, z);
         }
-        if first.is_of_half(width.div_ceil(2)) {
-            backwards_to_half(a, first, z);
-        } else {
-            of_radix!(first.radix, backwards, a, first, z);
-        }
+        of_radix!(first.radix, backwards, a, first, z);
         store::<T, S>(a, z, rows, width);
     }
 }

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 
 use pulp::{bytemuck::Pod, Simd};
 
-use crate::real::Complex;
+use rustfft::num_complex::Complex;
 
 /// Values that vectors are made of.
 pub trait Lanes: Copy {

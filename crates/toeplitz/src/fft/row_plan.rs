@@ -7,7 +7,7 @@ use par::Result;
 
 use crate::block::BLOCK;
 use crate::fft::stage_plan::Stages;
-use crate::plan::{shared, Plan, PLAN};
+use crate::plan::{find, shared, Plan, PLAN};
 use crate::real::{twiddle, Complex, Real};
 
 /// The stages of one length, and where they leave bins.
@@ -28,10 +28,12 @@ impl<T: Real> Plan for RowPlan<T> {
 impl<T: Real> RowPlan<T> {
     /// That of a length. None where n is odd, or h has no stages.
     pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
-        if n % 2 == 1 || !Stages::<T>::exist(n / 2) {
-            return Ok(None);
+        // What is known is found without an allocation.
+        match find(n) {
+            None if n % 2 == 1 || !Stages::<T>::exist(n / 2) => Ok(None),
+            None => shared(n, || RowPlan::new(n)).map(Some),
+            known => Ok(known),
         }
-        shared(n, || RowPlan::new(n)).map(Some)
     }
 
     fn new(n: usize) -> Result<RowPlan<T>> {

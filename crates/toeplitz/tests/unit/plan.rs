@@ -23,7 +23,7 @@ fn a_plan_serves_again_on_any_thread() {
 
 #[test]
 fn plans_beyond_the_bound_are_forgotten() {
-    let most = memory::allowed() / PART;
+    let most = MOST_KEPT;
     let made = |length: usize| shared(length, || Ok(Own::<1>(most / 4))).unwrap();
     let kept = made(0);
     for length in 1..20 {

@@ -1,0 +1,164 @@
+//! The workers of a process, and the list of what they are asked to help with. rayon lends the threads.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::busy::Busy;
+use super::region::Region;
+use crate::error::{OutOfMemory, Result};
+
+/// Prefix of the names of our threads.
+pub const THREAD_NAME: &str = "contact-normal-";
+
+/// So long workers look for more work before they sleep, and a caller for the end of theirs: a solve has hundreds of passes of some 10 to
+/// 1000 us, with work of one thread between them, and waking a thread that sleeps takes some 50.
+const AWAKE: Duration = Duration::from_micros(150);
+
+/// The workers of one process. Those of a process that was forked are none.
+pub(super) struct Crew {
+    pub process: u32,
+    shared: Arc<Shared>,
+    lent: Mutex<Vec<rayon::ThreadPool>>,
+    pub busy: Busy,
+}
+
+/// What workers share with callers.
+#[derive(Default)]
+struct Shared {
+    regions: Mutex<Regions>,
+    /// Regions that were ever offered: workers that are awake look at it.
+    offered: AtomicUsize,
+    /// Workers that look at it.
+    awake: AtomicUsize,
+    is_offered: Condvar,
+    is_over: AtomicBool,
+}
+
+/// Under one lock: seats are taken, and regions closed.
+#[derive(Default)]
+struct Regions {
+    open: Vec<Arc<Region>>,
+    /// Workers that sleep.
+    asleep: usize,
+}
+
+fn lock<A>(shared: &Mutex<A>) -> MutexGuard<'_, A> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Crew {
+    /// Nobody yet.
+    pub fn new() -> Crew {
+        let process = std::process::id();
+        Crew { process, shared: Arc::default(), lent: Mutex::default(), busy: Busy::default() }
+    }
+
+    /// Workers.
+    pub fn len(&self) -> usize {
+        lock(&self.lent).iter().map(|lent| lent.current_num_threads()).sum()
+    }
+
+    /// Makes them so many, if they are fewer.
+    pub fn grow_to(&self, workers: usize) -> Result<()> {
+        let mut lent = lock(&self.lent);
+        let known = lent.iter().map(|lent| lent.current_num_threads()).sum::<usize>();
+        if known >= workers {
+            return Ok(());
+        }
+        let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", workers + 1));
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known);
+        let more = builder.thread_name(move |i| format!("{THREAD_NAME}{}", known + i)).build().map_err(refused)?;
+        let shared = self.shared.clone();
+        more.spawn_broadcast(move |_| shared.work());
+        lent.push(more);
+        Ok(())
+    }
+
+    /// Calls `work(seat)` for seats 0 .. of up to so many workers that are free, and meanwhile `own` on the calling thread. A seat that nobody
+    /// has taken when that is done stays empty. Returns what `own` does, and how long the caller then waited.
+    pub fn beside<R>(&self, seats: usize, work: &(dyn Fn(usize) + Sync), own: impl FnOnce() -> R) -> (R, Duration) {
+        // SAFETY: `close` takes it off the list, whatever happens, and waits.
+        let region = Arc::new(unsafe { Region::new(seats, work) });
+        self.shared.open(&region, seats);
+        let close = Close(&self.shared, &region);
+        let result = own();
+        let began = Instant::now();
+        drop(close);
+        let waited = began.elapsed();
+        if let Some(panic) = region.panic() {
+            std::panic::resume_unwind(panic);
+        }
+        (result, waited)
+    }
+}
+
+impl Drop for Crew {
+    fn drop(&mut self) {
+        if self.process != std::process::id() {
+            // Its threads are those of another process, which may have held any lock: nothing is told to them.
+            return std::mem::forget(std::mem::take(&mut *self.lent.get_mut().unwrap_or_else(PoisonError::into_inner)));
+        }
+        self.shared.is_over.store(true, Ordering::Release);
+        drop(lock(&self.shared.regions));
+        self.shared.is_offered.notify_all();
+    }
+}
+
+impl Shared {
+    /// Offers a region to workers: to those that are awake, and if these are too few to others.
+    fn open(&self, region: &Arc<Region>, seats: usize) {
+        let mut regions = lock(&self.regions);
+        regions.open.push(region.clone());
+        let to_wake = seats.saturating_sub(self.awake.load(Ordering::Relaxed)).min(regions.asleep);
+        drop(regions);
+        self.offered.fetch_add(1, Ordering::Release);
+        (0..to_wake).for_each(|_| self.is_offered.notify_one());
+    }
+
+    /// The life of a worker.
+    fn work(&self) {
+        let mut seen = 0;
+        while !self.is_over.load(Ordering::Acquire) {
+            self.look(seen);
+            let mut regions = lock(&self.regions);
+            let (region, seat) = loop {
+                seen = self.offered.load(Ordering::Acquire);
+                if self.is_over.load(Ordering::Acquire) {
+                    return;
+                }
+                let seat = |region: &Arc<Region>| region.take_seat().map(|seat| (region.clone(), seat));
+                if let Some(found) = regions.open.iter().find_map(seat) {
+                    break found;
+                }
+                regions.asleep += 1;
+                regions = self.is_offered.wait(regions).unwrap_or_else(PoisonError::into_inner);
+                regions.asleep -= 1;
+            };
+            drop(regions);
+            region.work(seat);
+        }
+    }
+
+    /// Stays awake for a while, until something new is offered.
+    fn look(&self, seen: usize) {
+        self.awake.fetch_add(1, Ordering::Relaxed);
+        let began = Instant::now();
+        let is_new = || self.offered.load(Ordering::Acquire) != seen;
+        while !is_new() && began.elapsed() < AWAKE {
+            std::hint::spin_loop();
+        }
+        self.awake.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Takes a region off the list, and waits for those who have begun: also when the caller's own part panics.
+struct Close<'a>(&'a Shared, &'a Arc<Region>);
+
+impl Drop for Close<'_> {
+    fn drop(&mut self) {
+        let Close(shared, region) = self;
+        lock(&shared.regions).open.retain(|other| !Arc::ptr_eq(other, region));
+        region.wait(AWAKE);
+    }
+}

@@ -1,0 +1,40 @@
+//! When workers are asked again, by given times.
+
+use super::*;
+
+#[test]
+fn who_loses_time_works_alone_the_longer_the_more_often() {
+    let busy = Busy::default();
+    assert!(busy.is_over(0));
+    let (mut now, mut alone) = (5, FIRST);
+    for _ in 0..10 {
+        busy.note(now, true);
+        assert!(!busy.is_over(now) && !busy.is_over(now + alone - 1) && busy.is_over(now + alone));
+        now += alone;
+        alone = (2 * alone).min(LONGEST);
+    }
+}
+
+#[test]
+fn what_goes_well_for_as_long_is_forgotten() {
+    let busy = Busy::default();
+    busy.note(0, true);
+    busy.note(FIRST, true);
+    // It went well for less than the last time alone.
+    let tried = 3 * FIRST;
+    busy.note(tried + FIRST, false);
+    busy.note(tried + FIRST, true);
+    assert!(!busy.is_over(tried + 5 * FIRST - 1) && busy.is_over(tried + 5 * FIRST));
+    // And for longer.
+    busy.note(tried + 10 * FIRST, false);
+    busy.note(tried + 10 * FIRST, true);
+    assert!(busy.is_over(tried + 11 * FIRST));
+}
+
+#[test]
+fn a_thread_that_waits_takes_no_time_of_the_processor() {
+    let (Some(before), began) = (time_of_this_thread(), Instant::now()) else { return };
+    std::thread::sleep(4 * LOSS);
+    let worked = time_of_this_thread().unwrap() - before;
+    assert!(began.elapsed() - worked > LOSS, "{worked:?} of {:?}", began.elapsed());
+}
