@@ -21,7 +21,6 @@ impl Solver {
     pub(super) fn sensitivities(&mut self, friction: &Friction<'_>) -> Result<[[f64; 3]; 3]> {
         let mut derivatives = [[0.0; 3]; 3];
         let (Some(window), Some(level)) = (self.window, self.levels.first_mut()) else { return Ok(derivatives) };
-        level.be_ready()?;
         for by in 0..3 {
             let Memory { tangent, fields, .. } = &mut level.memory;
             if by == 0 {
@@ -52,7 +51,6 @@ impl Solver {
             change.fill([0.0; 2]);
             return Ok(());
         };
-        level.be_ready()?;
         let (problem, Memory { tangent, fields, .. }) = (&mut level.problem, &mut level.memory);
         sensitivity::predict(problem, &level.state, tangent)?;
         let n = level.state.q.len();

@@ -35,33 +35,13 @@ pub struct Level {
     pub problem: Problem,
     pub state: State,
     pub memory: Memory,
-    /// Where there are no operators yet: whether directions may be multiplied in single precision.
-    pending: Option<bool>,
 }
 
 impl Level {
     /// Iterations are to be [prepared](Level::prepare).
     fn new(grid: Grid, operators: Operators) -> Result<Level> {
         let (state, memory) = (State::new(grid.len())?, Memory::default());
-        Ok(Level { problem: Problem::new(grid, operators)?, state, memory, pending: None })
-    }
-
-    /// The finest grid alone, without operators before it is [ready to iterate](Level::be_ready).
-    pub fn alone(tangential: &Tangential, grid: Grid, single: bool, threads: &Threads) -> Result<Level> {
-        let operators = Operators::none(tangential, &grid, threads);
-        Ok(Level { pending: Some(single), ..Level::new(grid, operators)? })
-    }
-
-    /// Sets up the operators and prepares iterations, if they are not.
-    pub fn be_ready(&mut self) -> Result<()> {
-        let Some(single) = self.pending else { return Ok(()) };
-        let Operators { tangential, threads, .. } = &self.problem.operators;
-        let grid = self.problem.grid;
-        let quadrant = Quadrant::new(tangential, &grid, (0.0, 0.0), threads)?;
-        self.problem.operators = Operators::new(&quadrant, &grid, None, false, threads)?;
-        self.prepare(&quadrant, single)?;
-        self.pending = None;
-        Ok(())
+        Ok(Level { problem: Problem::new(grid, operators)?, state, memory })
     }
 
     fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {

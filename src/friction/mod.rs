@@ -62,13 +62,12 @@ mod vectors;
 mod window;
 mod workspace;
 
-pub(crate) use certificate::rest;
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use last::Last;
 pub use plane::Vector;
-pub use request::{Request, Start, Superposed};
+pub use request::{Request, Start};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;

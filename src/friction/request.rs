@@ -42,8 +42,6 @@ impl<'a> Request<'a> {
 pub enum Start<'a> {
     /// From the tractions before the step; from rest on the coarsest grid.
     Before,
-    /// A shift from rest, from the pressures of a smaller load.
-    Superposed(Superposed<'a>),
     /// The same step once more, with other pressures: from the last result. What was before the step stays.
     Again,
     /// From the last result.
@@ -52,28 +50,7 @@ pub enum Start<'a> {
     Given([&'a [f64]; 2]),
 }
 
-/// Tractions near those of a shift from rest: `q = along (p - p*)`, within their bounds.
-#[derive(Clone, Copy)]
-pub struct Superposed<'a> {
-    /// `p - p*`, `[my][mx]`.
-    pub carried: &'a [f64],
-    /// What pressures `p - p*` displace by a fresh product.
-    pub displaced: &'a [f64],
-    /// mu times the direction.
-    pub along: Vector,
-    /// The shift where forces are given, else 0.
-    pub offset: Vector,
-}
-
 impl Start<'_> {
-    /// Without what is superposed.
-    pub fn or_before(self) -> Self {
-        match self {
-            Start::Superposed(_) => Start::Before,
-            other => other,
-        }
-    }
-
     /// Whether it may be worth less than the coarser grids.
     pub fn is_guess(&self) -> bool {
         matches!(self, Start::Last | Start::Given(_))

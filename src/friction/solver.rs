@@ -35,8 +35,6 @@ pub struct Solver {
     pub(super) threads: Threads,
     /// The finest first; none: nothing was solved yet.
     pub(super) levels: Vec<Level>,
-    /// Whether the coarser grids are among them.
-    has_coarser: bool,
     /// Products displaced by so many elements.
     pub(super) displaced: Option<Displaced>,
     pub(super) solution: Solution,
@@ -51,8 +49,7 @@ pub struct Solver {
     pub(super) sums: Vec<[f64; 3]>,
 }
 
-/// What a start by superposition is worth.
-#[derive(Default)]
+/// What a start is worth.
 struct Near {
     certificate: Certificate,
     is_solution: bool,
@@ -80,7 +77,6 @@ impl Solver {
             single,
             threads: threads.clone(),
             levels: Vec::new(),
-            has_coarser: false,
             displaced: None,
             solution: Solution::default(),
             before: Vec::new(),
@@ -189,34 +185,21 @@ impl Solver {
     ) -> Result<Outcome> {
         let bound = |i: usize| request.bound(i);
         let from_rest = report.from_rest;
-        let mut near = Near::default();
-        if let Start::Superposed(_) = request.start {
-            self.set_up_finest(window)?;
-            self.begin(request, from_rest, window, bound)?;
-            near = self.look(forces, request.tolerance);
-        }
-        (report.products, report.certificate) = (near.products, near.certificate);
-        if near.is_solution {
-            return Ok(Outcome::Converged);
-        }
-        let mut had_slip = if near.is_worth_something {
-            self.levels[0].be_ready().map(|()| false)?
-        } else {
-            self.set_up(window, rolling)?;
-            let request = Request { start: request.start.or_before(), ..*request };
-            self.begin(&request, from_rest, window, bound)?
-        };
+        self.set_up(window, rolling)?;
+        let mut had_slip = self.begin(request, from_rest, window, bound)?;
+        let mut is_worth_something = false;
         if request.start.is_guess() {
-            near = self.look(forces, request.tolerance);
+            let near = self.look(forces, request.tolerance);
             (report.products, report.certificate) = (near.products, near.certificate);
             if near.is_solution {
                 return Ok(Outcome::Converged);
             }
-            if !near.is_worth_something {
+            is_worth_something = near.is_worth_something;
+            if !is_worth_something {
                 had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
             }
         }
-        let nested = from_rest && !near.is_worth_something && !matches!(request.start, Start::Again);
+        let nested = from_rest && !is_worth_something && !matches!(request.start, Start::Again);
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
             false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
@@ -257,7 +240,7 @@ impl Solver {
         if layer != self.tangential.layer() {
             self.tangential = self.tangential.with_layer(layer);
             self.scaled = self.scaled.with_layer(self.scales.compliance(layer));
-            (self.levels, self.has_coarser, self.displaced) = (Vec::new(), false, None);
+            (self.levels, self.displaced) = (Vec::new(), None);
         }
     }
 
@@ -265,26 +248,12 @@ impl Solver {
     fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
         let first = self.scaled.rows().map(|_| window.y.0);
-        if self.has_coarser && self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, rolling)) {
+        if self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, rolling)) {
             return Ok(());
         }
         self.levels.clear();
         let tangential = self.scaled.of_run(window.y.0, grid.my);
         self.levels = levels(&tangential, grid, rolling, self.single, &self.threads)?;
-        self.has_coarser = true;
-        Ok(())
-    }
-
-    /// What a product by the finest grid alone takes.
-    fn set_up_finest(&mut self, window: Window) -> Result<()> {
-        let grid = self.scales.grid(&window.grid(&self.grid));
-        let first = self.scaled.rows().map(|_| window.y.0);
-        if !self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, None)) {
-            self.levels.clear();
-            let tangential = self.scaled.of_run(window.y.0, grid.my);
-            self.levels.push(Level::alone(&tangential, grid, self.single, &self.threads)?);
-            self.has_coarser = false;
-        }
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::excess::Excess;
 use super::levels::Level;
 use super::plane::{add, square, Vector};
 use super::problem::{Problem, Scale, State};
-use super::request::{before, Request, Start, Superposed};
+use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
@@ -121,10 +121,7 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
         let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
-        // What is superposed comes with its displacements.
-        if !matches!(request.start, Start::Superposed(_)) {
-            problem.refresh(state);
-        }
+        problem.refresh(state);
         if let Start::Given(_) = request.start {
             problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });
         }
@@ -137,16 +134,6 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
             Start::Before => {}
-            Start::Superposed(Superposed { carried, displaced, along, offset }) => {
-                let (threads, width) = (problem.threads().clone(), problem.grid.mx);
-                threads.for_each_row_pair((&mut state.q, width), (&mut state.u, width), |iy, q, u| {
-                    for ((q, u), i) in q.iter_mut().zip(u).zip(window.row(&self.grid, iy)) {
-                        *q = along.map(|along| scales.traction(along * carried[i]));
-                        *u = scales.displacement(along.map(|along| along * displaced[i]));
-                    }
-                });
-                problem.offset = scales.displacement(offset);
-            }
             Start::Again | Start::Last => {
                 window
                     .elements(&self.grid)

@@ -22,7 +22,6 @@ mod options;
 mod own_tables;
 mod refinement;
 mod report;
-mod superposition;
 mod take_over;
 mod tangential;
 mod tangential_calls;

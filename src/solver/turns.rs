@@ -1,6 +1,5 @@
 //! Normal and tangential problem in turns. Of unlike bodies each changes the other.
 
-use super::superposition::Smaller;
 use super::take_over::take_distance;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Options, Solver};
@@ -68,15 +67,7 @@ impl Solver {
         mut stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, friction::Report)> {
-        let smaller = if tangent.is_of_like_bodies() { self.smaller_load(turn, stop, monitor)? } else { None };
-        let start = smaller.as_ref().map_or(turn.start(), Smaller::start);
-        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, start, monitor)?;
-        if let Some(smaller) = smaller {
-            if tangential_stop == Outcome::Converged && monitor.is_cancelled() {
-                tangential_stop = Outcome::Cancelled;
-            }
-            (found.products, found.seconds) = (found.products + smaller.products, found.seconds + smaller.seconds);
-        }
+        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, turn.start(), monitor)?;
         if turn.options.initial_guess != InitialGuess::Previous {
             // Turns go on from each other, not from what was solved before.
             self.methods.projected_cg.forget_solutions();

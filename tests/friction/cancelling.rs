@@ -15,7 +15,7 @@ use super::support::ball;
 
 const LIKE: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 4.0], poisson_ratio: [0.1, 0.4] };
-/// The superposition starts a shift of these.
+/// Tractions displace in their own direction only.
 const WITHOUT_POISSON: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.0; 2] };
 
 /// Runs once to count the calls, then cancels at each of them in turn; `run` returns the outcome. Returns how many calls there are.
@@ -119,10 +119,6 @@ fn friction_of_like_and_unlike_bodies() {
             }
         }
     }
-    // Without spin the superposition starts it.
-    let friction = Friction { spin: 0.0, ..pushed(Motion::Shift, false) };
-    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, WITHOUT_POISSON, Load::Force(0.03)) };
-    cancelled_once("superposed", on_a_handle(&scene, &Options::default(), false));
 }
 
 #[test]

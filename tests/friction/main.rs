@@ -26,7 +26,6 @@ mod steady;
 mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
-mod superposition;
 mod support;
 mod tables;
 mod threads;
