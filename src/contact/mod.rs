@@ -16,6 +16,7 @@ mod snapshot;
 mod start;
 mod state;
 mod survey_pass;
+mod values;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey};
@@ -27,4 +28,5 @@ pub use jumps::at_jumps;
 pub use outline::Outline;
 pub use problem::Problem;
 pub use snapshot::Snapshot;
-pub use state::{lowest, presses, Freshness, State};
+pub use state::{Freshness, State};
+pub use values::{lowest, presses};

@@ -12,7 +12,7 @@ use std::array::from_fn;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::state::presses;
+use super::values::presses;
 use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;

@@ -1,6 +1,6 @@
 //! Step 1 of section 4.1: the contact area to start from.
 
-use super::state::lowest;
+use super::values::lowest;
 use super::State;
 use crate::grid::Grid;
 use crate::scene::Load;

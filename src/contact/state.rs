@@ -3,27 +3,18 @@
 use std::array::from_fn;
 use std::ops::Range;
 
+use super::values::lowest;
+pub use super::values::Freshness;
 use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{asleep, keep, rest, wake, zeros};
 use crate::scene::Load;
-use crate::sums::{least, sum_where, Sums};
+use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
 
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
-
-/// What the u of a state is worth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freshness {
-    /// A p.
-    Exact,
-    /// Near A p.
-    Near,
-    /// Anything.
-    Stale,
-}
 
 /// Pressures, displacements and contact area on one grid, with the undeformed distance that they belong to.
 pub struct State {
@@ -299,18 +290,4 @@ impl Drop for State {
         keep([&mut self.h, &mut self.p, &mut self.u]);
         keep([&mut self.contact, &mut self.at_limit]);
     }
-}
-
-/// Whether one of some pressures is not 0.
-#[inline(always)]
-pub fn presses(p: &[f64]) -> bool {
-    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
-}
-
-/// The least of all distances; infinite if there is no surface.
-pub fn lowest(h: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || least(h),
-    )
 }

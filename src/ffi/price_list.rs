@@ -7,13 +7,14 @@ use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::guard::guard;
-use super::options::{self, contact_normal_options};
+use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned, Rows, Versioned};
 use super::watcher::{watched, why, Watcher};
 use crate::grid::Grid;
-use crate::solver::{cost_of_accuracy, Obstacle, Price, Quantity, SurfaceCallback};
+use crate::scene::Scene;
+use crate::solver::{cost_of_accuracy, Accuracy, Obstacle, Price, Quantity, SurfaceCallback};
 
 /// `quantity`: the force, or the approach where the force is prescribed.
 pub const CONTACT_NORMAL_QUANTITY_FORCE: i32 = 0;
@@ -151,31 +152,42 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         let scene = unsafe { named.with_distance(&h)? };
         let quantity = quantity_of(quantity)?;
         let asked = accuracy::translate(&given)?;
-        let by_surface = Cell::new(false);
-        let mut write = accuracy::surface(&given, recording).map(|mut write| {
-            let by_surface = &by_surface;
-            move |grid: &Grid, h: &mut [f64]| {
-                by_surface.set(write(grid, h));
-                by_surface.get()
-            }
-        });
-        let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
+        let surface = accuracy::surface(&given, recording);
         // A copy: callbacks may write into the caller's.
-        let targets = targets.to_vec();
-        let wanted = (quantity, &targets[..]);
-        let concluded = watched(Watcher::without_callback(&translated), |progress| {
-            let (stop, prices) = cost_of_accuracy(&scene, &translated.options, &asked, wanted, surface, progress)?;
-            for (i, price) in prices.iter().enumerate() {
-                // SAFETY: the caller has n rows.
-                unsafe { written.write(i, &price.into()) };
-            }
-            let who = if by_surface.get() { "the surface callback cancelled" } else { why(stop) };
-            Ok(Conclusion::of(stop, || who.into()))
-        });
-        concluded?.conclude()
+        let wanted = (quantity, &targets.to_vec()[..]);
+        predict_watched(&scene, &translated, (&asked, wanted), surface, |i, price| {
+            // SAFETY: the caller has n rows.
+            unsafe { written.write(i, &price.into()) }
+        })
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) })
+}
+
+/// Predicts, and hands over each row; the message of a list that is cancelled says whether the surface callback did.
+fn predict_watched(
+    scene: &Scene<'_>,
+    translated: &Translated,
+    (asked, wanted): (&Accuracy, (Quantity, &[f64])),
+    surface: Option<impl FnMut(&Grid, &mut [f64]) -> bool>,
+    write: impl Fn(usize, &Price),
+) -> Result<contact_normal_status, Refusal> {
+    let by_surface = Cell::new(false);
+    let mut surface = surface.map(|mut surface| {
+        let by_surface = &by_surface;
+        move |grid: &Grid, h: &mut [f64]| {
+            by_surface.set(surface(grid, h));
+            by_surface.get()
+        }
+    });
+    let surface = surface.as_mut().map(|surface| surface as SurfaceCallback<'_>);
+    let concluded = watched(Watcher::without_callback(translated), |progress| {
+        let (stop, prices) = cost_of_accuracy(scene, &translated.options, asked, wanted, surface, progress)?;
+        prices.iter().enumerate().for_each(|(i, price)| write(i, price));
+        let who = if by_surface.get() { "the surface callback cancelled" } else { why(stop) };
+        Ok(Conclusion::of(stop, || who.into()))
+    });
+    concluded?.conclude()
 }
 
 fn quantity_of(quantity: i32) -> Result<Quantity, Refusal> {

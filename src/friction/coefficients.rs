@@ -29,6 +29,8 @@ use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+pub use super::compliance::Compliance;
+use super::near_element::near;
 use super::row_tables::RowTables;
 use super::series::{Series, Shape};
 pub use super::tables::Entry;
@@ -37,37 +39,12 @@ use super::unit::unit_of;
 use crate::effects::TangentialInfluence;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
-use crate::influence::gauss_each;
-use crate::scene::Bodies;
 
 /// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice, as for the normal coefficients.
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
 /// Offsets whose series are summed side by side.
 const LANES: usize = 4;
-
-/// What the bodies' materials make of tractions: `1/G`, `nu/G` and `K/G` of both together.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compliance {
-    /// `1/G = (1/G1 + 1/G2)/2`.
-    pub shear: f64,
-    /// `nu/G = (nu1/G1 + nu2/G2)/2`.
-    pub poisson: f64,
-    /// `K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4`: 0 for like bodies, whose normal and tangential problems are independent.
-    pub unlike: f64,
-}
-
-impl Compliance {
-    /// Of two bodies.
-    pub fn of(bodies: &Bodies) -> Compliance {
-        let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = *bodies;
-        Compliance {
-            shear: 0.5 * (1.0 / g1 + 1.0 / g2),
-            poisson: 0.5 * (nu1 / g1 + nu2 / g2),
-            unlike: 0.25 * ((1.0 - 2.0 * nu1) / g1 - (1.0 - 2.0 * nu2) / g2),
-        }
-    }
-}
 
 /// Tangential coefficients for one element size.
 #[derive(Clone, Debug)]
@@ -318,39 +295,4 @@ impl Tangential {
         let c = squares * ((pp + mp) + (pm + mm)) / ((pp + mp) * (pm + mm) * ((pp + pm) * (mp + mm)));
         self.compliance.poisson / PI * (self.dx * c)
     }
-}
-
-/// a and b at an offset `kx, ky >= 0` nearer than the series reaches.
-fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> (f64, f64) {
-    if ky >= 2.0 {
-        let [a, sum] = gauss_each(ky * dy, dy, |y| along(kx, dx, y));
-        (a, sum - a)
-    } else if kx >= 2.0 {
-        let [b, sum] = gauss_each(kx * dx, dx, |x| along(ky, dy, x));
-        (sum - b, b)
-    } else {
-        let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
-        let f = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
-        let corners = |f: &dyn Fn(f64, f64) -> f64| f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym);
-        (corners(&f), corners(&|x, y| f(y, x)))
-    }
-}
-
-/// Over `x` in an interval of length d about k d, at the distance y: the integrals of `y^2/r^3`, `[x/r]`, and of `1/r`,
-/// `[asinh(x/y)]`, without cancellation.
-fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
-    let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
-    // Lengths are in units of the element: their squares are in range.
-    let r = |x: f64| (x * x + y * y).sqrt();
-    let rp = r(plus);
-    if k == 0.0 {
-        return [2.0 * (plus / rp), 2.0 * (plus / y).asinh()];
-    }
-    let rm = r(minus);
-    if minus < 0.0 {
-        return [plus / rp - minus / rm, (plus / y).asinh() - (minus / y).asinh()];
-    }
-    let squares = (plus + minus) * d;
-    let sine = y * y * squares / (rp * rm * (plus * rm + minus * rp));
-    [sine, ((d + squares / (rp + rm)) / (minus + rm)).ln_1p()]
 }

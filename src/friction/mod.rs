@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`coefficients`], `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
+//! | [`coefficients`], `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
 //! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
@@ -15,10 +15,12 @@
 //! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
 
 mod balance;
+mod beside;
 mod best;
 mod bracket;
 mod certificate;
 pub mod coefficients;
+mod compliance;
 mod component;
 mod corral;
 pub mod cross;
@@ -32,6 +34,7 @@ mod forces;
 mod interpolation;
 mod last;
 mod levels;
+mod near_element;
 mod nested;
 mod newton;
 mod operators;

@@ -143,11 +143,8 @@ pub fn solve(
         }
         let measures = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
-        let worst = largest([
-            measures.residual,
-            if certified { measures.excess } else { measures.excess / COARSE_EXCESS },
-            missing,
-        ]);
+        let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
+        let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {
             problem.offset = [0.0; 2];
             state.unload(problem.threads());
@@ -161,10 +158,8 @@ pub fn solve(
             polish(problem, state, tangent, of_step, fields)?;
             continue;
         }
-        if manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning) {
-            return Ok(Outcome::Stagnated);
-        }
-        if !course.goes_on(worst, forces.any()) {
+        let runs_away = manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning);
+        if runs_away || !course.goes_on(worst, forces.any()) {
             return Ok(Outcome::Stagnated);
         }
         let left = limit.saturating_sub(problem.operators.products - made);

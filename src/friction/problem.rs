@@ -11,6 +11,7 @@
 //!
 //! It is the minimum of `1/2 q.Aq + w.q` over the discs `|q| <= g`, strictly convex: there is one solution.
 
+use super::beside::{count_near, extension_on};
 use super::operators::Operators;
 use super::places::Places;
 use super::plane::{add, clip, square, Vector};
@@ -22,7 +23,6 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep};
 use crate::methods::extension::Extension;
-use crate::operator::fft::Real;
 use crate::threads::Threads;
 
 const FIELDS: &str = "tangential fields";
@@ -289,19 +289,5 @@ impl Problem {
         self.operators.bytes()
             + self.grid.len() * (size_of::<f64>() + 2 * size_of::<Vector>())
             + size_of_val(&self.weights[..])
-    }
-}
-
-/// What continues residuals beside C, on a grid where that is worth it.
-pub(super) fn extension_on<T: Real>(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, 2>>> {
-    let mut extension = Extension::if_worthwhile(grid, threads)?;
-    extension.iter_mut().for_each(Extension::wake);
-    Ok(extension)
-}
-
-/// C has changed: where `bound` is positive.
-pub(super) fn count_near<T: Real>(extension: &mut Option<Extension<T, 2>>, bound: &[f64]) {
-    if let Some(extension) = extension {
-        extension.count(bound, |g| g > 0.0, |_| true);
     }
 }

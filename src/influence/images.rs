@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use super::half_space::GAUSS;
+use super::gauss::GAUSS;
 use super::special::{hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 

@@ -26,7 +26,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::half_space::{gauss, HalfSpace};
+use super::gauss::gauss;
+use super::half_space::HalfSpace;
 use super::images::{lengths, offsets, Far, Lines, Near, NODES};
 use super::kernel::Kernel;
 use crate::error::Result;

@@ -2,7 +2,9 @@
 
 mod next_grid;
 mod outlook;
+mod price;
 mod price_list;
+mod sample;
 mod solved;
 
 use std::time::Instant;

@@ -1,8 +1,9 @@
 //! What passes between the fields on C and a state on the grid.
 
+use super::super::beside::{count_near, extension_on};
 use super::super::disc::Units;
 use super::super::plane::add;
-use super::super::problem::{count_near, extension_on, Problem, State};
+use super::super::problem::{Problem, State};
 use super::super::tangent::rho_of;
 use super::super::unit::unit_of;
 use super::super::vectors::over;

@@ -1,0 +1,28 @@
+//! What is asked of whole arrays of pressures and distances.
+
+use crate::sums::least;
+
+/// What the u of a state is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freshness {
+    /// A p.
+    Exact,
+    /// Near A p.
+    Near,
+    /// Anything.
+    Stale,
+}
+
+/// Whether one of some pressures is not 0.
+#[inline(always)]
+pub fn presses(p: &[f64]) -> bool {
+    p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0
+}
+
+/// The least of all distances; infinite if there is no surface.
+pub fn lowest(h: &[f64]) -> f64 {
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || least(h),
+    )
+}

@@ -1,0 +1,39 @@
+//! The integrals of the tangential coefficients next to an element: closed forms, and Gauss-Legendre in one direction (see
+//! [`coefficients`](super::coefficients)).
+
+use crate::influence::gauss_each;
+
+/// a and b at an offset `kx, ky >= 0` nearer than the series reaches.
+pub fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> (f64, f64) {
+    if ky >= 2.0 {
+        let [a, sum] = gauss_each(ky * dy, dy, |y| along(kx, dx, y));
+        (a, sum - a)
+    } else if kx >= 2.0 {
+        let [b, sum] = gauss_each(kx * dx, dx, |x| along(ky, dy, x));
+        (sum - b, b)
+    } else {
+        let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
+        let f = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
+        let corners = |f: &dyn Fn(f64, f64) -> f64| f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym);
+        (corners(&f), corners(&|x, y| f(y, x)))
+    }
+}
+
+/// Over `x` in an interval of length d about k d, at the distance y: the integrals of `y^2/r^3`, `[x/r]`, and of `1/r`,
+/// `[asinh(x/y)]`, without cancellation.
+fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
+    let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
+    // Lengths are in units of the element: their squares are in range.
+    let r = |x: f64| (x * x + y * y).sqrt();
+    let rp = r(plus);
+    if k == 0.0 {
+        return [2.0 * (plus / rp), 2.0 * (plus / y).asinh()];
+    }
+    let rm = r(minus);
+    if minus < 0.0 {
+        return [plus / rp - minus / rm, (plus / y).asinh() - (minus / y).asinh()];
+    }
+    let squares = (plus + minus) * d;
+    let sine = y * y * squares / (rp * rm * (plus * rm + minus * rp));
+    [sine, ((d + squares / (rp + rm)) / (minus + rm)).ln_1p()]
+}

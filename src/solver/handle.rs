@@ -1,0 +1,96 @@
+//! What a handle can be asked, and how its own coefficients are exchanged.
+
+use std::sync::Arc;
+
+use super::tangential::Tangent;
+use super::{LedgerRow, Options, Solver};
+use crate::contact::{Freshness, State};
+use crate::effects::Effect;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
+use crate::influence::{Coefficients, Table};
+
+impl Solver {
+    /// The result: pressures, displacements, contact area and approach.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The grid that it was set up for.
+    pub fn grid(&self) -> &Grid {
+        &self.problem.grid
+    }
+
+    /// Whether there is a result: of the last solve, unless that failed.
+    pub fn has_solved(&self) -> bool {
+        self.has_result
+    }
+
+    /// What the last solve knew when: one row per grid, coarsest first.
+    pub fn ledger(&self) -> &[LedgerRow] {
+        &self.ledger
+    }
+
+    /// The influence coefficients in use.
+    pub fn influence(&self) -> &Coefficients {
+        &self.problem.coefficients
+    }
+
+    /// All later solves use this table in the place of the one of the set-up; memory and plans of the operator are kept. The last result
+    /// stays. After an error the solver has no table until another one is set.
+    pub fn set_influence(&mut self, table: Table) -> Result<()> {
+        if !self.set_up.has_own_influence {
+            return invalid("influence is given, but this solver was set up without".into());
+        }
+        Effect::check(&table, &self.problem.grid)?;
+        let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
+        self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
+        // What was made of the table before is dropped first: then the operator is this solver's alone.
+        self.set_up.lacks_table = true;
+        self.methods.forget_operator();
+        self.workers.clear();
+        self.state.u_is = Freshness::Stale;
+        self.problem.renew(coefficients)?;
+        self.methods.renew(&self.problem)?;
+        self.set_up.named.replace(&table);
+        self.set_up.lacks_table = false;
+        Ok(())
+    }
+
+    /// Threads that it was set up with; 0: all cores.
+    pub fn threads(&self) -> usize {
+        self.set_up.options.threads
+    }
+
+    /// The options that it was set up with.
+    pub(crate) fn set_up_options(&self) -> &Options {
+        &self.set_up.options
+    }
+
+    /// The caller's own coefficients, if there are any, as a scene of this grid names them: with the name of the effect.
+    pub(crate) fn own_tables(&self) -> Option<(&'static str, Vec<f64>)> {
+        let kernel = self.influence().kernel();
+        let (mx, my) = (self.grid().mx as i64, self.grid().my as i64);
+        let of_row = move |jy: i64, iy: i64| {
+            // Column -mx is never read.
+            (-mx..mx).map(move |kx| if kx == -mx { 0.0 } else { kernel.between((0, jy), (kx, iy)) })
+        };
+        if self.set_up.has_own_influence {
+            return Some(("influence", (-my..my).flat_map(|ky| of_row(0, ky)).collect()));
+        }
+        let has_row_tables = self.set_up.given;
+        has_row_tables
+            .then(|| ("row_tables", (0..my).flat_map(|jy| (0..my).flat_map(move |iy| of_row(jy, iy))).collect()))
+    }
+
+    /// Bytes of operators, workspace and results.
+    pub fn bytes(&self) -> usize {
+        // Workers share the coefficients of the finest grid.
+        let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
+        let workers: usize = self.workers.iter().flatten().map(own).sum();
+        let limits = self.limits.len() * size_of::<f64>();
+        let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
+        let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
+        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction + tables
+    }
+}

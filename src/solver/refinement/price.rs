@@ -1,0 +1,126 @@
+//! One row of the price list, from samples.
+
+use super::next_grid::{tolerance_for, ENOUGH_ACROSS, MOST_ELEMENTS, ROUND_OFF};
+use super::sample::Sample;
+use super::{scaled, Accuracy, Quantity};
+use crate::grid::Grid;
+use crate::scene::Scene;
+
+/// The power of the number of elements with which seconds grow (docs/performance.md).
+const GROWTH: f64 = 1.08;
+/// That of set-ups, at least.
+const SETUP_GROWTH: f64 = 0.4;
+/// Elements across the contact on a sample that can be carried on.
+pub(super) const ACROSS: usize = 12;
+
+/// What keeps an accuracy from being had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstacle {
+    /// The largest pressure is singular, or contact on single elements: no grid is known to do.
+    Singular,
+    /// The target is below round-off.
+    RoundOff,
+    /// It takes more elements than `max_elements`.
+    Elements,
+    /// It takes more memory than `max_bytes`.
+    Memory,
+    /// It takes longer than `max_seconds`.
+    Time,
+}
+
+/// What one accuracy costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Price {
+    /// The relative error that is wanted.
+    pub target: f64,
+    /// The coarsest grid that is predicted to do, if that is known.
+    pub grid: Option<Grid>,
+    /// The tolerance to ask for: more would be wasted.
+    pub tolerance: f64,
+    /// Relative error that this grid and tolerance are predicted to leave; negative: not known.
+    pub error: f64,
+    /// Seconds of set-up and solve with the threads of the options; negative: not known.
+    pub seconds: f64,
+    /// Seconds with one thread; negative: not known.
+    pub seconds_one_thread: f64,
+    /// Bytes held by the solver; 0: not known.
+    pub bytes: u64,
+    /// What keeps it from being had.
+    pub obstacle: Option<Obstacle>,
+}
+
+/// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
+/// that they are mostly overhead. The set-up grows as the last two samples say (that of a period hardly does).
+pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
+    let seen = match samples {
+        [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
+        _ => GROWTH,
+    };
+    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH, GROWTH) } else { GROWTH };
+    let carried = |sample: &Sample| {
+        let ratio = elements / sample.elements;
+        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * ratio.powf(GROWTH)
+    };
+    samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min)
+}
+
+/// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
+pub(super) fn predict(scene: &Scene<'_>, samples: &[Sample], target: f64) -> Option<(i32, f64)> {
+    let last = samples.last()?;
+    let falling = last.falling?;
+    let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
+    let does = |k: &i32| {
+        let enough = last.across as f64 * 2f64.powi(*k) >= ENOUGH_ACROSS as f64;
+        enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
+    };
+    let k = (least..=most).find(does)?;
+    Some((k, seconds_on(samples, last.elements * 4f64.powi(k))))
+}
+
+/// One row.
+pub(super) fn price(
+    scene: &Scene<'_>,
+    samples: &[Sample],
+    accuracy: &Accuracy,
+    (quantity, target): (Quantity, f64),
+    speed_up: f64,
+) -> Price {
+    let tolerance = tolerance_for(quantity, target).max(1e-12);
+    let nothing = Price {
+        target,
+        grid: None,
+        tolerance,
+        error: -1.0,
+        seconds: -1.0,
+        seconds_one_thread: -1.0,
+        bytes: 0,
+        obstacle: Some(Obstacle::Singular),
+    };
+    if target < ROUND_OFF {
+        return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
+    }
+    let last = samples.last().filter(|last| last.across >= ACROSS);
+    let Some((last, falling)) = last.and_then(|last| Some((last, last.falling?))) else { return nothing };
+    let Some((k, seconds)) = predict(scene, samples, target) else {
+        return Price { obstacle: Some(Obstacle::Elements), ..nothing };
+    };
+    let Ok(grid) = scaled(&scene.grid, last.doublings + k) else { return nothing };
+    let seconds = seconds * last.seconds_to(tolerance) / last.seconds;
+    let bytes = last.bytes * 4f64.powi(k);
+    let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
+    let obstacles = [
+        (grid.len() as u64 > most, Obstacle::Elements),
+        (accuracy.max_bytes > 0 && bytes > accuracy.max_bytes as f64, Obstacle::Memory),
+        (accuracy.is_late(seconds / speed_up), Obstacle::Time),
+    ];
+    let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
+    Price {
+        grid: Some(grid),
+        error: falling.after(k) + tolerance,
+        seconds: seconds / speed_up,
+        seconds_one_thread: seconds,
+        bytes: bytes as u64,
+        obstacle,
+        ..nothing
+    }
+}

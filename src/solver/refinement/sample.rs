@@ -1,0 +1,108 @@
+//! Solves on small grids, from which prices are predicted.
+
+use std::time::Instant;
+
+use super::outlook::{across, Falling};
+use super::solved::Solved;
+use super::{on_grid, scaled, Quantity, SurfaceCallback};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::solver::{Options, Outcome, Progress, ProgressCallback};
+
+/// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
+const AGAIN: usize = 3;
+
+/// What a sample asks: the surface, and whether to go on.
+pub(super) type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'c mut Option<ProgressCallback<'p>>);
+
+/// What became of a sample.
+pub(super) enum Taken {
+    Sample(Sample),
+    /// By a callback.
+    Cancelled,
+    Unsolved,
+}
+
+/// What a small grid has shown.
+pub(super) struct Sample {
+    pub(super) doublings: i32,
+    pub(super) elements: f64,
+    /// In the direction with fewer of them.
+    pub(super) across: usize,
+    pub(super) falling: Option<Falling>,
+    pub(super) bytes: f64,
+    /// Until the residual was first at most that: seconds since the start of the surface.
+    pub(super) reached: Vec<(f64, f64)>,
+    pub(super) seconds: f64,
+    /// Of which the set-up took so many.
+    pub(super) setup: f64,
+}
+
+impl Sample {
+    /// Solves once, and again for the time as long as there are seconds to spare.
+    pub(super) fn take(
+        scene: &Scene<'_>,
+        options: &Options,
+        (doublings, spare): (i32, f64),
+        quantity: Quantity,
+        (surface, progress): Callbacks<'_, '_, '_>,
+    ) -> Result<Taken> {
+        let (began, mut spent) = (Instant::now(), 0.0);
+        let mut taken = Sample::take_once(scene, options, doublings, quantity, (surface, progress))?;
+        for _ in 0..AGAIN {
+            let Taken::Sample(best) = &mut taken else { break };
+            if spent + 2.0 * best.seconds > spare {
+                break;
+            }
+            match Sample::take_once(scene, options, doublings, quantity, (surface, progress))? {
+                Taken::Sample(again) if again.seconds < best.seconds => *best = again,
+                Taken::Cancelled => return Ok(Taken::Cancelled),
+                _ => {}
+            }
+            spent = began.elapsed().as_secs_f64();
+        }
+        Ok(taken)
+    }
+
+    fn take_once(
+        scene: &Scene<'_>,
+        options: &Options,
+        doublings: i32,
+        quantity: Quantity,
+        (surface, progress): Callbacks<'_, '_, '_>,
+    ) -> Result<Taken> {
+        let (began, mut reached) = (Instant::now(), Vec::new());
+        let elements = scaled(&scene.grid, doublings)?.len();
+        let mut watch = |told: &Progress| {
+            if told.mx * told.my == elements {
+                reached.push((told.residual, began.elapsed().as_secs_f64()));
+            }
+            progress.as_mut().is_some_and(|progress| progress(told))
+        };
+        let Solved { solver, report, outlook } =
+            match on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)? {
+                Ok(solved) => solved,
+                Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
+                Err(_) => return Ok(Taken::Unsolved),
+            };
+        let seconds = began.elapsed().as_secs_f64();
+        let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
+        Ok(Taken::Sample(Sample {
+            doublings,
+            elements: elements as f64,
+            across: x.min(y),
+            falling: outlook.falling(quantity),
+            bytes: report.bytes as f64,
+            reached,
+            seconds,
+            setup: report.setup_seconds,
+        }))
+    }
+
+    /// Seconds to a residual: what follows the last iteration is needed by any.
+    pub(super) fn seconds_to(&self, tolerance: f64) -> f64 {
+        let end = self.reached.last().map_or(0.0, |last| last.1);
+        let at = self.reached.iter().find(|(residual, _)| *residual <= tolerance).map_or(end, |found| found.1);
+        self.seconds - (end - at)
+    }
+}
