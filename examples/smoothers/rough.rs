@@ -30,7 +30,7 @@ pub fn undeformed_distance(m: usize) -> Vec<f64> {
         // the listed wave and its conjugate: only the real part is used, so it counts twice instead
         bins[bin(ky) * m + bin(kx)] += 2.0 * c;
     }
-    let transform = ColumnTransform::<f64>::new(m)?;
+    let transform = ColumnTransform::<f64>::new(m).unwrap();
     let mut scratch = transform.scratch().unwrap();
     transform.inverse(&mut bins, &mut scratch);
     let mut turned: Vec<_> = (0..m * m).map(|i| bins[(i % m) * m + i / m]).collect();
