@@ -1,5 +1,5 @@
-//! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and memory asked for
-//! ahead. Only this file has unsafe code.
+//! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and
+//! prefetches. Only this file has unsafe code.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -37,13 +37,13 @@ pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// Bytes of a line of the caches; where it is longer, some are asked for twice.
+/// Bytes of a line of the caches; where it is longer, some are prefetched twice.
 const LINE: usize = 64;
 
-/// Asks for so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
+/// Prefetches so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
 /// stands there; of values that do not begin at a line the last line is left out.
 #[inline(always)]
-pub fn ask_for<V>(first: *const V, count: usize) {
+pub fn prefetch<V>(first: *const V, count: usize) {
     #[cfg(target_arch = "x86_64")]
     for line in (0..count * size_of::<V>()).step_by(LINE) {
         let line = first.cast::<i8>().wrapping_add(line);
@@ -260,12 +260,12 @@ impl<'a, T: Real> Block<'a, T> {
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 
-    /// Asks for part k of n of the block's part of a row, if there is such a row.
+    /// Prefetches part k of n of the block's part of a row, if there is such a row.
     #[inline(always)]
-    pub fn ask_for(&self, row: usize, (k, n): (usize, usize)) {
+    pub fn prefetch(&self, row: usize, (k, n): (usize, usize)) {
         if row < self.rows {
             let count = self.columns / n;
-            ask_for(self.data.wrapping_add(row * self.width + self.first + k * count), count);
+            prefetch(self.data.wrapping_add(row * self.width + self.first + k * count), count);
         }
     }
 

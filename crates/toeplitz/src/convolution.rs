@@ -41,7 +41,7 @@ fn next_block(before: usize, b: usize, count: usize) -> usize {
 /// Transforms in y, and the symbol.
 pub(crate) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
-    /// By an even symbol, of rows and columns in the places of vectors.
+    /// By an even symbol, of rows and columns in lanes.
     by_lanes: Option<(LaneRows<T>, EvenColumns<T>)>,
     symbol: Symbol<T>,
 }
@@ -59,7 +59,7 @@ impl<T: Real> Convolution<T> {
         EvenOrder { by_lanes: self.by_lanes.as_ref().map(|(_, columns)| columns), columns, py: self.columns.length() }
     }
 
-    /// The transforms of rows that fit the columns, if these are in the places of vectors.
+    /// The transforms of rows that fit the columns, if these are in lanes.
     pub fn lanes(&self) -> Option<&LaneRows<T>> {
         self.lanes_if_even().filter(|_| matches!(self.symbol, Symbol::Even(_)))
     }

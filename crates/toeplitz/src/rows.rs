@@ -51,13 +51,13 @@ impl<T: Real> Rows<T> {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// Rows that a block of bins has room for in the places of vectors: a group of rows that are transformed together may begin at the last row of
+    /// Rows that a block of bins has room for in lanes: a group of rows that are transformed together may begin at the last row of
     /// the grid, and is always whole.
     pub(crate) fn height(&self, lanes: &LaneRows<T>) -> usize {
         self.my + lanes.at_a_time() - 1
     }
 
-    /// The blocks of bins in the places of vectors, from a line of the cache on, and the pieces.
+    /// The blocks of bins in lanes, from a line of the cache on, and the pieces.
     pub(crate) fn blocks_of_bins<'a>(
         &self,
         lanes: &LaneRows<T>,

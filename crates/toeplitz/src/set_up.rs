@@ -1,6 +1,6 @@
 //! How a symbol is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
-//! Here rows and columns are transformed by themselves; [`set_up_lanes`](crate::set_up_lanes) has even coefficients in the places of vectors.
+//! Here rows and columns are transformed by themselves; [`set_up_lanes`](crate::set_up_lanes) has even coefficients in lanes.
 
 use crate::coefficients::{Coefficients, Even};
 use crate::fft::any_length::ColumnTransform;

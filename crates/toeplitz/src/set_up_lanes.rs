@@ -1,4 +1,4 @@
-//! How the symbol of even coefficients is computed where products go through stages of our own: rows and columns in the places of vectors.
+//! How the symbol of even coefficients is computed where products go through stages of our own: rows and columns in lanes.
 //! The stages leave bins in the order in which products want them.
 //!
 //! Columns c and c + 8 of a block share a complex transform, one as its real and one as its imaginary part: so no bit depends on the length of
@@ -12,7 +12,7 @@ use crate::block::{blocks_of, parts, parts_mut, Block, BLOCK};
 use crate::coefficients::Even;
 use crate::fft::even_plan::EvenPlan;
 use crate::fft::lane_rows::LaneRows;
-use crate::fft::lanes::{places, Arithmetic, Lanes, Parts, C};
+use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::fft::stages::{before_a_line, first, inlined, of_radix, rows_of};
 use crate::real::{Complex, Real};
 use crate::set_up::{SetUp, COEFFICIENTS};
@@ -79,7 +79,7 @@ impl<'a> LaneTransforms<'a> {
             rows.forward(&piece.row[..count * px], px, &mut Block::of(bins, together * BLOCK), &mut piece.rows);
             // The real parts of blocks.
             for (b, block) in parts(bins).chunks_exact(together * 2 * BLOCK).enumerate() {
-                out.ask_for(b + 1, (0, 1));
+                out.prefetch(b + 1, (0, 1));
                 let of_rows = block.chunks_exact(2 * BLOCK);
                 for (out, of_row) in parts_mut(out.row_mut(b)).chunks_exact_mut(BLOCK).zip(of_rows) {
                     out.copy_from_slice(&of_row[..BLOCK]);
@@ -117,7 +117,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let SymbolOfBlock { plan, in_x: (in_x, given), columns, value, out, memory } = self;
-        let (a, n, stages) = (Arithmetic::<f64, S>::new(simd), places::<f64, S>(), &plan.stages);
+        let (a, n, stages) = (Arithmetic::<f64, S>::new(simd), lane_count::<f64, S>(), &plan.stages);
         let length = stages.length();
         let rows = &mut rows_of::<f64, S>(memory)[..length];
         let zero = Parts { re: a.splat(0.0), im: a.splat(0.0) };

@@ -6,7 +6,7 @@
 //!
 //! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and
 //! the first stage of the inverse are one pass. Blocks of columns are as [`LaneRows`](crate::fft::lane_rows::LaneRows) write them,
-//! `[row][part][column]`; a vector of columns is asked for while the one before is worked on. S is kept as
+//! `[row][part][column]`; a vector of columns is prefetched while the one before is worked on. S is kept as
 //! `[block of columns][kept row][column]` ([`even_plan`](crate::fft::even_plan)).
 
 use std::ops::Range;
@@ -15,9 +15,9 @@ use std::sync::Arc;
 use par::Result;
 use pulp::{Simd, WithSimd};
 
-use crate::block::{ask_for, parts, parts_mut, BLOCK};
+use crate::block::{parts, parts_mut, prefetch, BLOCK};
 use crate::fft::even_plan::{EvenPlan, Kept};
-use crate::fft::lanes::{places, Arithmetic, Parts, C};
+use crate::fft::lanes::{lane_count, Arithmetic, Parts, C};
 use crate::fft::stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of, Row};
 use crate::real::{Complex, Real};
 
@@ -86,7 +86,7 @@ impl<T: Real> WithSimd for Multiply<'_, T> {
     /// One vector of columns after the other: what is worked on stays in the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let vectors = self.columns.min(BLOCK).div_ceil(places::<T, S>());
+        let vectors = self.columns.min(BLOCK).div_ceil(lane_count::<T, S>());
         for vector in 0..vectors {
             let next = if vector + 1 < vectors { (self.block.as_ptr(), vector + 1) } else { (self.next, 0) };
             self.one_vector(simd, vector, next);
@@ -99,7 +99,7 @@ impl<T: Real> Multiply<'_, T> {
     #[inline(always)]
     fn one_vector<S: Simd>(&mut self, simd: S, vector: usize, (next_block, next): (*const Complex<T>, usize)) {
         let Multiply { plan, block, loaded, symbol, memory, .. } = self;
-        let (a, vectors, stages) = (Arithmetic::<T, S>::new(simd), BLOCK / places::<T, S>(), &plan.stages);
+        let (a, vectors, stages) = (Arithmetic::<T, S>::new(simd), BLOCK / lane_count::<T, S>(), &plan.stages);
         let rows = &mut rows_of::<T, S>(memory)[..stages.length()];
         let zero = Parts { re: a.splat(T::zero()), im: a.splat(T::zero()) };
         let (my, values) = (block.len() / BLOCK, T::vectors::<S>(parts(block)));
@@ -119,18 +119,18 @@ impl<T: Real> Multiply<'_, T> {
             #[inline(always)]
             |kept: &Kept, q: usize| symbol[kept.row(q) * vectors + vector],
         );
-        let ask = inlined(
+        let prefetch_part = inlined(
             #[inline(always)]
             |part: usize, count: usize| {
                 let (first, per_part) = (next_block.cast::<T::Vector<S>>().wrapping_add(next), my.div_ceil(count));
                 for row in part * per_part..my.min((part + 1) * per_part) {
                     let at = first.wrapping_add(2 * vectors * row);
-                    ask_for(at, 1);
-                    ask_for(at.wrapping_add(vectors), 1);
+                    prefetch(at, 1);
+                    prefetch(at.wrapping_add(vectors), 1);
                 }
             },
         );
-        between(a, plan, rows, factor, ask);
+        between(a, plan, rows, factor, prefetch_part);
         let values = T::vectors_mut::<S>(parts_mut(block));
         let store = inlined(
             #[inline(always)]
@@ -145,15 +145,15 @@ impl<T: Real> Multiply<'_, T> {
     }
 }
 
-/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`. `ask(part, count)` is
-/// called for each part of what is needed next.
+/// The stages between the first and the last, and the product by `factor(kept rows of a block, value of the block)`. `prefetch_part(part, count)`
+/// is called for each part of what is needed next.
 #[inline(always)]
 fn between<T: Real, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &EvenPlan<T>,
     rows: &mut [Row<T, S>],
     factor: impl Fn(&Kept, usize) -> T::Vector<S>,
-    ask: impl Fn(usize, usize),
+    prefetch_part: impl Fn(usize, usize),
 ) {
     let stages = &plan.stages;
     let (wide, near) = stages.middle.split_at(stages.wide);
@@ -162,27 +162,27 @@ fn between<T: Real, S: Simd>(
     }
     // Then part by part, in the nearest cache.
     let blocks = stages.part / stages.last;
-    let (mut asked, asks) = (0, rows.len() / stages.part * (2 * near.len() + 1));
-    let mut ask_on = inlined(
+    let (mut part, parts) = (0, rows.len() / stages.part * (2 * near.len() + 1));
+    let mut prefetch_next = inlined(
         #[inline(always)]
         || {
-            ask(asked, asks);
-            asked += 1;
+            prefetch_part(part, parts);
+            part += 1;
         },
     );
     for (rows, kept) in rows.chunks_exact_mut(stages.part).zip(plan.kept.chunks_exact(blocks)) {
         for stage in near {
-            ask_on();
+            prefetch_next();
             of_radix!(stage.radix, forward, a, stage, rows);
         }
         let factor = inlined(
             #[inline(always)]
             |b: usize, q: usize| factor(&kept[b], q),
         );
-        ask_on();
+        prefetch_next();
         of_radix!(stages.last, multiply, a, rows, factor);
         for stage in near.iter().rev() {
-            ask_on();
+            prefetch_next();
             of_radix!(stage.radix, backwards, a, stage, rows);
         }
     }

@@ -1,16 +1,16 @@
-//! Between rows in memory and rows in the places of vectors: values, four columns at a time, and bins of real rows
-//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is asked for while the one before is
+//! Between rows in memory and rows in lanes: values, four columns at a time, and bins of real rows
+//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is prefetched while the one before is
 //! worked on.
 
 use pulp::Simd;
 
 use crate::block::{parts, parts_mut, Block, BLOCK};
-use crate::fft::lanes::{places, Arithmetic, Parts};
+use crate::fft::lanes::{lane_count, Arithmetic, Parts};
 use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::{inlined, Row};
 use crate::real::{Complex, Real};
 
-/// Places of the longest vector.
+/// LaneCount of the longest vector.
 const MOST: usize = BLOCK;
 /// Columns that become vectors together.
 const FOUR: usize = 4;
@@ -18,7 +18,7 @@ const FOUR: usize = 4;
 /// Four values of each row, `values(row)`, as four vectors.
 #[inline(always)]
 fn from_rows<T: Real, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
-    let (n, mut rows) = (places::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
     for (r, row) in rows.iter_mut().enumerate().take(n) {
         *row = values(r);
     }
@@ -29,7 +29,7 @@ fn from_rows<T: Real, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> 
 /// Back again, to `write(row, values)`.
 #[inline(always)]
 fn to_rows<T: Real, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
-    let (n, mut rows) = (places::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
     T::vectors_mut::<S>(&mut rows.as_flattened_mut()[..FOUR * n]).copy_from_slice(&T::to_rows(simd, vectors));
     for (r, row) in rows.into_iter().enumerate().take(n) {
         write(r, row);
@@ -92,14 +92,14 @@ pub(crate) fn store_bins<T: Real, S: Simd>(
             let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
             let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
             // -i w (difference.re + i sum.im)
-            let turned = a.turn(Parts { re: sum.im, im: difference.re }, conjugate(twiddles[k]));
+            let turned = a.twiddle(Parts { re: sum.im, im: difference.re }, conjugate(twiddles[k]));
             let mean = a.scale(Parts { re: sum.re, im: difference.im }, half);
             Parts { re: a.add_real(mean.re, turned.re), im: a.sub_real(mean.im, turned.im) }
         },
     );
     for block in 0..plan.blocks() {
         for at in 0..PER_BLOCK {
-            bins.ask_for(block + 1, (at, PER_BLOCK));
+            bins.prefetch(block + 1, (at, PER_BLOCK));
             let fours = pulp::as_arrays_mut::<FOUR, _>(parts_mut(bins.row_mut(block))).0;
             let (mut re, mut im) = ([zero; FOUR], [zero; FOUR]);
             for i in 0..FOUR {
@@ -161,18 +161,18 @@ pub(crate) fn load_bins<T: Real, S: Simd>(
     for k in 0..=h / 2 {
         let m = h - k;
         if k % FOUR == 0 {
-            bins.ask_for(k / BLOCK + 1, (k / FOUR % PER_BLOCK, PER_BLOCK));
+            bins.prefetch(k / BLOCK + 1, (k / FOUR % PER_BLOCK, PER_BLOCK));
             front = four(k / FOUR);
         }
         if m % FOUR == FOUR - 1 {
-            bins.ask_for((m / BLOCK).wrapping_sub(1), (m / FOUR % PER_BLOCK, PER_BLOCK));
+            bins.prefetch((m / BLOCK).wrapping_sub(1), (m / FOUR % PER_BLOCK, PER_BLOCK));
             behind = four(m / FOUR);
         }
         let ([re, im], [mirrored_re, mirrored_im]) = (front[k % FOUR], behind[m % FOUR]);
         let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
         let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
         // w* (difference.re + i sum.im), of which i times is added to Z_k; for Z_(h-k) w is -w*.
-        let turned = a.turn(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
+        let turned = a.twiddle(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
         let turned = a.add(turned, turned);
         z[row_of[k]] = [a.add_real(turned.re, difference.im), a.sub_real(sum.re, turned.im)];
         z[row_of[m]] = [a.sub_real(turned.re, difference.im), a.add_real(sum.re, turned.im)];

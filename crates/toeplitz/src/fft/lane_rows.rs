@@ -17,7 +17,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::block::{Block, BLOCK};
 use crate::fft::lane_passes::{load, load_bins, store, store_bins};
-use crate::fft::lanes::{places, Arithmetic};
+use crate::fft::lanes::{lane_count, Arithmetic};
 use crate::fft::row_plan::RowPlan;
 use crate::fft::stage_plan::Stages;
 use crate::fft::stages::{backwards, before_a_line, end, forward, of_radix, rows_of};
@@ -27,7 +27,7 @@ use crate::real::{Complex, Real};
 pub(crate) struct LaneRows<T: Real> {
     plan: Arc<RowPlan<T>>,
     arch: pulp::Arch,
-    places: usize,
+    lanes: usize,
 }
 
 impl<T: Real> LaneRows<T> {
@@ -38,8 +38,8 @@ impl<T: Real> LaneRows<T> {
 
     /// With the vectors of these instructions; no bit depends on them.
     pub(crate) fn on(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
-        let Some(places) = arch.dispatch(Places::<T>(std::marker::PhantomData)) else { return Ok(None) };
-        Ok(RowPlan::shared(n)?.map(|plan| LaneRows { plan, arch, places }))
+        let Some(lanes) = arch.dispatch(LaneCount::<T>(std::marker::PhantomData)) else { return Ok(None) };
+        Ok(RowPlan::shared(n)?.map(|plan| LaneRows { plan, arch, lanes }))
     }
 
     /// Number of complex bins.
@@ -54,12 +54,12 @@ impl<T: Real> LaneRows<T> {
 
     /// Rows that are transformed together.
     pub fn at_a_time(&self) -> usize {
-        self.places
+        self.lanes
     }
 
     /// Complex numbers that both directions need.
     pub fn scratch_length(&self) -> usize {
-        self.plan.length() * self.places + before_a_line::<T>()
+        self.plan.length() * self.lanes + before_a_line::<T>()
     }
 
     /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][part][bin]`, which have room for all of
@@ -76,19 +76,19 @@ impl<T: Real> LaneRows<T> {
     }
 
     fn fits(&self, bins: &Block<'_, T>) -> bool {
-        bins.rows() == self.blocks() && bins.columns() == self.places * BLOCK
+        bins.rows() == self.blocks() && bins.columns() == self.lanes * BLOCK
     }
 }
 
-/// Places of this machine's vectors; the same answer for no vectors in either precision.
-struct Places<T>(std::marker::PhantomData<T>);
+/// LaneCount of this machine's vectors; the same answer for no vectors in either precision.
+struct LaneCount<T>(std::marker::PhantomData<T>);
 
-impl<T: Real> WithSimd for Places<T> {
+impl<T: Real> WithSimd for LaneCount<T> {
     type Output = Option<usize>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        (S::F64_LANES > 1 && S::F32_LANES <= BLOCK).then(places::<T, S>)
+        (S::F64_LANES > 1 && S::F32_LANES <= BLOCK).then(lane_count::<T, S>)
     }
 }
 

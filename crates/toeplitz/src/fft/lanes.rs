@@ -17,15 +17,15 @@ pub trait Lanes: Copy {
     fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>];
     /// The same, to be written.
     fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>];
-    /// One value in all places.
+    /// one value in all lanes.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// a + b.
     fn add<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
     /// a - b.
     fn sub<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// a b, place by place.
+    /// a b, lane by lane.
     fn mul<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// Four values of each of some rows, which stand one after the other, to four vectors of one value of each row, in an order of places that
+    /// Four values of each of some rows, which stand one after the other, to four vectors of one value of each row, in an order of lanes that
     /// suits the machine.
     fn from_rows<S: Simd>(simd: S, rows: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
     /// Back again.
@@ -99,7 +99,7 @@ lanes!(
 
 /// Values in a vector.
 #[inline(always)]
-pub fn places<T: Lanes, S: Simd>() -> usize {
+pub fn lane_count<T: Lanes, S: Simd>() -> usize {
     size_of::<T::Vector<S>>() / size_of::<T>()
 }
 
@@ -146,7 +146,7 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
         Parts { re: T::sub(self.simd, a.re, b.im), im: T::add(self.simd, a.im, b.re) }
     }
 
-    /// Times real numbers, place by place.
+    /// Times real numbers, lane by lane.
     #[inline(always)]
     pub fn scale(self, a: C<T, S>, by: T::Vector<S>) -> C<T, S> {
         Parts { re: T::mul(self.simd, a.re, by), im: T::mul(self.simd, a.im, by) }
@@ -154,7 +154,7 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
 
     /// Times one complex number.
     #[inline(always)]
-    pub fn turn(self, a: C<T, S>, w: Complex<T>) -> C<T, S> {
+    pub fn twiddle(self, a: C<T, S>, w: Complex<T>) -> C<T, S> {
         let (re, im) = (T::splat(self.simd, w.re), T::splat(self.simd, w.im));
         let product = |x, y| T::mul(self.simd, x, y);
         Parts {
@@ -175,7 +175,7 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
         T::sub(self.simd, a, b)
     }
 
-    /// One real number in all places.
+    /// One real number in all lanes.
     #[inline(always)]
     pub fn splat(self, value: T) -> T::Vector<S> {
         T::splat(self.simd, value)

@@ -19,7 +19,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::block::parts_mut;
 use crate::fft::butterflies::butterfly;
-use crate::fft::lanes::{places, Arithmetic, Lanes, Parts, C};
+use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::lengths::LONGEST;
 use crate::real::{Complex, Real};
 
@@ -59,7 +59,7 @@ pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
 #[inline(always)]
 pub(crate) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
     let values = parts_mut(from_a_line(memory));
-    let whole = values.len() - values.len() % places::<T, S>();
+    let whole = values.len() - values.len() % lane_count::<T, S>();
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
@@ -139,7 +139,7 @@ pub(crate) fn first<T: Real, S: Simd, const R: usize>(
         butterfly::<T, S, R>(a, &mut x);
         put::<T, S>(&mut rows[0][j], x[0]);
         for q in 1..R {
-            put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
+            put::<T, S>(&mut rows[q][j], a.twiddle(x[q], w[q - 1]));
         }
     }
 }
@@ -159,7 +159,7 @@ pub(crate) fn forward<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, sta
             butterfly::<T, S, R>(a, &mut x);
             put::<T, S>(&mut rows[0][j], x[0]);
             for q in 1..R {
-                put::<T, S>(&mut rows[q][j], a.turn(x[q], w[q - 1]));
+                put::<T, S>(&mut rows[q][j], a.twiddle(x[q], w[q - 1]));
             }
         }
     }
@@ -218,7 +218,7 @@ pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
             let w = &stage.twiddles[j * (R - 1)..][..R - 1];
             let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
             for q in 1..R {
-                x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+                x[q] = a.twiddle(get::<T, S>(&rows[q][j]), w[q - 1]);
             }
             butterfly::<T, S, R>(a, &mut x);
             for k in 0..R {
@@ -242,7 +242,7 @@ pub(crate) fn last<T: Real, S: Simd, const R: usize>(
         let w = &stage.twiddles[j * (R - 1)..][..R - 1];
         let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
         for q in 1..R {
-            x[q] = a.turn(get::<T, S>(&rows[q][j]), w[q - 1]);
+            x[q] = a.twiddle(get::<T, S>(&rows[q][j]), w[q - 1]);
         }
         butterfly::<T, S, R>(a, &mut x);
         for k in 0..R {

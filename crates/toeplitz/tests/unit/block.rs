@@ -52,11 +52,11 @@ fn all_columns_are_each_in_one_mirrored_block() {
 #[test]
 fn what_is_asked_for_need_not_be_there() {
     let mut matrix = zeros(32);
-    ask_for(std::ptr::null::<f64>(), 100);
-    ask_for(matrix.as_ptr().wrapping_add(usize::MAX / 64), 7);
+    prefetch(std::ptr::null::<f64>(), 100);
+    prefetch(matrix.as_ptr().wrapping_add(usize::MAX / 64), 7);
     let block = Block::of(&mut matrix, 32);
     for row in [0, ROWS - 1, ROWS, usize::MAX] {
-        block.ask_for(row, (3, 4));
+        block.prefetch(row, (3, 4));
     }
     assert_eq!(matrix, zeros(32));
 }

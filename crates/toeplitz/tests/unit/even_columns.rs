@@ -1,4 +1,4 @@
-//! Columns in the places of vectors, by another implementation's transforms, rustfft's.
+//! Columns in lanes, by another implementation's transforms, rustfft's.
 
 use super::*;
 use crate::fft::any_length::ColumnTransform;
@@ -61,7 +61,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
 const LENGTHS: [usize; 18] = [6, 8, 9, 10, 15, 16, 20, 25, 27, 32, 48, 50, 60, 120, 450, 1024, 2160, 4096];
 
 #[test]
-fn columns_in_the_places_of_vectors_have_the_product_of_each() {
+fn columns_in_lanes_have_the_product_of_each() {
     for length in LENGTHS {
         for width in [1, 7, 8, 11, 16, 24, 40, 47] {
             for (my, loaded) in

@@ -1,4 +1,4 @@
-//! Rows in the places of vectors, by another implementation's transforms, realfft's.
+//! Rows in lanes, by another implementation's transforms, realfft's.
 
 use super::*;
 use crate::block::{blocks_of, parts};
@@ -39,7 +39,7 @@ fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
 }
 
 #[test]
-fn rows_in_the_places_of_vectors_have_the_bins_of_each() {
+fn rows_in_lanes_have_the_bins_of_each() {
     if LaneRows::<f64>::new(32).unwrap().is_none() {
         // Without vectors rows go by themselves, as tests/unit/row_transform.rs checks.
         return assert!(LaneRows::<f32>::new(32).unwrap().is_none());

@@ -1,4 +1,4 @@
-//! The spectrum of even coefficients by rows and columns in the places of vectors, by that of rows and columns one by one.
+//! The spectrum of even coefficients by rows and columns in lanes, by that of rows and columns one by one.
 
 use super::*;
 use crate::fft::even_columns::EvenColumns;
