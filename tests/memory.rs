@@ -75,8 +75,8 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     assert_eq!(status, CONTACT_NORMAL_OK);
     (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
     let with_table = contact_normal_scene { influence: &influence, ..scene };
-    // Few rows: else the tables would be gigabytes.
-    let my = 20;
+    // Few rows: else the tables would be gigabytes. But not so few that the plans of rows are large: the FFT crate cannot refuse.
+    let my = 32;
     let mx = m * m / my;
     let mut values = vec![0.0; my * my * 2 * mx];
     for (k, row) in values.chunks_exact_mut(2 * mx).enumerate() {

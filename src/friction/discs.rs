@@ -90,7 +90,7 @@ impl<T: Real> Discs<T> {
         Sums { rest, displaced, deferred: 0.0, moved: 0.0 }
     }
 
-    /// z, the preconditioned projected: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
+    /// z, the preconditioned residual: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
     pub fn precondition(&mut self, problem: &mut Problem) -> f64 {
         let (operators, given, answer) = (&mut problem.operators, &self.given, &mut self.answer);
         let compliance = operators.relative_compliance();
@@ -120,7 +120,7 @@ impl<T: Real> Discs<T> {
         along
     }
 
-    /// The direction t, its chord at the length f, and what is multiplied: the chord with the deferred.
+    /// The direction t, its chord at the length f, and what is multiplied: the chord with the deferred corrections.
     pub fn choose_direction(&mut self, problem: &Problem, (beta, f): (f64, f64)) {
         let Discs { bound, q, normal, way, given, .. } = self;
         let Way { z, direction, chord, deferred, .. } = way;
@@ -140,7 +140,7 @@ impl<T: Real> Discs<T> {
         });
     }
 
-    /// Multiplies; returns `t.(A + D) t` and `t` times the projected, of the chord where C sticks.
+    /// Multiplies; returns `t.(A + D) t` and `t` times the projected residual, of the chord where C sticks.
     pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
         problem.operators.multiply_plain(&self.given, &mut self.answer);
         let Discs { normal, curvature, projected, way, answer, .. } = self;

@@ -7,6 +7,7 @@ use super::vectors;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::memory::sparse;
 use crate::sums::in_blocks;
 
 /// Forces that are given.
@@ -64,7 +65,7 @@ impl Forces {
         let wanted = forces.sum[0].hypot(forces.sum[1]);
         let along = if wanted > 0.0 { forces.sum.map(|sum| sum / wanted) } else { [1.0, 0.0] };
         let greatest = match friction.weights {
-            Some(weights) if forces.given == [true; 2] && wanted > 0.0 => reach(weights, along, grid.len(), &bound),
+            Some(weights) if forces.given == [true; 2] && wanted > 0.0 => reach(weights, along, grid.len(), &bound)?,
             _ => {
                 let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));
                 in_blocks((0..grid.len()).map(|i| share(i) * bound(i)))
@@ -120,24 +121,29 @@ impl Forces {
 /// ```
 ///
 /// h is convex: its slope along c rises from below 0 to above it, and where it is 0 is found by halving.
-fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> f64 {
+fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> Result<f64> {
+    // g W of each element of C: the passes go over these only.
+    let of = (0..n).map(|i| (i, bound(i))).filter(|(_, g)| *g > 0.0).map(|(i, g)| [g * x[i], g * y[i]]);
+    let mut scaled: Vec<Vector> = sparse((0..n).filter(|i| bound(*i) > 0.0).count(), "the bounds of forces")?;
+    scaled.extend(of);
     let direction = |c: f64| [along - c * aside, aside + c * along];
-    let length = |i: usize, d: Vector| (x[i] * d[0]).hypot(y[i] * d[1]);
-    let h = |c: f64| in_blocks((0..n).map(|i| bound(i) * length(i, direction(c))));
+    let length = |[x, y]: Vector, d: Vector| (x * d[0]).hypot(y * d[1]);
+    let sum = |of: &dyn Fn(Vector) -> f64| in_blocks(scaled.iter().map(|gw| of(*gw)));
+    let h = |c: f64| sum(&|gw| length(gw, direction(c)));
     let slope = |c: f64| {
         let d = direction(c);
-        in_blocks((0..n).map(|i| {
-            let length = length(i, d);
-            let turned = -x[i] * x[i] * d[0] * aside + y[i] * y[i] * d[1] * along;
+        sum(&|[x, y]| {
+            let length = length([x, y], d);
+            let turned = -x * x * d[0] * aside + y * y * d[1] * along;
             if length > 0.0 {
-                bound(i) * turned / length
+                turned / length
             } else {
                 0.0
             }
-        }))
+        })
     };
     // h(c) >= |c| h(n) - h(t), which is above h(0) from here on.
-    let across = in_blocks((0..n).map(|i| bound(i) * length(i, [-aside, along])));
+    let across = sum(&|gw| length(gw, [-aside, along]));
     let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
     let (mut low, mut high) = (-most, most);
     for _ in 0..HALVINGS {
@@ -148,7 +154,7 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
             low = middle;
         }
     }
-    h(0.0).min(h(low)).min(h(high))
+    Ok(h(0.0).min(h(low)).min(h(high)))
 }
 
 /// The sum of a field that is 0 outside C, times the weights of creepages.

@@ -6,7 +6,9 @@
 //! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
-//! | `tables` | coefficients of the caller's own |
+//! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
+//! | `excess` | a layer between the bodies that differs between elements |
+//! | `vectors`, `beside` | passes over fields, residuals continued beside C |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `fgmres`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |

@@ -21,7 +21,7 @@ const WORK: usize = 4;
 pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
-    /// None: single precision serves for all, on a coarser grid; or there are none yet.
+    /// None: single precision serves for all, on a coarser grid; or there are tables per loaded row.
     exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
     fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
     inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
@@ -43,8 +43,8 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// None yet, of a shift: there are no products.
-    pub fn none(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Operators {
+    /// Of a shift, without products.
+    fn none(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Operators {
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         Operators {
             tangential: tangential.clone(),

@@ -79,7 +79,7 @@ impl Solver {
         let foreman = &*self;
         let take = |worker: &mut Option<Solver>| {
             if worker.is_none() {
-                // Where this fails the other workers do its share.
+                // Where this fails the workers that have begun do its share.
                 match foreman.worker() {
                     Ok(new) => *worker = Some(new),
                     Err(error) => *refusal.lock().unwrap_or_else(PoisonError::into_inner) = Some(error),

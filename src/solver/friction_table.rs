@@ -110,6 +110,7 @@ impl<'a> Table<'a> {
         mut progress: Option<ProgressCallback<'_>>,
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
     ) -> Result<(Outcome, f64)> {
+        let began = std::time::Instant::now();
         self.done.cancelled.store(stop == Outcome::Cancelled, Ordering::Relaxed);
         let runs = self.entries.len().div_ceil(RUN);
         let workers = threads.count().min(runs).max(1);
@@ -117,7 +118,6 @@ impl<'a> Table<'a> {
         let missing = (crew.len()..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
         let missing = collected(missing, "the workers of a table")?;
         crew.extend(missing.into_iter().collect::<Result<Vec<_>>>()?);
-        let began = std::time::Instant::now();
         let mut told = |residual: f64| {
             let Some(progress) = &mut progress else { return };
             let cycles = self.done.entries.load(Ordering::Relaxed) as u64;

@@ -44,7 +44,8 @@ impl Solver {
     /// Refuses tangential coefficients that this solver cannot use.
     pub fn check_tangential_influence(&self, friction: &Friction<'_>) -> Result<()> {
         let Some(given) = &friction.influence else {
-            return invalid("friction->influence is not given: there is nothing to set".into());
+            let name = self.own_tables.as_ref().map_or("friction->influence", |own| own.view().name());
+            return invalid(format!("{name} is not given: there is nothing to set"));
         };
         if self.own_tables.as_ref().is_none_or(|own| own.view().by_row != given.by_row) {
             return invalid(format!("{} is given, but this solver was set up without", given.name()));

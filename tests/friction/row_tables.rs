@@ -179,9 +179,10 @@ fn a_single_row_and_a_single_column_are_solved() {
 
 #[test]
 fn threads_change_no_bit() {
-    let grid = Grid::new(40, 31, 1.0, 0.8).unwrap();
+    // Four times the elements of the box around C are more than 110 x 110: below that no product is shared.
+    let grid = Grid::new(80, 52, 1.0, 0.8).unwrap();
     let tables = tables(&grid, &uneven);
-    let pressure = ellipse(&grid, (19.0, 14.0), (17.0, 12.0));
+    let pressure = ellipse(&grid, (39.0, 25.0), (38.0, 24.0));
     let solved = |threads: &Threads, friction: &Friction<'_>| {
         let tangential = Tangential::of_tables(grid.dx, grid.dy, &influence(&grid, &tables)).unwrap();
         let mut solver = Solver::new(grid, tangential, true, threads);

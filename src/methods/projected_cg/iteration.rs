@@ -13,8 +13,8 @@
 //!
 //! z and t have mean zero over C, so directions carry no force. Where elements are held back, t is lowered until its sum is 0 again. Only the error
 //! of the forecast is truncated then; with a prescribed force p is scaled to carry the force again. With a prescribed approach p is
-//! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `known`), or along a deflation
-//! direction where few elements carry much of the force (module `deflation`).
+//! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `along`), or along a deflation
+//! direction where few elements carry much of the force (module `uniform`).
 //!
 //! Why t is lowered: scaling p by one part in a hundred changes u by as much, and the depth of a spike may be a thousand times the roughness of all
 //! other elements. Held back and not lowered, directions carry force, which scaling takes from the spike: C goes and comes back for ever. Measured on

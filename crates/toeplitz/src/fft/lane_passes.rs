@@ -10,7 +10,7 @@ use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::{inlined, Row};
 use crate::real::{Complex, Real};
 
-/// LaneCount of the longest vector.
+/// Lanes of the longest vector.
 const MOST: usize = BLOCK;
 /// Columns that become vectors together.
 const FOUR: usize = 4;

@@ -80,7 +80,7 @@ impl<T: Real> LaneRows<T> {
     }
 }
 
-/// LaneCount of this machine's vectors; the same answer for no vectors in either precision.
+/// Lanes of this machine's vectors; the same answer for no vectors in either precision.
 struct LaneCount<T>(std::marker::PhantomData<T>);
 
 impl<T: Real> WithSimd for LaneCount<T> {

@@ -1,6 +1,13 @@
-//! Plans are shared, and the least recently used go. The tests share one list: each uses a type of its own.
+//! Plans are shared, and the least recently used go. The tests share one list: each uses a type of its own, and one runs at a time.
+
+use std::sync::{MutexGuard, PoisonError};
 
 use super::*;
+
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A plan of so many bytes.
 struct Own<const KIND: usize>(usize);
@@ -13,6 +20,7 @@ impl<const KIND: usize> Plan for Own<KIND> {
 
 #[test]
 fn a_plan_serves_again_on_any_thread() {
+    let _alone = alone();
     let first = shared(7, || Ok(Own::<0>(1))).unwrap();
     let again =
         std::thread::spawn(|| shared(7, || -> Result<Own<0>> { panic!("it is known") }).unwrap()).join().unwrap();
@@ -23,6 +31,7 @@ fn a_plan_serves_again_on_any_thread() {
 
 #[test]
 fn plans_beyond_the_bound_are_forgotten() {
+    let _alone = alone();
     let most = MOST_KEPT;
     let made = |length: usize| shared(length, || Ok(Own::<1>(most / 4))).unwrap();
     let kept = made(0);
@@ -38,6 +47,7 @@ fn plans_beyond_the_bound_are_forgotten() {
 
 #[test]
 fn a_plan_that_cannot_be_made_is_not_known() {
+    let _alone = alone();
     let refuse = || Err(par::OutOfMemory("no memory".into()));
     assert!(shared::<Own<2>>(3, refuse).is_err());
     assert_eq!(shared(3, || Ok(Own::<2>(5))).unwrap().0, 5);
