@@ -54,12 +54,14 @@ impl<T: Real> Plan for ColumnTransform<T> {
 impl<T: Real> ColumnTransform<T> {
     /// Plans for columns of length `n`. The FFT crate cannot refuse where there is no memory: room for its plans is asked for before.
     pub fn new(n: usize) -> Result<ColumnTransform<T>> {
-        let plan = || {
-            drop(sparse::<Complex<T>>(room(n), PLAN)?);
-            let mut planner = FftPlanner::new();
-            Ok(ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) })
-        };
-        Ok((*shared(n, plan)?).clone())
+        Ok((*shared(n, || ColumnTransform::planned(n))?).clone())
+    }
+
+    /// A plan that nobody has made before.
+    fn planned(n: usize) -> Result<ColumnTransform<T>> {
+        drop(sparse::<Complex<T>>(room(n), PLAN)?);
+        let mut planner = FftPlanner::new();
+        Ok(ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) })
     }
 
     /// Length of a column.

@@ -5,10 +5,10 @@ use super::*;
 /// The transform of some values on a thread of its own, which has planned other lengths before.
 fn transformed<T: Real>(n: usize, before: &'static [usize]) -> Vec<Complex<T>> {
     let transform = move || {
-        before.iter().for_each(|&length| drop(ColumnTransform::<T>::new(length)));
+        before.iter().for_each(|&length| drop(ColumnTransform::<T>::planned(length)));
         let values = (0..n).map(|k| Complex::new(T::of((k as f64).sin()), T::of((2.7 * k as f64).cos())));
         let mut values: Vec<_> = values.collect();
-        let transform = ColumnTransform::<T>::new(n).unwrap();
+        let transform = ColumnTransform::<T>::planned(n).unwrap();
         transform.forward(&mut values, &mut transform.scratch().unwrap());
         values
     };
