@@ -8,8 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Less is no loss, beside a sixteenth of the work: a thread that is interrupted by the system comes back sooner, and one that waits for a core
-/// does not.
+/// Less is no loss: a thread that is interrupted by the system comes back sooner, and one that waits for a core does not.
 pub(super) const LOSS: Duration = Duration::from_micros(500);
 
 /// How long the caller works alone after a loss, in nanoseconds: first, and at most. A try loses one turn of the scheduler, some 3 ms.
@@ -50,30 +49,10 @@ impl Busy {
     }
 }
 
-/// What some work took, on the clock and of the processor.
-pub(super) struct Stopwatch {
-    began: Instant,
-    time: Option<Duration>,
-}
-
-impl Stopwatch {
-    /// From here on.
-    pub fn start() -> Stopwatch {
-        Stopwatch { began: Instant::now(), time: time_of_this_thread() }
-    }
-
-    /// Whether this thread stood still for a part of the time since.
-    pub fn stood_still(&self) -> bool {
-        let took = self.began.elapsed();
-        let worked = self.time.zip(time_of_this_thread()).map_or(took, |(before, now)| now.saturating_sub(before));
-        took.saturating_sub(worked) > LOSS + took / 16
-    }
-}
-
 /// The processor's time of this thread.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]
-fn time_of_this_thread() -> Option<Duration> {
+pub(super) fn time_of_this_thread() -> Option<Duration> {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: it writes one value, which is there.
     let status = unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
@@ -82,7 +61,7 @@ fn time_of_this_thread() -> Option<Duration> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn time_of_this_thread() -> Option<Duration> {
+pub(super) fn time_of_this_thread() -> Option<Duration> {
     None
 }
 

@@ -102,9 +102,12 @@ impl Threads {
             }
         };
         pool.share(others, from_behind, || {
+            let mut count = 0;
             while let Some(piece) = front() {
                 work(piece, own);
+                count += 1;
             }
+            count
         });
     }
 

@@ -3,11 +3,11 @@
 //! It is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are
 //! not there; so does an operator that was set up before the fork. The child touches no lock of its parent, which another thread may have held.
 
-use std::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
+use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::Instant;
 
-use super::busy::{Stopwatch, LOSS};
+use super::busy::{time_of_this_thread, LOSS};
 use super::crew::Crew;
 use crate::error::Result;
 
@@ -88,24 +88,17 @@ impl Pool {
         self.waiting(items, work, own).0
     }
 
-    /// The same with small pieces of work: notes whether time was lost by it, because a thread stood still meanwhile.
-    pub fn share<A: Send>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce()) {
-        let worker_stood = AtomicBool::new(false);
-        let timed = |item: &mut A| {
-            let watch = Stopwatch::start();
-            work(item);
-            if watch.stood_still() {
-                worker_stood.store(true, Ordering::Relaxed);
-            }
+    /// The same with small pieces of work, of which `own` returns how many it did: notes whether time was lost by it.
+    pub fn share<A: Send>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce() -> u32) {
+        let (began, time) = (Instant::now(), time_of_this_thread());
+        let timed = || {
+            let pieces = own();
+            (pieces, began.elapsed(), time_of_this_thread())
         };
-        let own = || {
-            let watch = Stopwatch::start();
-            own();
-            watch.stood_still()
-        };
-        let (stood, waited) = self.waiting(items, timed, own);
-        // A worker that nobody waited for lost nothing.
-        let is_lost = stood || (waited > LOSS && worker_stood.into_inner());
+        let ((pieces, took, time_then), waited) = self.waiting(items, work, timed);
+        let worked = time.zip(time_then).map_or(took, |(before, then)| then.saturating_sub(before));
+        // A worker's last piece takes as long as one of the caller's, or twice as long.
+        let is_lost = took.saturating_sub(worked) > LOSS || waited > 2 * took / pieces.max(1) + LOSS;
         let busy = &self.crew.busy;
         busy.note(busy.now(), is_lost);
     }
@@ -115,7 +108,7 @@ impl Pool {
         items: &mut [A],
         work: impl Fn(&mut A) + Sync,
         own: impl FnOnce() -> R,
-    ) -> (R, Duration) {
+    ) -> (R, std::time::Duration) {
         let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();
         let of_seat = |seat: usize| {
             let item = items[seat].lock().unwrap_or_else(PoisonError::into_inner).take();
