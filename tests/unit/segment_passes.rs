@@ -5,7 +5,7 @@ use super::super::passes::{Changes, Sum};
 use super::*;
 use crate::contact::{AdmissibleSet, Fixed, NonNegative};
 use crate::methods::projected_cg::formulas::*;
-use crate::methods::projected_cg::sums::Update;
+use crate::methods::projected_cg::step_sums::Update;
 use crate::scene::PressureLimit;
 
 /// Some contact area, and values that differ.

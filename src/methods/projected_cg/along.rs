@@ -11,7 +11,7 @@ use super::deflation::{Deflation, Last};
 use super::deflation_passes::{Change, Restrict, Subtract};
 use super::formulas::{Moved, Residual, StepSums};
 use super::scaling::Scaling;
-use super::sums::Step;
+use super::step_sums::Step;
 use super::vectors::Iteration;
 use super::Window;
 use crate::contact::State;

@@ -12,7 +12,7 @@
 //! ```
 
 use super::formulas::WorkAndEnergy;
-use super::sums::Update;
+use super::step_sums::Update;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;

@@ -1,7 +1,7 @@
 //! Steps (4.1) and (4.2) within the iteration: who leaves C with p, and who enters it with u.
 
 use super::formulas::{Entering, Leaving, Moved, MovedU};
-use super::sums::Update;
+use super::step_sums::Update;
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, State};
 use crate::operator::fft::Real;
@@ -39,6 +39,12 @@ impl<T: Real> Iteration<T> {
             true
         });
         (truncation.count() - before) as u64
+    }
+
+    /// z = A d: a product corrects all of u.
+    pub(super) fn correct_now(&mut self) {
+        self.truncation.take(&mut self.z);
+        self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 
     /// u = factor (u + alpha q + gamma w + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer

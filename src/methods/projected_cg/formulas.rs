@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
-use super::sums::Update;
+use super::step_sums::Update;
 use crate::contact::AdmissibleSet;
 
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.

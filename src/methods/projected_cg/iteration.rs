@@ -42,7 +42,7 @@
 //! p, so that directions of single precision lead to a solution of double precision.
 
 use super::search::{Search, FIRST_FORECAST};
-use super::sums::{Step, Update};
+use super::step_sums::{Step, Update};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
@@ -200,7 +200,7 @@ impl<T: Real> Iteration<T> {
         self.direct(state, search.tq, held_back);
         held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);
-        self.include_correction(forecast);
+        self.truncation.include(&mut self.t, forecast);
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
@@ -216,7 +216,7 @@ impl<T: Real> Iteration<T> {
             self.deflation.forget();
             self.remember(state);
         }
-        self.exclude_correction(state, forecast, alpha, &mut step);
+        self.truncation.exclude((&mut self.t, &self.q), state, (forecast, alpha), &mut step);
         let included = self.truncation.count();
 
         // p = p + alpha t + gamma d, 4.1

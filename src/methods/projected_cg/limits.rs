@@ -23,7 +23,7 @@
 use super::formulas::Carried;
 use super::formulas::HELD_BACK;
 use super::passes::none;
-use super::sums::Update;
+use super::step_sums::Update;
 use super::vectors::{Beyond, Iteration};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;

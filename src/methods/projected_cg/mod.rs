@@ -3,7 +3,6 @@
 
 mod along;
 mod coarse_grids;
-mod correction;
 mod deflation;
 mod deflation_passes;
 mod energy;
@@ -21,7 +20,7 @@ mod scaling;
 mod search;
 mod segments;
 mod step;
-mod sums;
+mod step_sums;
 mod truncation;
 mod uniform;
 mod vectors;

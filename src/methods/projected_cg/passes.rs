@@ -1,7 +1,7 @@
 //! The passes over the contact area, each over its segments; what they compute is in `formulas`.
 
 use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepSums};
-use super::sums::{Energy, Step, Update};
+use super::step_sums::{Energy, Step, Update};
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;

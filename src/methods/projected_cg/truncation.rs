@@ -7,13 +7,16 @@
 //!   alpha differs from alpha', the rest `d (1 - alpha/alpha')` stays to be corrected. It shrinks by that factor at each iteration; the fresh product of
 //!   the certificate corrects what is left of it at the end.
 
+use super::step_sums::Step;
+use crate::contact::State;
 use crate::error::Result;
 use crate::memory::{keep, reserve};
+use crate::operator::fft::Real;
 
 /// Truncated elements, and the d of each: u still lacks `A d`.
 #[derive(Default)]
 pub(super) struct Truncation {
-    pub(super) gains: Vec<(usize, f64)>,
+    gains: Vec<(usize, f64)>,
 }
 
 impl Truncation {
@@ -68,5 +71,40 @@ impl Truncation {
     /// For later iterations.
     pub(super) fn keep(&mut self) {
         keep([&mut self.gains]);
+    }
+
+    /// The direction t contains the deferred correction: t + d/alpha'.
+    pub(super) fn include<T: Real>(&self, t: &mut [T], forecast: f64) {
+        for &(i, d) in &self.gains {
+            t[i] += T::of(d / forecast);
+        }
+    }
+
+    /// After the product q = A t: t without the correction, and what alpha leaves of it.
+    pub(super) fn exclude<T: Real>(
+        &mut self,
+        (t, q): (&mut [T], &[T]),
+        state: &State,
+        (forecast, alpha): (f64, f64),
+        step: &mut Step,
+    ) {
+        for gain in &mut self.gains {
+            let (i, included) = (gain.0, T::of(gain.1 / forecast));
+            t[i] = if state.contact[i] { t[i] - included } else { T::zero() };
+            if let Some(energy) = step.energy.as_mut().filter(|_| state.contact[i]) {
+                let depth = state.approach - state.h[i];
+                energy.leave_out(included.to_double(), (depth, state.u[i], q[i].to_double()));
+            }
+            gain.1 *= 1.0 - alpha / forecast;
+        }
+        self.gains.retain(|gain| gain.1 != 0.0);
+    }
+
+    /// z = d, and nothing is to be corrected.
+    pub(super) fn take<T: Real>(&mut self, z: &mut [T]) {
+        z.fill(T::zero());
+        for (i, d) in self.gains.drain(..) {
+            z[i] += T::of(d);
+        }
     }
 }
