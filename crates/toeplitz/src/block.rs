@@ -12,7 +12,8 @@ pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
 const TILE: usize = 8;
 
-/// Columns of so many values stand apart by [`GAP`] more: at a distance of a power of two they would share few lines of the nearest cache.
+/// A column of this many values or more has a gap of [`GAP`] behind it. Without one columns would be a power of two apart, and would share few lines
+/// of the nearest cache.
 const LONG: usize = 512;
 const GAP: usize = 8;
 

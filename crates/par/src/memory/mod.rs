@@ -1,8 +1,8 @@
 //! Large arrays: asked for, so that a lack of memory is an error and not the end of the process; and kept.
 //!
 //! *Kept.* A page that the system gives is cleared and entered first, which takes as long as several passes over it: a tenth to a fifth of
-//! a whole call. So the arrays of a solver that is gone serve the next one, of up to so many bytes in the process ([`keep_at_most`]); what is more than
-//! that goes back to the system, the longest kept first. [`release`] gives all of it back. Any thread may keep and take. A process
+//! a whole call. So the next solver takes the arrays of one that is gone. The process keeps a number of bytes ([`keep_at_most`]); beyond it the array that was
+//! kept longest goes back to the system. [`release`] gives all of them back. Any thread may keep and take. A process
 //! forked while another thread did keeps nothing of its own: nobody waits for the lock.
 //!
 //! *At rest.* The arrays of one solve are not all needed at the same time. A large one that nobody needs for a while [rests](rest): its
@@ -144,7 +144,7 @@ pub fn rests(n: usize) -> bool {
     n >= RESTING.load(Ordering::Relaxed)
 }
 
-/// Lets arrays of so many values rest, and of more. No result depends on it.
+/// Arrays of n values and more may rest from here on. No result depends on it.
 pub fn rest_from(n: usize) {
     RESTING.store(n, Ordering::Relaxed);
 }

@@ -59,7 +59,7 @@ impl Crew {
         lock(&self.lent).iter().map(|lent| lent.current_num_threads()).sum()
     }
 
-    /// Makes them so many, if they are fewer.
+    /// Starts the workers that are missing to this number.
     pub fn grow_to(&self, workers: usize) -> Result<()> {
         let mut lent = lock(&self.lent);
         let known = lent.iter().map(|lent| lent.current_num_threads()).sum::<usize>();
@@ -75,8 +75,8 @@ impl Crew {
         Ok(())
     }
 
-    /// Calls `work(seat)` for seats 0 .. of up to so many workers that are free, and meanwhile `own` on the calling thread. A seat that nobody
-    /// has taken when that is done stays empty. Returns what `own` does, and how long the caller then waited.
+    /// Calls `own` on the calling thread. Meanwhile free workers take the seats 0, 1, .. and call `work(seat)`, one worker a seat. Seats that
+    /// are free when `own` returns stay empty. Returns the result of `own`, and the time that the caller then waited.
     pub fn beside<R>(&self, seats: usize, work: &(dyn Fn(usize) + Sync), own: impl FnOnce() -> R) -> (R, Duration) {
         // SAFETY: `close` takes it off the list, whatever happens, and waits.
         let region = Arc::new(unsafe { Region::new(seats, work) });

@@ -111,12 +111,6 @@ impl Threads {
         });
     }
 
-    /// Work of the calling thread, compiled for the vectors of this machine.
-    #[inline(always)]
-    pub fn alone<R>(&self, work: impl FnOnce() -> R) -> R {
-        pulp::Arch::new().dispatch(work)
-    }
-
     /// Scratch of work that needs none.
     fn no_scratch(&self) -> Vec<()> {
         vec![(); self.count()]

@@ -5,7 +5,7 @@
 
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::busy::{time_of_this_thread, LOSS};
 use super::crew::Crew;
@@ -108,7 +108,7 @@ impl Pool {
         items: &mut [A],
         work: impl Fn(&mut A) + Sync,
         own: impl FnOnce() -> R,
-    ) -> (R, std::time::Duration) {
+    ) -> (R, Duration) {
         let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();
         let of_seat = |seat: usize| {
             let item = items[seat].lock().unwrap_or_else(PoisonError::into_inner).take();

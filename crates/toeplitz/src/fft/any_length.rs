@@ -38,6 +38,13 @@ pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> 
     Ok(())
 }
 
+/// The scratch of transforms, so long.
+pub fn scratch_of<T: Real>(length: usize) -> Result<Vec<Complex<T>>> {
+    let mut scratch = Vec::new();
+    fit(&mut scratch, length)?;
+    Ok(scratch)
+}
+
 /// Complex transforms of one length, many columns at a time (unnormalised).
 #[derive(Clone)]
 pub struct ColumnTransform<T: Real> {
@@ -71,9 +78,7 @@ impl<T: Real> ColumnTransform<T> {
 
     /// Scratch that both directions need.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
-        let mut scratch = Vec::new();
-        self.fit(&mut scratch)?;
-        Ok(scratch)
+        scratch_of(self.scratch_length())
     }
 
     /// Makes scratch long enough.

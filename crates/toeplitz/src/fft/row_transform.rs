@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::block::{parts, parts_mut};
-use crate::fft::any_length::{fit, ColumnTransform};
+use crate::fft::any_length::{fit, scratch_of, ColumnTransform};
 use crate::plan::{shared, Plan, PLAN};
 use crate::real::{Complex, Real};
 use par::memory::collected;
@@ -77,9 +77,7 @@ impl<T: Real> RowTransform<T> {
 
     /// Scratch that both directions need.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
-        let mut scratch = Vec::new();
-        self.fit(&mut scratch)?;
-        Ok(scratch)
+        scratch_of(self.scratch_length())
     }
 
     /// Makes scratch long enough.

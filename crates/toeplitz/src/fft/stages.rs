@@ -204,6 +204,23 @@ pub(crate) fn end<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &
     }
 }
 
+/// Column j of the rows of a stage, backwards.
+#[inline(always)]
+fn column_backwards<T: Real, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &[&mut [Row<T, S>]; LONGEST],
+    j: usize,
+) -> [C<T, S>; LONGEST] {
+    let w = &stage.twiddles[j * (R - 1)..][..R - 1];
+    let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
+    for q in 1..R {
+        x[q] = a.twiddle(get::<T, S>(&rows[q][j]), w[q - 1]);
+    }
+    butterfly::<T, S, R>(a, &mut x);
+    x
+}
+
 /// A stage backwards.
 #[inline(always)]
 pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
@@ -215,12 +232,7 @@ pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
     for rows in rows.chunks_exact_mut(R * m) {
         let rows = cut::<_, R>(rows, m);
         for j in 0..m {
-            let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-            let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
-            for q in 1..R {
-                x[q] = a.twiddle(get::<T, S>(&rows[q][j]), w[q - 1]);
-            }
-            butterfly::<T, S, R>(a, &mut x);
+            let x = column_backwards::<T, S, R>(a, stage, &rows, j);
             for k in 0..R {
                 put::<T, S>(&mut rows[k][j], x[k]);
             }
@@ -239,12 +251,7 @@ pub(crate) fn last<T: Real, S: Simd, const R: usize>(
     let m = stage.stride();
     let rows = cut::<_, R>(rows, m);
     for j in 0..m {
-        let w = &stage.twiddles[j * (R - 1)..][..R - 1];
-        let mut x = [get::<T, S>(&rows[0][j]); LONGEST];
-        for q in 1..R {
-            x[q] = a.twiddle(get::<T, S>(&rows[q][j]), w[q - 1]);
-        }
-        butterfly::<T, S, R>(a, &mut x);
+        let x = column_backwards::<T, S, R>(a, stage, &rows, j);
         for k in 0..R {
             store(j + k * m, Parts { re: x[k].im, im: x[k].re });
         }
