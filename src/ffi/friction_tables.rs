@@ -29,12 +29,25 @@ fn read<T: Versioned, const N: usize>(at: [*const T; N], names: [&str; N]) -> Re
     Ok(tables.iter().any(Option::is_some).then_some(tables))
 }
 
-/// Refuses a table whose members differ from those of the first one.
-fn same(name: &str, first: &str, members: [(&str, f64, f64); 3]) -> Result<(), Refusal> {
-    let Some((member, value, of_first)) = members.into_iter().find(|(_, value, of_first)| value != of_first) else {
-        return Ok(());
-    };
-    Err(Refusal::invalid(format!("{name}->{member} is {value}; it must be {of_first}, as that of {first}")))
+/// What a table says, and where its values are.
+type Given = ([(&'static str, f64); 3], *const f64);
+
+/// The values of table k, of so many. A table whose members differ from those of the first one is refused.
+fn values<'a, T>(
+    (tables, names): (&[Option<T>], &[&str]),
+    (k, size): (usize, usize),
+    given: impl Fn(&T) -> Given,
+) -> Result<&'a [f64], Refusal> {
+    let of = |k: usize| tables[k].as_ref().map(&given).ok_or_else(|| Refusal::null(names[k]));
+    let ((members, at), (of_first, _)) = (of(k)?, of(0)?);
+    if let Some(((member, value), (_, first))) =
+        members.iter().zip(of_first).find(|((_, value), first)| *value != first.1)
+    {
+        let (name, of) = (names[k], names[0]);
+        return Err(Refusal::invalid(format!("{name}->{member} is {value}; it must be {first}, as that of {of}")));
+    }
+    // SAFETY: NULL or as many values as the members say, by the conventions of the ABI.
+    unsafe { required(&format!("{}->coefficients", names[k]), at, size) }
 }
 
 impl contact_normal_friction {
@@ -96,17 +109,10 @@ impl contact_normal_friction {
 fn of_offsets<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<TangentialInfluence<'a>, Refusal> {
     let first = tables[0].ok_or_else(|| Refusal::null(TABLES[0]))?;
     let (cx, cy, size) = first.size(TABLES[0])?;
-    let table = |k: usize| {
-        let table = tables[k].ok_or_else(|| Refusal::null(TABLES[k]))?;
-        let members = [
-            ("cx", f64::from(table.cx), f64::from(first.cx)),
-            ("cy", f64::from(table.cy), f64::from(first.cy)),
-            ("scale", table.scale, first.scale),
-        ];
-        same(TABLES[k], TABLES[0], members)?;
-        // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
-        unsafe { required(&format!("{}->coefficients", TABLES[k]), table.coefficients, size) }
+    let given = |table: &contact_normal_influence| -> Given {
+        ([("cx", table.cx.into()), ("cy", table.cy.into()), ("scale", table.scale)], table.coefficients)
     };
+    let table = |k: usize| values((&tables, &TABLES), (k, size), given);
     let coefficients = [table(0)?, table(1)?, table(2)?];
     let has_cross = tables[3].is_some() || tables[4].is_some();
     let cross = if has_cross { Some([table(3)?, table(4)?]) } else { None };
@@ -116,17 +122,10 @@ fn of_offsets<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<Tange
 fn of_rows<'a>(tables: [Option<contact_normal_row_tables>; 3]) -> Result<TangentialInfluence<'a>, Refusal> {
     let first = tables[0].ok_or_else(|| Refusal::null(ROW_TABLES[0]))?;
     let (cx, cy, size) = first.size_on(None, ROW_TABLES[0])?;
-    let table = |k: usize| {
-        let table = tables[k].ok_or_else(|| Refusal::null(ROW_TABLES[k]))?;
-        let members = [
-            ("cx", f64::from(table.cx), f64::from(first.cx)),
-            ("rows", f64::from(table.rows), f64::from(first.rows)),
-            ("scale", table.scale, first.scale),
-        ];
-        same(ROW_TABLES[k], ROW_TABLES[0], members)?;
-        // SAFETY: NULL or rows by rows by 2 cx values, by the conventions of the ABI.
-        unsafe { required(&format!("{}->coefficients", ROW_TABLES[k]), table.coefficients, size) }
+    let given = |table: &contact_normal_row_tables| -> Given {
+        ([("cx", table.cx.into()), ("rows", table.rows.into()), ("scale", table.scale)], table.coefficients)
     };
+    let table = |k: usize| values((&tables, &ROW_TABLES), (k, size), given);
     let coefficients = [table(0)?, table(1)?, table(2)?];
     Ok(TangentialInfluence { cx, cy, by_row: true, coefficients, cross: None, scale: first.scale })
 }

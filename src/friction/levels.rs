@@ -38,14 +38,19 @@ pub struct Level {
 }
 
 impl Level {
-    /// Iterations are to be [prepared](Level::prepare).
-    fn new(grid: Grid, operators: Operators) -> Result<Level> {
+    /// On a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision;
+    /// `only_single`: whether that serves for all.
+    fn new(
+        quadrant: &Quadrant,
+        grid: Grid,
+        rolling: Option<Rolling>,
+        (only_single, single): (bool, bool),
+        threads: &Threads,
+    ) -> Result<Level> {
+        let mut operators = Operators::new(quadrant, &grid, rolling, only_single, threads)?;
+        operators.prepare(quadrant, &grid, single)?;
         let (state, memory) = (State::new(grid.len())?, Memory::default());
         Ok(Level { problem: Problem::new(grid, operators)?, state, memory })
-    }
-
-    fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
-        self.problem.prepare(quadrant, single)
     }
 
     /// The force, and the creepages that were found, of a step of rolling, in the units of the iterations.
@@ -92,8 +97,7 @@ pub fn levels(
 ) -> Result<Vec<Level>> {
     let by = |rolling: Option<Rolling>| rolling.map_or((0.0, 0.0), |rolling| rolling.by);
     let mut quadrant = Quadrant::new(tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
-    let mut finest = Level::new(grid, Operators::new(&quadrant, &grid, rolling, false, threads)?)?;
-    finest.prepare(&quadrant, single)?;
+    let finest = Level::new(&quadrant, grid, rolling, (false, single), threads)?;
     let below = || successors(coarser(&grid), coarser);
     let mut levels = sparse(1 + below().count(), "the grids of friction")?;
     levels.push(finest);
@@ -102,9 +106,7 @@ pub fn levels(
         let tangential = quadrant.tangential().for_element(grid.dx, grid.dy)?;
         rolling = rolling.map(|rolling| rolling.on(&last, &grid));
         quadrant = quadrant.coarser(&tangential, &grid, by(rolling), &threads.suited_to(grid.len()))?;
-        let mut level = Level::new(grid, Operators::new(&quadrant, &grid, rolling, single, threads)?)?;
-        level.prepare(&quadrant, single)?;
-        levels.push(level);
+        levels.push(Level::new(&quadrant, grid, rolling, (single, single), threads)?);
         last = grid;
     }
     Ok(levels)

@@ -43,25 +43,6 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// Of a shift, without products.
-    fn none(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Operators {
-        let [xx, yy, _] = tangential.at(0.0, 0.0);
-        Operators {
-            tangential: tangential.clone(),
-            exact: None,
-            fast: None,
-            inverse: None,
-            rows: None,
-            rolling: None,
-            excess: None,
-            self_influence: xx.max(yy),
-            a0: xx.max(yy),
-            unit: unit_of(xx),
-            threads: threads.suited_to(WORK * grid.len()),
-            products: 0,
-        }
-    }
-
     /// On a grid, with coefficients that reach far enough: products in double precision, or where `single` in that precision only. What
     /// iterations need beside is to be [prepared](Operators::prepare).
     pub fn new(
@@ -71,12 +52,11 @@ impl Operators {
         single: bool,
         threads: &Threads,
     ) -> Result<Operators> {
-        let none = Operators::none(quadrant.tangential(), grid, threads);
-        let (tangential, threads) = (&none.tangential, &none.threads);
+        let (tangential, threads) = (quadrant.tangential(), &threads.suited_to(WORK * grid.len()));
         let rows = match (tangential.rows(), rolling) {
             (None, _) => None,
             (Some(rows), Some(rolling)) => Some(RowProduct::rolling(tangential, rows, grid, rolling.by.0, threads)?),
-            (Some(rows), None) => Some(RowProduct::direct(tangential, rows, grid, threads)?),
+            (Some(rows), None) => Some(RowProduct::displaced(tangential, rows, grid, 0.0, threads)?),
         };
         let (exact, fast) = match single {
             _ if rows.is_some() => (None, None),
@@ -90,10 +70,16 @@ impl Operators {
         Ok(Operators {
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
+            inverse: None,
             rows,
             rolling,
+            excess: None,
             self_influence: (xx - there[0]).max(yy - there[1]),
-            ..none
+            a0: xx.max(yy),
+            unit: unit_of(xx),
+            products: 0,
+            tangential: tangential.clone(),
+            threads: threads.clone(),
         })
     }
 

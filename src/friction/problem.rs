@@ -15,7 +15,6 @@ use super::beside::{count_near, extension_on};
 use super::operators::Operators;
 use super::places::Places;
 use super::plane::{add, clip, square, Vector};
-use super::quadrant::Quadrant;
 use super::row_tables::RowTables;
 use super::sweep::Rolling;
 use super::vectors::{self, BLOCK};
@@ -149,11 +148,6 @@ impl Problem {
             update: 0.0,
             rms_bound: 0.0,
         })
-    }
-
-    /// Sets up what iterations need beside products.
-    pub fn prepare(&mut self, quadrant: &Quadrant, single: bool) -> Result<()> {
-        self.operators.prepare(quadrant, &self.grid, single)
     }
 
     /// Sets up what continues residuals beside C, if it is not there. In steady rolling nothing is continued.

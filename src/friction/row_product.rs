@@ -36,6 +36,7 @@ pub struct RowProduct {
 
 /// Memory of one piece of the work.
 struct Piece {
+    entries: Vec<Full>,
     row: Vec<f64>,
     scratch: Vec<Wave>,
     bins: Vec<Wave>,
@@ -49,13 +50,7 @@ impl Drop for RowProduct {
 }
 
 impl RowProduct {
-    /// A.
-    pub fn direct(tangential: &Tangential, rows: &RowTables, grid: &Grid, threads: &Threads) -> Result<RowProduct> {
-        let layer = tangential.layer();
-        RowProduct::new(|jy, iy, kx| with_layer(rows, layer, (jy, iy, kx)), grid, threads)
-    }
-
-    /// Displacements at `by` elements from each centre, along x.
+    /// Displacements at `by` elements from each centre, along x; A, if that is 0.
     pub fn displaced(
         tangential: &Tangential,
         rows: &RowTables,
@@ -99,18 +94,20 @@ impl RowProduct {
         let nan = Wave::new(f64::NAN, f64::NAN);
         let piece = |_| {
             let (row, bins) = (zeros(px, MATRICES)?, zeros(4 * nb, MATRICES)?);
-            Ok(Piece { row, scratch: transform.scratch()?, bins })
+            Ok(Piece { entries: zeros(2 * mx - 1, MATRICES)?, row, scratch: transform.scratch()?, bins })
         };
         let mut pieces = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
         let mut matrices = blank(size, [nan; 4], MATRICES)?;
         let mut of_row = blank(my * nb, [nan; 4], MATRICES)?;
         let last = mx as i64 - 1;
         for iy in 0..my {
-            threads.for_each_row(&mut of_row, nb, &mut pieces, |jy, out, Piece { row, scratch, bins }| {
+            threads.for_each_row(&mut of_row, nb, &mut pieces, |jy, out, piece| {
+                let Piece { entries, row, scratch, bins } = piece;
+                entries.iter_mut().zip(-last..).for_each(|(value, kx)| *value = entry(jy, iy, kx));
                 for component in 0..4 {
                     row.fill(0.0);
-                    for kx in -last..=last {
-                        row[kx.rem_euclid(px as i64) as usize] = entry(jy, iy, kx)[component] / px as f64;
+                    for (value, kx) in entries.iter().zip(-last..) {
+                        row[kx.rem_euclid(px as i64) as usize] = value[component] / px as f64;
                     }
                     transform.forward(row, &mut bins[component * nb..][..nb], scratch);
                 }
@@ -154,7 +151,7 @@ impl RowProduct {
             }
         });
         let columns = &columns[..];
-        threads.for_each_row(u, mx, pieces, |iy, u, Piece { row, scratch, bins }| {
+        threads.for_each_row(u, mx, pieces, |iy, u, Piece { row, scratch, bins, .. }| {
             for component in 0..2 {
                 let bins = &mut bins[..nb];
                 bins.iter_mut()
@@ -169,7 +166,8 @@ impl RowProduct {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let piece = |piece: &Piece| {
-            size_of_val(&piece.row[..]) + size_of_val(&piece.scratch[..]) + size_of_val(&piece.bins[..])
+            let Piece { entries, row, scratch, bins } = piece;
+            size_of_val(&entries[..]) + size_of_val(&row[..]) + size_of_val(&scratch[..]) + size_of_val(&bins[..])
         };
         let fields = size_of_val(&self.rows[..]) + size_of_val(&self.columns[..]);
         size_of_val(&self.matrices[..]) + fields + self.pieces.iter().map(piece).sum::<usize>()

@@ -129,7 +129,7 @@ pub fn over<B: Send, const K: usize>(
 ) -> [f64; K] {
     let added = |all: [f64; K], sums: [f64; K]| std::array::from_fn(|k| all[k] + sums[k]);
     if threads.count() == 1 {
-        let one = |(k, mut block): (usize, B)| threads.alone(|| work(k * BLOCK, &mut block));
+        let one = |(k, mut block): (usize, B)| pulp::Arch::new().dispatch(|| work(k * BLOCK, &mut block));
         return blocks.enumerate().map(one).fold([0.0; K], added);
     }
     let mut blocks: Vec<(B, [f64; K])> = blocks.map(|block| (block, [0.0; K])).collect();

@@ -195,7 +195,8 @@ impl<'a> Table<'a> {
             return Ok((Outcome::Cancelled, friction::Report::default()));
         }
         let friction = self.entries[i].friction(self.friction);
-        friction.check(&self.scene.grid)?;
+        // The tables are those of the scene, which is checked.
+        Friction { influence: None, ..friction }.check(&self.scene.grid)?;
         let turn = Turn { scene: self.scene, friction: &friction, options: self.options, threads: &Threads::One };
         let mut watch = |_: &Progress| self.is_cancelled();
         let mut spent = 0.0;
