@@ -28,5 +28,5 @@ pub use jumps::at_jumps;
 pub use outline::Outline;
 pub use problem::Problem;
 pub use snapshot::Snapshot;
-pub use state::{Freshness, State};
-pub use values::{lowest, presses};
+pub use state::State;
+pub use values::{lowest, presses, Freshness};

@@ -1,4 +1,4 @@
-//! What is asked of whole arrays of pressures and distances.
+//! What displacements are worth, and what is asked of whole arrays of pressures and distances.
 
 use crate::sums::least;
 
