@@ -17,6 +17,7 @@ from ._structs import (
     Accuracy,
     Coating,
     Cycle,
+    EffectsRow,
     Fields,
     Friction,
     FrictionResults,
@@ -25,6 +26,7 @@ from ._structs import (
     LogCallback,
     Options,
     Price,
+    QuantityRow,
     Report,
     Scene,
     SolverInfo,
@@ -72,6 +74,17 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "cost_of_accuracy": (
         c_int32,
         [POINTER(Scene), POINTER(Options), POINTER(Accuracy), c_int32, c_int32, POINTER(c_double), POINTER(Price)],
+    ),
+    "quantities": (
+        c_int32,
+        [POINTER(Scene), POINTER(Options), c_int32, POINTER(c_int32), c_int32, POINTER(QuantityRow), POINTER(c_int32)],
+    ),
+    "effects_bill": (
+        c_int32,
+        [
+            POINTER(Scene), POINTER(Options), c_double, c_int32, c_int32, POINTER(c_int32), c_int32, POINTER(EffectsRow),
+            POINTER(c_int32),
+        ],
     ),
     "hertz": (
         c_int32,

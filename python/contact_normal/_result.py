@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from ._bill import omissions
 from ._constants import PRESCRIBED_APPROACH
 from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
@@ -78,6 +79,11 @@ class Result(Solved):
         """One dict per grid."""
         rows = self._rows[: min(self._report.ledger_rows, LEDGER_ROOM)]
         return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), self._estimated)
+
+    @property
+    def neglected(self) -> tuple[str, ...]:
+        """The effects that `neglect_below` left out; `report["neglected_error"]` says how wrong that may be."""
+        return omissions(int(self.report["neglected"]))
 
     @property
     def approach(self) -> float:

@@ -13,7 +13,7 @@ from ._calls import called
 from ._handle import Handle
 from ._library import check, library
 from ._outputs import Outputs
-from ._refined import limits, on_any_grid
+from ._refined import limits, on_any_grid, set_targets
 from ._result import Result
 from ._scene import Scene
 from ._units import checked
@@ -171,6 +171,7 @@ def solve_to_accuracy(
     target: float = 1e-3,
     max_pressure_target: float = 0.0,
     contact_area_target: float = 0.0,
+    targets: Mapping[str, float] | None = None,
     max_seconds: float = 0.0,
     max_bytes: int = 0,
     max_elements: int = 0,
@@ -183,6 +184,12 @@ def solve_to_accuracy(
     poisson_ratio: Both | None = None,
     young_modulus: Both | None = None,
     e_star: float | None = None,
+    layer: npt.ArrayLike | None = None,
+    pressure_limit: npt.ArrayLike | None = None,
+    period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    coating: Any = None,
+    friction: Mapping[str, Any] | None = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[AccuracyOptions],
@@ -202,6 +209,9 @@ def solve_to_accuracy(
         Relative error of the force (of the approach, if the force is prescribed).
     max_pressure_target, contact_area_target : float
         Relative errors of the largest pressure and of the corrected contact area; 0: not asked for.
+    targets : mapping, optional
+        Relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. Up to two
+        coarser grids are then solved first.
     max_seconds, max_bytes : number
         What it may cost; 0: no limit.
     max_elements : int
@@ -212,6 +222,8 @@ def solve_to_accuracy(
         Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
     approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
+    layer, pressure_limit, period, patches, coating, friction
+        As for `solve`. Arrays are those of the first grid; other grids have their means.
 
     Returns
     -------
@@ -232,8 +244,9 @@ def solve_to_accuracy(
     >>> result.status, result.reached <= 1e-3
     (0, True)
     """
+    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
     scene, surface, middle = on_any_grid(
-        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
     struct, units = options(given), checked(units)
@@ -242,6 +255,7 @@ def solve_to_accuracy(
     accuracy.target = number("target", target)
     accuracy.max_pressure_target = number("max_pressure_target", max_pressure_target)
     accuracy.contact_area_target = number("contact_area_target", contact_area_target)
+    set_targets(accuracy, targets)
     ledger = Outputs((0, 0))
 
     def find(address: Any) -> int:
@@ -254,7 +268,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status, message)
-        outputs = Outputs((accuracy.my, accuracy.mx))
+        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None)
         outputs.rows = ledger.rows
         if handle:
             check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))

@@ -192,6 +192,7 @@ class Options(ctypes.Structure):
         ("max_seconds", c_double),
         ("stop", POINTER(c_int32)),
         ("dump", c_void_p),
+        ("neglect_below", c_double),
     ]
 
 
@@ -289,7 +290,9 @@ class ReportAccuracy(ctypes.Structure):
         ("limited_by", c_int32),
         ("halved_seconds", c_double),
         ("halved_error_force", c_double),
-        ("reserved", c_double * 8),
+        ("neglected", c_int64),
+        ("neglected_error", c_double),
+        ("reserved", c_double * 6),
     ]
 
 
@@ -385,6 +388,15 @@ class Accuracy(ctypes.Structure):
         ("seconds", c_double),
         ("max_pressure_target", c_double),
         ("contact_area_target", c_double),
+        ("mean_gap_target", c_double),
+        ("stiffness_target", c_double),
+        ("tangential_force_target", c_double),
+        ("creepage_target", c_double),
+        ("spin_moment_target", c_double),
+        ("stick_area_target", c_double),
+        ("max_von_mises_target", c_double),
+        ("von_mises_depth_target", c_double),
+        ("max_shear_target", c_double),
     ]
 
 
@@ -405,6 +417,43 @@ class Price(ctypes.Structure):
         ("dy", c_double),
         ("obstacle", c_int32),
         ("reserved", c_int32),
+    ]
+
+
+class QuantityRow(ctypes.Structure):
+    """contact_normal_quantity_row."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("quantity", c_int32),
+        ("lack", c_int32),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("value", c_double),
+        ("error", c_double),
+        ("seconds", c_double),
+        ("work_units", c_double),
+    ]
+
+
+class EffectsRow(ctypes.Structure):
+    """contact_normal_effects_row."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("omitted", c_int32),
+        ("also_omitted", c_int32),
+        ("quantity", c_int32),
+        ("verdict", c_int32),
+        ("lack", c_int32),
+        ("reserved", c_int32),
+        ("value", c_double),
+        ("change", c_double),
+        ("change_error", c_double),
+        ("seconds", c_double),
+        ("seconds_without", c_double),
+        ("bytes", c_double),
+        ("bytes_without", c_double),
     ]
 
 
@@ -484,4 +533,6 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "hertz_solution": (19, HertzSolution),
     "cycle": (20, Cycle),
     "solver_info": (21, SolverInfo),
+    "quantity_row": (22, QuantityRow),
+    "effects_row": (23, EffectsRow),
 }

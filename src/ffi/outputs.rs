@@ -11,7 +11,7 @@ use crate::contact::State;
 use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::scene::Scene;
-use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
+use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Neglected, Options, Report, Solver};
 
 /// The caller's output structs, after a check.
 pub(super) struct Outputs {
@@ -22,6 +22,8 @@ pub(super) struct Outputs {
     given_report: Option<contact_normal_report>,
     /// Its ledger, if there is room for one.
     ledger: Option<Rows<contact_normal_ledger_row>>,
+    /// What was left out of the scene.
+    pub neglected: Option<Neglected>,
 }
 
 impl Outputs {
@@ -53,7 +55,7 @@ impl Outputs {
             }
         }
         let given_fields = given_fields.unwrap_or_else(contact_normal_fields::defaults);
-        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows })
+        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows, neglected: None })
     }
 
     /// The caller's structs.
@@ -214,7 +216,10 @@ impl Outputs {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             rows[skipped..].iter().enumerate().for_each(|(i, row)| unsafe { ledger.write(i, &row.into()) });
         }
-        let report = contact_normal_report { warnings, ..contact_normal_report::of(report, rows.len(), given) };
+        let mut report = contact_normal_report { warnings, ..contact_normal_report::of(report, rows.len(), given) };
+        if let Some(neglected) = &self.neglected {
+            (report.accuracy.neglected, report.accuracy.neglected_error) = (neglected.bits(), neglected.error);
+        }
         // SAFETY: not null: a struct that declares its size.
         unsafe { structs::write(self.report, &report) }
     }

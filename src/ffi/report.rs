@@ -103,8 +103,12 @@ pub struct contact_normal_report_accuracy {
     pub halved_seconds: f64,
     /// And the error of the force (or the approach) that it would leave.
     pub halved_error_force: f64,
+    /// What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+    pub neglected: i64,
+    /// By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
+    pub neglected_error: f64,
     /// Room for later versions: 0.
-    pub reserved: [f64; 8],
+    pub reserved: [f64; 6],
 }
 
 /// What it cost: a group of `contact_normal_report`.

@@ -4,6 +4,7 @@ mod bodies;
 mod load;
 mod plain;
 mod refine;
+mod regrid;
 
 pub use crate::effects::{
     Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit, Previous,
@@ -12,7 +13,8 @@ pub use crate::effects::{
 pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
-pub use refine::{refine, sample};
+pub use refine::refine;
+pub use regrid::{sample, scaled, Regridded};
 
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};

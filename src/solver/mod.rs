@@ -5,6 +5,7 @@
 
 mod batch;
 mod best;
+mod bill;
 mod by_approach;
 mod check;
 mod compressible;
@@ -22,6 +23,7 @@ mod nested;
 mod normal;
 mod options;
 mod own_tables;
+mod quantities;
 mod refinement;
 mod report;
 mod take_over;
@@ -39,12 +41,12 @@ pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
 pub use batch::Problem;
+pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict};
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use linear::Stiffness;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
-pub use refinement::{
-    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Quantity, Refinement, SurfaceCallback,
-};
+pub use quantities::{quantities, Lack, Quantity, QuantityRow};
+pub use refinement::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Refinement, SurfaceCallback};
 pub use report::{Halving, Limit, Report};
 pub use tangential_calls::solve_tangential;
 

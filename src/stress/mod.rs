@@ -35,6 +35,7 @@ mod waves;
 pub use body::{Body, COMPONENTS};
 pub use depth::{Depth, Maximum, Wanted};
 pub use loads::{Loads, Part};
+pub use periodic::MOST_SLENDER;
 pub use points::stress_at_points;
 pub use tensor::{principal, von_mises, Principal, Tensor};
 

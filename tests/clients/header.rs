@@ -34,6 +34,8 @@ fn the_committed_header_is_the_generated_one() {
         "batch",
         "accuracy",
         "price_list",
+        "quantities",
+        "effects_bill",
         "special",
         "stress_outputs",
         "stress",

@@ -207,6 +207,16 @@
 #define CONTACT_NORMAL_KIND_SOLVER_INFO 21
 
 /*
+ `kind`: `contact_normal_quantity_row`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_QUANTITY_ROW 22
+
+/*
+ `kind`: `contact_normal_effects_row`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_EFFECTS_ROW 23
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -428,6 +438,51 @@
 #define CONTACT_NORMAL_QUANTITY_CONTACT_AREA 2
 
 /*
+ `quantity`: the mean of the deformed distance over the elements with a surface.
+ */
+#define CONTACT_NORMAL_QUANTITY_MEAN_GAP 3
+
+/*
+ `quantity`: dF/d approach, as `contact_normal_solver_stiffness` has it.
+ */
+#define CONTACT_NORMAL_QUANTITY_STIFFNESS 4
+
+/*
+ `quantity`: the length of the tangential force.
+ */
+#define CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE 5
+
+/*
+ `quantity`: the length of the creepage, in those directions in which the force is prescribed.
+ */
+#define CONTACT_NORMAL_QUANTITY_CREEPAGE 6
+
+/*
+ `quantity`: the moment of the tractions about the spin centre.
+ */
+#define CONTACT_NORMAL_QUANTITY_SPIN_MOMENT 7
+
+/*
+ `quantity`: the area of stick.
+ */
+#define CONTACT_NORMAL_QUANTITY_STICK_AREA 8
+
+/*
+ `quantity`: the largest von Mises stress in both bodies, over all depths.
+ */
+#define CONTACT_NORMAL_QUANTITY_MAX_VON_MISES 9
+
+/*
+ `quantity`: the depth of the largest von Mises stress.
+ */
+#define CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH 10
+
+/*
+ `quantity`: the largest shear stress in both bodies, over all depths.
+ */
+#define CONTACT_NORMAL_QUANTITY_MAX_SHEAR 11
+
+/*
  `obstacle`: none; the accuracy is to be had.
  */
 #define CONTACT_NORMAL_OBSTACLE_NONE 0
@@ -456,6 +511,117 @@
  `obstacle`: it takes longer than `accuracy->max_seconds`.
  */
 #define CONTACT_NORMAL_OBSTACLE_TIME 5
+
+/*
+ `lack`: nothing is missing.
+ */
+#define CONTACT_NORMAL_LACK_NONE 0
+
+/*
+ `lack`: there is no value, since the scene has no friction.
+ */
+#define CONTACT_NORMAL_LACK_NO_FRICTION 1
+
+/*
+ `lack`: there is no value, since the scene prescribes it.
+ */
+#define CONTACT_NORMAL_LACK_PRESCRIBED 2
+
+/*
+ `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
+ */
+#define CONTACT_NORMAL_LACK_EFFECT 3
+
+/*
+ `lack`: there is no value, since there is no contact.
+ */
+#define CONTACT_NORMAL_LACK_NO_CONTACT 4
+
+/*
+ `lack`: there is no error, since the value grows from grid to grid.
+ */
+#define CONTACT_NORMAL_LACK_SINGULAR 5
+
+/*
+ `lack`: there is no error, since one grid alone was solved.
+ */
+#define CONTACT_NORMAL_LACK_ONE_GRID 6
+
+/*
+ `lack`: a grid was not solved.
+ */
+#define CONTACT_NORMAL_LACK_UNSOLVED 7
+
+/*
+ `omitted`: nothing.
+ */
+#define CONTACT_NORMAL_OMIT_NONE 0
+
+/*
+ `omitted`: the coatings; the bodies are all of the material below.
+ */
+#define CONTACT_NORMAL_OMIT_COATING 1
+
+/*
+ `omitted`: the period; the scene stands alone.
+ */
+#define CONTACT_NORMAL_OMIT_PERIOD 2
+
+/*
+ `omitted`: the patches; all feel each other.
+ */
+#define CONTACT_NORMAL_OMIT_PATCHES 3
+
+/*
+ `omitted`: the thin compliant layer.
+ */
+#define CONTACT_NORMAL_OMIT_LAYER 4
+
+/*
+ `omitted`: the limit of pressures.
+ */
+#define CONTACT_NORMAL_OMIT_PRESSURE_LIMIT 5
+
+/*
+ `omitted`: friction, with what tractions of unlike bodies do to pressures.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION 6
+
+/*
+ `omitted`: that bodies are unlike; in their place there are like bodies of the same compliances, so that pressures and tractions do not
+ feel each other.
+ */
+#define CONTACT_NORMAL_OMIT_COUPLING 7
+
+/*
+ `omitted`: the spin.
+ */
+#define CONTACT_NORMAL_OMIT_SPIN 8
+
+/*
+ `omitted`: the tangential compliance of a third body.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE 9
+
+/*
+ `omitted`: the coatings, in whose place there is a thin layer with the compression t/M of each, M being the oedometric modulus.
+ */
+#define CONTACT_NORMAL_OMIT_COATING_AS_LAYER 10
+
+/*
+ `verdict`: the change is too near to the target, or its error is not known; more time decides.
+ */
+#define CONTACT_NORMAL_VERDICT_NOT_DECIDED 0
+
+/*
+ `verdict`: the quantity changes by less than the target, the error of the change included.
+ */
+#define CONTACT_NORMAL_VERDICT_NEGLIGIBLE 1
+
+/*
+ `verdict`: it changes by more than the target.
+ */
+#define CONTACT_NORMAL_VERDICT_NEEDED 2
 
 /*
  Log level: nothing.
@@ -1007,6 +1173,12 @@ typedef struct contact_normal_options {
    `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
    */
   const char *dump;
+  /*
+   > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
+   by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+   Below 1. Default 0: nothing is left out. Since 0.2.
+   */
+  double neglect_below;
 } contact_normal_options;
 
 /*
@@ -1296,9 +1468,17 @@ typedef struct contact_normal_report_accuracy {
    */
   double halved_error_force;
   /*
+   What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+   */
+  int64_t neglected;
+  /*
+   By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
+   */
+  double neglected_error;
+  /*
    Room for later versions: 0.
    */
-  double reserved[8];
+  double reserved[6];
 } contact_normal_report_accuracy;
 
 /*
@@ -1571,6 +1751,42 @@ typedef struct contact_normal_accuracy {
    Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
    */
   double contact_area_target;
+  /*
+   The same of the mean gap. This and what follows is estimated from grids with fewer elements, which are solved, too. Since 0.2.
+   */
+  double mean_gap_target;
+  /*
+   Of the stiffness dF/d approach.
+   */
+  double stiffness_target;
+  /*
+   Of the length of the tangential force.
+   */
+  double tangential_force_target;
+  /*
+   Of the length of the creepage that is found.
+   */
+  double creepage_target;
+  /*
+   Of the moment about the spin centre.
+   */
+  double spin_moment_target;
+  /*
+   Of the area of stick.
+   */
+  double stick_area_target;
+  /*
+   Of the largest von Mises stress.
+   */
+  double max_von_mises_target;
+  /*
+   Of its depth.
+   */
+  double von_mises_depth_target;
+  /*
+   Of the largest shear stress.
+   */
+  double max_shear_target;
 } contact_normal_accuracy;
 
 /*
@@ -1630,6 +1846,110 @@ typedef struct contact_normal_price {
    */
   int32_t reserved;
 } contact_normal_price;
+
+/*
+ A quantity on one grid.
+ */
+typedef struct contact_normal_quantity_row {
+  /*
+   Set by `contact_normal_quantity_row_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_QUANTITY_...
+   */
+  int32_t quantity;
+  /*
+   CONTACT_NORMAL_LACK_...: why there is no value or no error.
+   */
+  int32_t lack;
+  /*
+   Elements in x.
+   */
+  int32_t mx;
+  /*
+   Elements in y.
+   */
+  int32_t my;
+  /*
+   The value; NaN: there is none.
+   */
+  double value;
+  /*
+   Its estimated error, in its own unit; < 0: not known.
+   */
+  double error;
+  /*
+   Seconds of set-up and solve on this grid, the same for all quantities; stresses and stiffness not included.
+   */
+  double seconds;
+  /*
+   Products on this grid, in work units: one product of the grid is one.
+   */
+  double work_units;
+} contact_normal_quantity_row;
+
+/*
+ What leaving out an effect, or two, does to a quantity, and what it saves.
+ */
+typedef struct contact_normal_effects_row {
+  /*
+   Set by `contact_normal_effects_row_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_OMIT_...: what is left out.
+   */
+  int32_t omitted;
+  /*
+   What is left out beside it; NONE: nothing.
+   */
+  int32_t also_omitted;
+  /*
+   CONTACT_NORMAL_QUANTITY_...
+   */
+  int32_t quantity;
+  /*
+   CONTACT_NORMAL_VERDICT_...
+   */
+  int32_t verdict;
+  /*
+   CONTACT_NORMAL_LACK_...: why a value, a change or its error is not known.
+   */
+  int32_t lack;
+  /*
+   0.
+   */
+  int32_t reserved;
+  /*
+   The value of the scene as it is, on the last of the small grids; NaN: there is none.
+   */
+  double value;
+  /*
+   What leaving out adds to it; NaN: not known.
+   */
+  double change;
+  /*
+   How far the change may be off; < 0: not known.
+   */
+  double change_error;
+  /*
+   Predicted seconds of a whole call for the scene on its own grid, with one thread.
+   */
+  double seconds;
+  /*
+   The same without what is left out.
+   */
+  double seconds_without;
+  /*
+   Predicted bytes of its solver.
+   */
+  double bytes;
+  /*
+   The same without what is left out.
+   */
+  double bytes_without;
+} contact_normal_effects_row;
 
 /*
  The exact Hertz solution.
@@ -1946,10 +2266,12 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
- corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
- scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
- max_pressure_target / 100. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
+ `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
+ at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
+ scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
+ targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
+ are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
+ means on other grids. UNSUPPORTED: own coefficients, FIXED contact, and stresses of coated bodies. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
  grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
  largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
  hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
@@ -1978,6 +2300,42 @@ contact_normal_status contact_normal_cost_of_accuracy(const struct contact_norma
                                                       int32_t n,
                                                       const double *targets,
                                                       struct contact_normal_price *rows);
+
+/*
+ Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
+ nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
+ There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
+ has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
+ grids before, so that the coarsest has none. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
+ the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ */
+contact_normal_status contact_normal_quantities(const struct contact_normal_scene *scene,
+                                                const struct contact_normal_options *options,
+                                                int32_t n,
+                                                const int32_t *quantities,
+                                                int32_t coarser,
+                                                struct contact_normal_quantity_row *rows,
+                                                int32_t *written);
+
+/*
+ Says for each effect that the scene names, and for each refinement that it has without naming it (the coupling of unlike bodies, the
+ spin, a coating instead of a thin layer), how much each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...) changes without it, how far
+ that may be off, and what it costs on the scene's own grid; the verdict is by the relative accuracy `target`, between 0 and 1. `pairs` 1:
+ pairs are left out, too; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or
+ `options->max_seconds` where that is given. `*count` is the number of rows: n for each effect, in the order of the constants, then n for
+ each pair; `rows` has room for `capacity` of them, the first ones, and rows NULL asks for the count alone, which takes no time.
+ ITERATION_LIMIT, CANCELLED: by `options`; rows hold what was known by then. UNSUPPORTED: own coefficients, tractions kept by a handle,
+ FIXED contact. Since 0.2.
+ */
+contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
+                                                  const struct contact_normal_options *options,
+                                                  double target,
+                                                  int32_t pairs,
+                                                  int32_t n,
+                                                  const int32_t *quantities,
+                                                  int32_t capacity,
+                                                  struct contact_normal_effects_row *rows,
+                                                  int32_t *count);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`
@@ -2265,6 +2623,22 @@ static inline void contact_normal_cycle_init(contact_normal_cycle *cycle)
 static inline void contact_normal_solver_info_init(contact_normal_solver_info *solver_info)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_SOLVER_INFO, solver_info, (int64_t)sizeof(contact_normal_solver_info));
+}
+
+/*
+ Fills a contact_normal_quantity_row with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_quantity_row_init(contact_normal_quantity_row *quantity_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_QUANTITY_ROW, quantity_row, (int64_t)sizeof(contact_normal_quantity_row));
+}
+
+/*
+ Fills a contact_normal_effects_row with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_effects_row_init(contact_normal_effects_row *effects_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_EFFECTS_ROW, effects_row, (int64_t)sizeof(contact_normal_effects_row));
 }
 
 #endif  /* CONTACT_NORMAL_H */
