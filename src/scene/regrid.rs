@@ -1,7 +1,8 @@
 //! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
 
 use super::{refine, Coefficient, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
-use crate::error::{invalid, Error, Result};
+use crate::effects::check_other_grids;
+use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
@@ -128,7 +129,7 @@ impl Regridded {
     /// # Errors
     /// `Unsupported`: own coefficients, which are those of one grid; tractions before that a solver keeps.
     pub fn new(scene: &Scene<'_>, to: Grid, surface: Option<Vec<f64>>) -> Result<Regridded> {
-        scene.check_other_grids()?;
+        check_other_grids(scene)?;
         let from = scene.grid;
         let regrid = Regrid { from, to };
         let friction = scene.friction.as_ref();
@@ -204,29 +205,6 @@ impl Regridded {
                 ..friction
             }),
             ..scene.clone()
-        }
-    }
-}
-
-impl Scene<'_> {
-    /// Refuses what belongs to one grid, where several are solved.
-    pub fn check_other_grids(&self) -> Result<()> {
-        let friction = self.friction.as_ref();
-        let own = [
-            ("influence", self.influence.is_some()),
-            ("row_tables", self.row_tables.is_some()),
-            ("friction->influence", friction.is_some_and(|friction| friction.influence.is_some())),
-        ];
-        if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
-            return Err(Error::Unsupported(format!(
-                "{name} is given; own coefficients are those of one grid, and this asks for several"
-            )));
-        }
-        match friction {
-            Some(Friction { previous: Previous::Kept, .. }) => Err(Error::Unsupported(
-                "friction->previous is what a handle found; this solves on several grids: give the tractions".into(),
-            )),
-            _ => Ok(()),
         }
     }
 }

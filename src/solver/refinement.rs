@@ -159,7 +159,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     options.check_several_grids()?;
     scene.grid.check()?;
     effects::check_effects(scene)?;
-    scene.check_other_grids()?;
+    effects::check_other_grids(scene)?;
     scene.load.check_sign(false)?;
     if has_surface {
         effects::check_bodies(scene)?;

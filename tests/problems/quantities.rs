@@ -182,7 +182,7 @@ fn what_belongs_to_one_grid_is_refused_by_name() {
     let (grid, h) = ball(16);
     let kept = Friction { previous: Previous::Kept, ..Friction::new(MU) };
     let refused = quantities(&Scene { friction: Some(kept), ..scene(grid, &h) }, &Options::default(), &[], 1, None);
-    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("friction->previous")));
+    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("friction->continues")));
 }
 
 /// The tip of a cone: infinite pressures, and infinite stresses below them.

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::verdict::{self, BillRow, Measured};
 use super::{BillOptions, Omission};
+use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
@@ -31,7 +32,7 @@ pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Resul
     require(is_limit, "max_seconds", seconds, "it must be positive, or 0 for the default")?;
     scene.check(&Threads::One)?;
     scene.check_area(None)?;
-    scene.check_other_grids()
+    effects::check_other_grids(scene)
 }
 
 /// The scene with something left out, or as it is where nothing is.

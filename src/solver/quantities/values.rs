@@ -2,11 +2,11 @@
 
 use super::deepest::{Peak, Stress, Surface};
 use super::Quantity;
-use crate::effects::replace_bodies;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::scene::{Prescribed, Scene};
 use crate::solver::{Outcome, Report, Solver};
+use crate::stress::of_scene;
 use crate::sums::in_blocks;
 
 /// Why a quantity has no value, or its value no error.
@@ -57,9 +57,7 @@ impl Quantity {
                 is_prescribed.then_some(Lack::Prescribed)
             }
             MaxVonMises | VonMisesDepth | MaxShear => {
-                let (x, y) = scene.period.map_or((false, false), |period| (period.x, period.y));
-                let has_half_spaces = scene.coating.is_none() && !replace_bodies(scene);
-                let solved = has_half_spaces && x == y && !(x && scene.patches.is_some());
+                let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
                 (!solved).then_some(Lack::Effect)
             }
             _ => None,
@@ -161,10 +159,11 @@ fn peak(
 }
 
 fn peak_of(solver: &Solver, scene: &Scene<'_>, stress: Stress) -> Result<std::result::Result<Peak, Lack>> {
-    let periodic = scene.period.is_some_and(|period| period.x && period.y);
+    let (body, loads) = of_scene(scene, 1, [None; 3])?;
     let tractions = solver.friction().map(|solution| &solution.traction[..]);
     let threads = &solver.problem.threads;
-    let surface = Surface::of((*solver.grid(), periodic), &solver.state().p, tractions, scene.patches, threads)?;
+    let grid = (*solver.grid(), body.periodic);
+    let surface = Surface::of(grid, &solver.state().p, tractions, loads.patches, threads)?;
     let Some(surface) = surface else { return Ok(Err(Lack::NoContact)) };
     let bodies = &scene.bodies;
     let elastic = |b: usize| bodies.shear_modulus[b].is_finite();
