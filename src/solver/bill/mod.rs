@@ -3,11 +3,13 @@
 //! The scene is solved on small grids, as it is and without each of its effects. What a quantity changes by on grids of twice the elements
 //! tells the error of the change (module `quantities`). Pairs are left out, too: leaving out two is not the sum of leaving out each.
 
+mod asked;
 mod neglect;
 mod omission;
 mod small_grids;
 mod verdict;
 
+pub use asked::BillOptions;
 pub use neglect::Neglected;
 pub use omission::Omission;
 pub use verdict::{BillRow, Verdict};
@@ -19,24 +21,6 @@ use super::{Options, Outcome, ProgressCallback};
 use crate::error::Result;
 use crate::scene::Scene;
 use small_grids::SmallGrids;
-
-/// What the bill is for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BillOptions {
-    /// The accuracy asked for: changes that are smaller, relative to the quantity, are negligible.
-    pub target: f64,
-    /// Seconds at most; 0: 5 % of what the scene is predicted to take, or a tenth of a second.
-    pub max_seconds: f64,
-    /// Whether pairs are left out, too.
-    pub pairs: bool,
-}
-
-impl BillOptions {
-    /// With pairs, in the time that it takes by default.
-    pub fn new(target: f64) -> BillOptions {
-        BillOptions { target, max_seconds: 0.0, pairs: true }
-    }
-}
 
 /// The bill of a scene: for each omission, and for each pair, a row for each of the quantities `wanted`. A scene without effects has none.
 /// ITERATION_LIMIT, CANCELLED: `progress` said so; rows have what was known then.

@@ -2,8 +2,10 @@
 
 use std::time::Instant;
 
+use super::asked::BillOptions;
+use super::omission::Omission;
 use super::small_grids::{self, SmallGrids};
-use super::{BillOptions, BillRow, Omission, Verdict};
+use super::verdict::{BillRow, Verdict};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::solver::quantities::Quantity;

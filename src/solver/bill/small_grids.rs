@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use super::asked::BillOptions;
+use super::omission::Omission;
 use super::verdict::{self, BillRow, Measured};
-use super::{BillOptions, Omission};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};

@@ -1,6 +1,6 @@
 //! One row of the bill: a change, its error, and what follows from both.
 
-use super::Omission;
+use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence};
 
 /// What a row says.
