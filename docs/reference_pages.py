@@ -3,6 +3,7 @@
 The header and the module are regular: a comment stands before what it is about. The header is generated; a test compares it with src/ffi.
 """
 
+import argparse
 import importlib
 import inspect
 import re
@@ -10,7 +11,7 @@ from pathlib import Path
 
 
 def write(root: Path, folder: Path) -> None:
-    """Writes c.md, fortran.md and python_members.txt into `folder`."""
+    """Writes c.md, fortran.md, python_members.txt and command_line.txt into `folder`."""
     include = root / "include"
     folder.mkdir(parents=True, exist_ok=True)
     page = c_page((include / "contact_normal.h").read_text(), Examples(root, "c_examples", "*.c"))
@@ -19,6 +20,7 @@ def write(root: Path, folder: Path) -> None:
     page = fortran_page([part.read_text() for part in parts], Examples(root, "fortran_examples", "*.f90"))
     (folder / "fortran.md").write_text(page)
     (folder / "python_members.txt").write_text(python_members())
+    (folder / "command_line.txt").write_text(command_line())
 
 
 class Examples:
@@ -132,3 +134,12 @@ def python_members() -> str:
     order = {name: place for place, name in enumerate(first)}
     listed = sorted([*functions, *classes], key=lambda each: order.get(each[0], len(first) + (each in classes)))
     return ".. py:module:: contact_normal\n\n" + "".join(directive for _, directive in listed)
+
+
+def command_line() -> str:
+    """The help of every command, as a terminal shows it."""
+    top = importlib.import_module("contact_normal._command").parser()
+    commands = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction)).choices
+    for one in (top, *commands.values()):
+        one.formatter_class = lambda prog, base=one.formatter_class: base(prog, width=100)
+    return "\n\n".join(f"$ {one.prog} --help\n{one.format_help()}" for one in (top, *commands.values()))
