@@ -18,7 +18,7 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: all demo test campaign soak bench bench-table bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
+.PHONY: pictures all demo test campaign soak bench bench-table bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -152,12 +152,19 @@ package-test: tools wheel build/tools/bin/python
 docs: tools all build/tools/bin/python
 	rm -rf build/docs
 	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/pictures.py --dark docs/pictures/dark
 	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
 		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
 	build/tools/bin/python docs/check_links.py
 	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/libcontact_normal.so) PYTHONPATH=$(abspath python) \
 		build/tools/bin/python docs/check_code.py build/prefix build/docs/code
 	@echo "The site: build/docs/html/index.html"
+
+# The pictures of the pages, anew: after a change of an example or of the style.
+pictures: all build/tools/bin/python
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/pictures.py docs/pictures
 
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/bin/python: packaging/requirements.txt

@@ -9,7 +9,8 @@ root = here.parent
 sys.path.insert(0, str(root / "python"))
 sys.path.insert(0, str(here))
 
-import reference_pages  # noqa: E402 - beside this file
+import dark_pictures  # noqa: E402 - beside this file
+import reference_pages  # noqa: E402
 
 project = "contact-normal"
 author = "the contact-normal authors"
@@ -32,3 +33,8 @@ html_title = f"contact-normal {release}"
 
 # The C and the Fortran reference are drawn from the header and from the module.
 reference_pages.write(root, here / "reference" / "generated")
+
+
+def setup(app):
+    """What this project adds to Sphinx."""
+    app.add_transform(dark_pictures.DarkPictures)

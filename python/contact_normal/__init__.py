@@ -16,6 +16,7 @@ from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
 from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
+from ._plot_lines import plot_contact_area
 from ._prices import Price, cost_of_accuracy
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
@@ -48,6 +49,7 @@ __all__ = [
     "friction_batch",
     "hertz",
     "influence_half_space",
+    "plot_contact_area",
     "set_log",
     "solve",
     "solve_tangential",

@@ -101,13 +101,32 @@ class Result(Solved):
         matplotlib.axes.Axes
             The axes, to add to or to save: `axes.figure.savefig("pressure.png")`.
         """
-        from ._plot import plot_pressure
+        from ._plot_surface import plot_pressure
 
         return plot_pressure(self, axes)
 
+    def plot_section(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
+        """Draws the pressures along a line across the contact, with dotted lines at the edge of the contact area.
+
+        Parameters
+        ----------
+        x, y : float, optional
+            The line: one of them. Neither: the y of the middle of the grid.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_section
+
+        return plot_section(self, x, y, axes)
+
 
 class TangentialResult(Solved):
-    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` but for `plot`.
+    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` except `plot` and `plot_section`.
 
     Attributes
     ----------

@@ -174,9 +174,28 @@ class Solved(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot import plot_traction
+        from ._plot_surface import plot_traction
 
         return plot_traction(self, axes)
+
+    def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
+        """Draws which share of the contact area has which pressure.
+
+        Parameters
+        ----------
+        bins : int
+            Ranges of pressure.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_histogram
+
+        return plot_histogram(self, bins, axes)
 
     def _tractions_on(self, body: int, traction: Any) -> Any:
         """Those that are given, or those of friction as they act on this body; None where there are none."""
