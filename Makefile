@@ -11,9 +11,12 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so.
+# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so. Without
+# sudo it prints what to ask for.
 apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them: $(1)" >&2; exit 1; }; \
 	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
+	test -z "$$sudo" || command -v sudo >/dev/null || { \
+		echo "Missing here, and no sudo. Ask your administrator for:  apt-get install --no-install-recommends $(1)" >&2; exit 1; }; \
 	echo "Missing here: $(1). Installing by $$sudo apt-get install --no-install-recommends; to do without, install them before."; \
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
@@ -154,6 +157,10 @@ docs: tools all build/tools/bin/python
 	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
 	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
 		build/tools/bin/python docs/pictures.py --dark docs/pictures/dark
+	for notebook in notebooks/*.ipynb; do \
+		CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+			build/tools/bin/python docs/run_notebook.py $$notebook docs/notebooks || exit 1; \
+	done
 	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
 		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
 	build/tools/bin/python docs/check_links.py

@@ -1,6 +1,6 @@
 """Runs or compiles every code block of the pages in a folder: `check_code.py PREFIX FOLDER`, with the library installed in PREFIX.
 
-Blocks of Python run one after the other, one page in one process. A block of C, C++ or Fortran that is a program is compiled, linked and
+Blocks of Python run one after the other, one page in one process; notebooks have run when their pages were written. A block of C, C++ or Fortran that is a program is compiled, linked and
 run; any other is compiled inside a function, with the variables of PREAMBLE declared. sh, cmake, toml and text are left alone: `make
 package-test` runs what they say.
 """
@@ -18,6 +18,8 @@ dx = dy = 0.2
 x, y = (np.arange(95) - 47) * 0.2, (np.arange(88) - 43.5) * 0.2
 h = 0.001 * x[None, :] ** 2 + 0.002 * y[:, None] ** 2
 """
+# Pages whose Python is a whole program as it is printed.
+WHOLE = ("README.md", "tutorial.md", "creep_force_tables.md")
 C = """#include <contact_normal.h>
 #include <stdio.h>
 contact_normal_status block(int mx, int my, const double *h, double *p, contact_normal_solver *solver);
@@ -80,13 +82,14 @@ def main(prefix: Path, folder: Path) -> None:
     flags = [f"-I{prefix / 'include'}"]
     link = [f"-L{prefix / 'lib'}", "-lcontact_normal"]
     count = 0
-    pages = [root / "README.md", *(page for page in sorted((root / "docs").rglob("*.md")) if "generated" not in page.parts)]
+    pages = [page for page in sorted((root / "docs").rglob("*.md")) if not {"generated", "notebooks"} & set(page.parts)]
+    pages = [root / "README.md", *pages]
     for page in pages:
         blocks = re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
         python = [block for language, block in blocks if language == "python"]
         if python:
             script = folder / f"{page.stem}.py"
-            script.write_text(PYTHON + "\n".join(python))
+            script.write_text(("" if page.name in WHOLE else PYTHON) + "\n".join(python))
             run([sys.executable, script], folder, env=environment)
         for number, (language, block) in enumerate(blocks):
             source = folder / f"{page.stem}_{number}"

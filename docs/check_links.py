@@ -1,11 +1,14 @@
-"""Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #."""
+"""Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #. No page is
+longer than LONGEST lines."""
 
 import re
 import sys
 from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent
-GENERATED = ("generated/c.md", "generated/fortran.md")
+
+
+LONGEST = 250
 
 
 def anchors(page: Path) -> set[str]:
@@ -20,6 +23,9 @@ def broken() -> list[str]:
     pages = [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").rglob("*.md"))]
     count = 0
     for page in pages:
+        lines = page.read_text().count("\n")
+        if lines > LONGEST:
+            found.append(f"{page.relative_to(root)}: {lines} lines; {LONGEST} is the most")
         text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
         for target in re.findall(r"\]\(([^)\s]+)\)", text):
             if re.match(r"https?://", target):

@@ -8,21 +8,32 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 root = Path(__file__).resolve().parent.parent
 STYLES = root / "python" / "contact_normal"
 WHEEL_RAIL = root / "data" / "wheel_rail" / "y4_82kN.txt"
-# Of each example its arguments; {} is the folder.
+
+
+class Example(NamedTuple):
+    """An example: the names of its pictures, its first arguments, and whether it is given a folder for them or the name of one."""
+
+    pictures: tuple[str, ...]
+    arguments: tuple[Path, ...] = ()
+    takes_folder: bool = False
+
+
+EFFECTS = ("layer", "pressure_limit", "period", "patches", "row_tables", "coating")
 EXAMPLES = {
-    "wheel_rail": (WHEEL_RAIL, "{}/wheel_rail.svg"),
-    "effects": ("{}",),
-    "friction": ("{}/friction_shifts.svg",),
-    "rolling": ("{}/friction_rolling.svg",),
-    "subsurface": (WHEEL_RAIL, "{}"),
-    "creep_force_table": ("{}/creep_force_table.svg",),
-    "ledger": ("{}/ledger.svg",),
-    "price_list": ("{}/price_list.svg",),
-    "rough_surface": ("{}/rough_surface.svg",),
+    "wheel_rail": Example(("wheel_rail",), (WHEEL_RAIL,)),
+    "rough_surface": Example(("rough_surface",)),
+    "friction": Example(("friction_shifts",)),
+    "rolling": Example(("friction_rolling",)),
+    "creep_force_table": Example(("creep_force_table",)),
+    "subsurface": Example(("stress_depth", "stress_sliding", "stress_wheel_rail"), (WHEEL_RAIL,), takes_folder=True),
+    "effects": Example(tuple(f"effects_{name}" for name in EFFECTS), takes_folder=True),
+    "ledger": Example(("ledger",)),
+    "price_list": Example(("price_list",)),
 }
 
 
@@ -36,8 +47,9 @@ def draw(folder: Path, dark: bool) -> None:
         lines = {line.split(":")[0]: line for name in styles for line in (STYLES / name).read_text().splitlines() if line[:1] not in ("", "#")}
         style.write_text("\n".join([*lines.values(), "savefig.format: svg", ""]))
         environment = {**os.environ, "MATPLOTLIBRC": str(style), "MPLBACKEND": "Agg", "SOURCE_DATE_EPOCH": "0"}
-        for name, arguments in EXAMPLES.items():
-            command = [sys.executable, root / "python_examples" / f"{name}.py", *(str(part).format(folder) for part in arguments)]
+        for name, example in EXAMPLES.items():
+            to = folder if example.takes_folder else folder / f"{example.pictures[0]}.svg"
+            command = [sys.executable, root / "python_examples" / f"{name}.py", *example.arguments, to]
             subprocess.run(command, cwd=scratch, env=environment, check=True, stdout=subprocess.DEVNULL)
     for picture in folder.glob("*.svg"):
         picture.write_text("\n".join(line.rstrip() for line in picture.read_text().splitlines()) + "\n")

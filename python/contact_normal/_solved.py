@@ -36,6 +36,11 @@ _WARNINGS = {
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
 
 
+def report_key(group: str, name: str) -> str:
+    """The key of a member of a group of a report."""
+    return f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
+
+
 def reported(report: Any) -> dict[str, Any]:
     """The numbers of all groups of a report, tuples of those of its arrays: "force" is normal.force, "tangential_force" is tangential.force."""
     found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
@@ -43,9 +48,8 @@ def reported(report: Any) -> dict[str, Any]:
         members = getattr(report, group)
         for name in names(type(members)):
             if name != "reserved":
-                key = f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
                 value = getattr(members, name)
-                found[key] = value if isinstance(value, (int, float)) else tuple(value)
+                found[report_key(group, name)] = value if isinstance(value, (int, float)) else tuple(value)
     return found
 
 
