@@ -35,6 +35,8 @@ html_math_renderer = "mathml"
 copybutton_prompt_text = r"\$ |>>> |\.\.\. "
 copybutton_prompt_is_regexp = True
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_title = f"contact-normal {release}"
 
 # The C and the Fortran reference are drawn from the header and from the module.

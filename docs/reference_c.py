@@ -30,13 +30,13 @@ def pages(header: str, examples: Examples) -> dict[str, str]:
     found = {noun: [f"# {title}", "", about, ""] for noun, (title, about, _) in NOUNS.items()}
     constants, counts = [], {"functions": 0, "structs": 0}
     entries = re.findall(r"/\*\n(.*?)\*/\n(.*?)(?=\n\n|\n/\*)", header, re.DOTALL)
-    # Functions first, structs after them.
-    for comment, code in entries:
+    # Functions first, those that fill a struct behind the others; structs after them.
+    for comment, code in sorted(entries, key=lambda entry: entry[1].startswith("static inline")):
         if code.startswith("#define"):
             constants.append((comment, *code.split()[1:3]))
         elif re.match(r"[\w ]+\*?contact_normal_\w+\(", code):
             name = re.search(r"(contact_normal_\w+)\(", code).group(1)
-            found[noun_of(name, is_struct=False)] += [f"## {name}", "", "```c", code, "```", "", paragraphs(comment), "", *examples.of(name)]
+            found[noun_of(name, is_struct=False)] += [f"## {name}", "", "```c", signature(code), "```", "", paragraphs(comment), "", *examples.of(name)]
             counts["functions"] += 1
     for comment, code in entries:
         if re.match(r"typedef struct \w+ \{", code):
@@ -50,6 +50,12 @@ def pages(header: str, examples: Examples) -> dict[str, str]:
         raise ValueError(f"the header was not understood: {counts}, {len(constants)} constants")
     named = {f"c_{noun}.md": "\n".join(lines) + "\n" for noun, lines in found.items()}
     return {"c.md": index(), **named, "c_constants.md": constants_page(constants)}
+
+
+def signature(code: str) -> str:
+    """A function without the body of one that is written in the header."""
+    head, _, body = code.partition("\n{")
+    return head.removeprefix("static inline ") + ";" if body else code
 
 
 def struct(comment: str, name: str, header: str) -> list[str]:
