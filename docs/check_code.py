@@ -37,7 +37,7 @@ C_DECLARED = {
     "scene": "contact_normal_scene scene; contact_normal_scene_init(&scene);",
     "fields": "contact_normal_fields fields; contact_normal_fields_init(&fields);",
     "report": "contact_normal_report report; contact_normal_report_init(&report);",
-    "status": "contact_normal_status status;",
+    "status": "contact_normal_status status = CONTACT_NORMAL_OK;",
 }
 CPP = """#include <contact_normal.hpp>
 #include <iostream>
@@ -69,7 +69,8 @@ def run(command: list, folder: Path, **more) -> None:
 
 
 def declared(block: str) -> str:
-    """Declarations of what a C fragment uses and does not declare."""
+    """Declarations of what a C fragment, and the function around it, uses and does not declare."""
+    block += " status"
     return "\n".join(code for name, code in C_DECLARED.items() if name in block and f"contact_normal_{name.rstrip('.')} {name.rstrip('.')};" not in block)
 
 

@@ -101,7 +101,7 @@ class Result(Solved):
         matplotlib.axes.Axes
             The axes, to add to or to save: `axes.figure.savefig("pressure.png")`.
         """
-        from ._plot_surface import plot_pressure
+        from ._plot_above import plot_pressure
 
         return plot_pressure(self, axes)
 

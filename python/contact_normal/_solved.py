@@ -178,7 +178,7 @@ class Solved(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot_surface import plot_traction
+        from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
 
