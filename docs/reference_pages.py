@@ -1,4 +1,4 @@
-"""Draws the pages of the reference: C and Fortran from include/, Python's list of names and the command line from the package.
+"""Draws the pages of the reference: C, C++ and Fortran from include/, Rust from the crate, Python and the command line from the package.
 
 The header and the module are regular: a comment stands before what it is about. The header is generated; a test compares it with src/ffi.
 """
@@ -6,9 +6,11 @@ The header and the module are regular: a comment stands before what it is about.
 from pathlib import Path
 
 import reference_c
+import reference_cxx
 import reference_fortran
 import reference_gallery
 import reference_python
+import reference_rust
 from reference_text import Examples
 
 
@@ -23,6 +25,8 @@ def write(root: Path, folder: Path) -> None:
         **reference_fortran.pages(module, Examples(root, "fortran_examples", "*.f90")),
         "python_members.txt": reference_python.members(),
         "report_keys.md": reference_python.report_keys(header),
+        "cxx.md": reference_cxx.page(include),
+        "rust.md": reference_rust.page((root / "src" / "lib.rs").read_text()),
         "gallery.md": reference_gallery.page(root),
         "command_line.txt": reference_python.command_line(),
     }
