@@ -42,8 +42,10 @@ def plot_stress_section(stress: SubsurfaceStress, x: float | None, y: float | No
     order = np.argsort(stress.depths)
     depths, shown = stress.depths[order], field[order]
     filled = axes.contourf(places, depths, shown, 24, cmap="magma")
-    # The file of a picture has no seams between the levels.
-    filled.set_edgecolor("face")
+    # No seams between the levels in a file of vectors. Before matplotlib 3.8 each level is a collection.
+    levels: Any = [filled] if hasattr(filled, "set_edgecolor") else filled.collections
+    for level in levels:
+        level.set_edgecolor("face")
     row, column = np.unravel_index(np.argmax(np.abs(shown)), shown.shape)
     for colour, width in (("black", 4), ("white", 2)):
         axes.plot(places[column], depths[row], "+", color=colour, markersize=10 + width, markeredgewidth=width)
