@@ -41,7 +41,7 @@ def plot_stress_section(stress: SubsurfaceStress, x: float | None, y: float | No
     axes = axes or new_axes((SIZE[0], height))
     order = np.argsort(stress.depths)
     depths, shown = stress.depths[order], field[order]
-    filled = axes.contourf(places, depths, shown, 24, cmap="magma")
+    filled: Any = axes.contourf(places, depths, shown, 24, cmap="magma")
     # No seams between the levels in a file of vectors. Before matplotlib 3.8 each level is a collection.
     levels: Any = [filled] if hasattr(filled, "set_edgecolor") else filled.collections
     for level in levels:
