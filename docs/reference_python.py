@@ -22,6 +22,10 @@ def members() -> str:
             if hidden - told:
                 members += "   :inherited-members:\n"
             told |= hidden
+            # What stands among the attributes does not stand again below.
+            listed = re.findall(r"^    ((?:\w+, )*\w+) : ", member.__doc__ or "", re.MULTILINE)
+            again = sorted({one for group in listed for one in group.split(", ")})
+            members += f"   :exclude-members: {', '.join(again)}\n" if members and again else ""
             classes.append((name, f".. autoclass:: {name}\n{members}\n"))
         elif inspect.isfunction(member) and member.__name__ == name:
             functions.append((name, f".. autofunction:: {name}\n\n"))
@@ -35,15 +39,14 @@ def grouped_attributes(app, what, name, obj, options, lines):
     """Before napoleon reads a docstring: "a, b : type" among attributes becomes one entry for each name."""
     out, place = [], 0
     while place < len(lines):
-        group = re.match(r"((?:\w+, )+\w+) : (.*)$", lines[place])
-        if not group:
-            out.append(lines[place])
-            place += 1
-            continue
-        told = [line for line in lines[place + 1 : end_of_entry(lines, place)]]
-        for one in group[1].split(", "):
-            out += [f"{one} : {group[2]}", *told]
-        place += 1 + len(told)
+        end = end_of_entry(lines, place)
+        group = re.match(r"((?:\w+, )+\w+)( : .*)?$", lines[place])
+        if group and end > place + 1:
+            for one in group[1].split(", "):
+                out += [one + (group[2] or ""), *lines[place + 1 : end]]
+        else:
+            out += lines[place:end]
+        place = end
     lines[:] = out
 
 
