@@ -1,5 +1,5 @@
 """Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #. No page is
-longer than LONGEST lines."""
+longer than LONGEST lines, and troubleshooting.md has each status and each warning of the header."""
 
 import re
 import sys
@@ -15,6 +15,18 @@ def anchors(page: Path) -> set[str]:
     """The anchors of a page's headings, as GitHub and MyST make them."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def not_explained() -> list[str]:
+    """One line per status or warning without advice."""
+    header = (root / "include" / "contact_normal.h").read_text()
+    names = re.findall(r"^#define CONTACT_NORMAL_(\w+) (-\d+)$", header, re.MULTILINE)
+    statuses = [f"{value} {name}" for name, value in names if not name.startswith("LOAD")]
+    warnings = re.findall(r"^#define CONTACT_NORMAL_WARNING_(\w+) ", header, re.MULTILINE)
+    if len(statuses) < 10 or len(warnings) < 4:
+        raise ValueError(f"the header was not understood: {statuses}, {warnings}")
+    told = (root / "docs" / "troubleshooting.md").read_text()
+    return [f"docs/troubleshooting.md: no advice for {name}" for name in [*statuses, *warnings] if f"| {name} |" not in told]
 
 
 def broken() -> list[str]:
@@ -42,4 +54,4 @@ def broken() -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit("\n".join(broken()) or None)
+    sys.exit("\n".join(broken() + not_explained()) or None)
