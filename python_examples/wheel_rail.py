@@ -62,7 +62,7 @@ def draw(path, title, result):
         f" contact area {result.report['contact_area']:.1f} mm²",
         fontsize=10,
     )
-    axes.figure.savefig(path)
+    axes.figure.savefig(path, dpi=150)
 
 
 def write_arrays(path, scene, h, result):
