@@ -105,7 +105,7 @@ def _instrument(path: Path, variable: str | None) -> Heights:
         topography = importlib.import_module("SurfaceTopography")
     except ImportError as error:
         raise ImportError(f"{path}: files {path.suffix or 'without an ending'} are read by SurfaceTopography, which is not installed: "
-                          "pip install 'contact-normal[topography]'") from error
+                          "pip install 'contact-normal[surface]'") from error
     try:
         found = topography.read_topography(str(path))
         # Its arrays have x first.

@@ -155,7 +155,7 @@ class Commands(unittest.TestCase):
     def test_what_is_missing_is_named(self):
         (self.folder / "a.x3p").touch()
         for package, arguments, extra in (
-            ("SurfaceTopography", ("solve", self.folder / "a.x3p", *BALL), "contact-normal[topography]"),
+            ("SurfaceTopography", ("solve", self.folder / "a.x3p", *BALL), "contact-normal[surface]"),
             ("meshio", ("solve", self.npy, *BALL, "-o", "p.vtu"), "contact-normal[vtk]"),
             ("xarray", ("solve", self.npy, *BALL, "-o", "p.nc"), "contact-normal[tables]"),
         ):
