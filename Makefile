@@ -129,12 +129,12 @@ analysis: tools
 	$(CARGO) run --release --locked -p local_fourier_analysis target/local_fourier_analysis
 	"$(find_python)" local_fourier_analysis/picture.py target/local_fourier_analysis docs/local_fourier_analysis.png
 
-# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen, and the
-# picture. ACCURACY="--quick", or some of estimates, searches, prices, study.
+# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen;
+# `make pictures` draws the first of them. ACCURACY="--quick", or some of estimates, searches, prices, study.
 ACCURACY ?=
 accuracy: tools
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY)
-	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv docs
+	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv
 
 # The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
 wheel: all build/tools/bin/python

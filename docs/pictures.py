@@ -1,4 +1,4 @@
-"""Draws the pictures of the pages by the example programs, in the package's style: `pictures.py [--dark] FOLDER`.
+"""Draws the pictures of the pages by the example programs, and the one of accuracy.md from its table, in the package's style: `pictures.py [--dark] FOLDER`.
 
 Those in docs/pictures are for light pages, `pictures.py docs/pictures`. `make docs` draws the dark ones, which are not kept.
 """
@@ -51,6 +51,8 @@ def draw(folder: Path, dark: bool) -> None:
             to = folder if example.takes_folder else folder / f"{example.pictures[0]}.svg"
             command = [sys.executable, root / "python_examples" / f"{name}.py", *example.arguments, to]
             subprocess.run(command, cwd=scratch, env=environment, check=True, stdout=subprocess.DEVNULL)
+        command = [sys.executable, root / "docs" / "accuracy_picture.py", folder / "accuracy.svg"]
+        subprocess.run(command, env=environment, check=True)
     for picture in folder.glob("*.svg"):
         picture.write_text("\n".join(line.rstrip() for line in picture.read_text().splitlines()) + "\n")
 
