@@ -17,6 +17,7 @@ from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
 from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
+from ._plot_lines import plot_contact_area
 from ._prices import Price, Prices, cost_of_accuracy
 from ._quantities import Quantities, Quantity, quantities
 from ._result import Result, TangentialResult
@@ -55,6 +56,7 @@ __all__ = [
     "friction_batch",
     "hertz",
     "influence_half_space",
+    "plot_contact_area",
     "quantities",
     "set_log",
     "solve",

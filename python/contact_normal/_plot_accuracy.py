@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ._plot import _new_axes
+from ._axes import SIZE, new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,7 @@ def _error_axes(axes: Axes) -> None:
 
 def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
     """See `Quantities.plot`."""
-    axes = axes or _new_axes((7.0, 4.6))
+    axes = axes or new_axes(SIZE)
     for k, name in enumerate(dict.fromkeys(row.name for row in rows)):
         known = [row for row in rows if row.name == name and row.error > 0 and row.value]
         if not known:
@@ -50,7 +50,7 @@ def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> N
 
 def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
     """See `Prices.plot`."""
-    axes = axes or _new_axes((7.0, 4.6))
+    axes = axes or new_axes(SIZE)
     had = [price for price in prices if not price.obstacle and price.seconds > 0]
     axes.plot([price.seconds for price in had], [price.error for price in had], "-", color=_COLOURS[0], label="predicted")
     axes.plot([price.seconds for price in had], [price.error for price in had], "o", mfc="white", mec=_COLOURS[0], label="grids of the list")
@@ -67,7 +67,7 @@ def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
 def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
     """See `Bill.plot`."""
     singles = list(dict.fromkeys(row.omitted for row in bill if len(row.omitted) == 1))
-    axes = axes or _new_axes((7.0, 1.4 + 0.62 * max(1, len(singles))))
+    axes = axes or new_axes((SIZE[0], 1.4 + 0.62 * max(1, len(singles))))
     quantities = list(dict.fromkeys(row.quantity for row in bill))
     height = 0.8 / max(1, len(quantities))
     for q, quantity in enumerate(quantities):

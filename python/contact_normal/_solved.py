@@ -36,6 +36,11 @@ _WARNINGS = {
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
 
 
+def report_key(group: str, name: str) -> str:
+    """The key of a member of a group of a report."""
+    return f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
+
+
 def reported(report: Any) -> dict[str, Any]:
     """The numbers of all groups of a report, tuples of those of its arrays: "force" is normal.force, "tangential_force" is tangential.force."""
     found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
@@ -43,9 +48,8 @@ def reported(report: Any) -> dict[str, Any]:
         members = getattr(report, group)
         for name in names(type(members)):
             if name != "reserved":
-                key = f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
                 value = getattr(members, name)
-                found[key] = value if isinstance(value, (int, float)) else tuple(value)
+                found[report_key(group, name)] = value if isinstance(value, (int, float)) else tuple(value)
     return found
 
 
@@ -174,9 +178,28 @@ class Solved(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot import plot_traction
+        from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
+
+    def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
+        """Draws which share of the contact area has which pressure.
+
+        Parameters
+        ----------
+        bins : int
+            Ranges of pressure.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_histogram
+
+        return plot_histogram(self, bins, axes)
 
     def _tractions_on(self, body: int, traction: Any) -> Any:
         """Those that are given, or those of friction as they act on this body; None where there are none."""

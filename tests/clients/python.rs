@@ -150,6 +150,11 @@ fn the_rolling_example_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_rough_surface_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("rough_surface");
+}
+
+#[test]
 fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let folder = scratch("python_wheel_rail");
     let example = root().join("python_examples/wheel_rail.py");
