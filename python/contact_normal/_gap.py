@@ -24,7 +24,7 @@ _HEAD = "# Undeformed distance on a grid, made by contact-normal"
 
 @dataclass(frozen=True, eq=False)
 class Gap:
-    """The undeformed distance of two surfaces on a grid of rectangular elements.
+    """The undeformed distance of two surfaces on a grid of rectangular elements; x and y of it are the centres of columns and rows.
 
     Attributes
     ----------
@@ -64,10 +64,13 @@ class Gap:
 
     def solve(self, **scene: Any) -> Result:
         """Presses the two surfaces together: `contact_normal.solve` of this gap. The arguments are a load, elastic constants, effects and
-        options."""
+        options. Places of the result are in the coordinates of the surfaces; those of arguments, as `spin_centre`, are relative to the
+        middle of the grid."""
         from ._solve import solve
 
-        return solve(self.h, self.dx, self.dy, **{"period": self.period, "units": self.units, **scene})
+        result = solve(self.h, self.dx, self.dy, **{"period": self.period, "units": self.units, **scene})
+        result._centre = self.middle
+        return result
 
     def write(self, path: str | os.PathLike[str], comment: str = "") -> None:
         """Writes the gap as text, which the examples `gap.c` and `gap.f90` read.

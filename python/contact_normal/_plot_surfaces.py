@@ -46,7 +46,7 @@ def plot_heights(heights: Heights, axes: Axes | None, marked: npt.ArrayLike | No
 def plot_profile(profile: Profile, axes: Axes | None) -> Axes:
     """See `Profile.plot`."""
     axes = axes or _new_axes((8.0, 4.0))
-    axes.plot(profile.y, profile.z, ".-", linewidth=1.0, markersize=3.0, label=profile.name or profile.kind)
+    axes.plot(profile.y, profile.z, linewidth=1.5, label=profile.name or profile.kind)
     axes.set(xlabel="y, to the field side [mm]", ylabel="z, downwards [mm]", aspect="equal")
     if not axes.yaxis_inverted():
         axes.invert_yaxis()

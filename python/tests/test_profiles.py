@@ -29,17 +29,20 @@ def wheel(cone=CONE):
     return profiles.Profile(np.concatenate(y), np.concatenate(z), "wheel", "a cone")
 
 
-def rail(head=HEAD, reach=36.0):
+def rail(head=HEAD, reach=36.0, inner=None):
+    """A head of one arc, or of another one towards the track."""
     y = np.linspace(-reach, reach, int(4 * reach) + 1)
-    z = head - np.sqrt(head**2 - y**2)
+    heads = np.where(y < 0.0, head if inner is None else inner, head)
+    z = heads - np.sqrt(heads**2 - y**2)
     down = np.linspace(40.0, z[0] + 0.5, 60)
     # Flanks of 20:1, from 40 mm below the top.
-    flank = (down - z[0]) / 20.0
-    return profiles.Profile(np.concatenate([-reach - flank, y, (reach + flank)[::-1]]), np.concatenate([down, z, down[::-1]]), "rail", "an arc")
+    other = np.linspace(40.0, z[-1] + 0.5, 60)
+    sides = -reach - (down - z[0]) / 20.0, (reach + (other - z[-1]) / 20.0)[::-1]
+    return profiles.Profile(np.concatenate([sides[0], y, sides[1]]), np.concatenate([down, z, other[::-1]]), "rail", "an arc")
 
 
 TRACK, WHEELSET = profiles.Track(rail()), profiles.Wheelset(wheel(), RADIUS, flange_back=1360.0)
-# The gauge point lies on the flank, 14 mm below the top; the head is symmetric about its middle.
+# The gauge point lies on the flank, 14 mm below the top; the head is symmetric about its middle, MIDDLE.
 ARC_END = HEAD - np.sqrt(HEAD**2 - 36.0**2)
 MIDDLE = 717.5 + 36.0 + (14.0 - ARC_END) / 20.0
 
@@ -174,7 +177,8 @@ class Loaded(unittest.TestCase):
             point.gap(0.1, 0.1, 0.0)
 
     def test_a_wheel_that_turns_fast_is_pushed_forward(self):
-        point = profiles.contact_points(TRACK, WHEELSET)[0]
+        # Of two arcs, near the place where they meet: the middle of the patch is not the contact point.
+        point = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)))[0]
         free = 30e3 / point.rolling_radius
         xi, eta, phi = point.creepages(30e3, pitch_rate=1.001 * free)
         friction = {"coefficient": 0.3, "motion": "STEADY_ROLLING", "creepage": (xi, eta), "spin": phi}
@@ -190,6 +194,10 @@ class Loaded(unittest.TestCase):
         # The spin is about the contact point, wherever the middle of the grid is.
         again = gap.solve(force=10e3, friction={**friction, "spin_centre": (-gap.middle[0], -gap.middle[1])}, **STEEL)
         self.assertEqual(again.tangential_force, result.tangential_force)
+        # Places are those of the gap, around the contact point.
+        self.assertNotEqual(gap.middle[1], 0.0)
+        np.testing.assert_array_equal(result.y, gap.y)
+        self.assertLess(np.abs(gap.y).min(), 1e-9)
 
 
 class Creepages(unittest.TestCase):

@@ -305,7 +305,7 @@ class Files(unittest.TestCase):
 
     def test_a_missing_package_is_named(self):
         with mock.patch.dict(sys.modules, {"SurfaceTopography": None}):
-            with self.assertRaisesRegex(ImportError, r"files \.x3p need SurfaceTopography: pip install 'contact-normal\[topography\]'"):
+            with self.assertRaisesRegex(ImportError, r"files \.x3p need SurfaceTopography: pip install 'contact-normal\[surface\]'"):
                 surface.read(self.folder / "a.x3p")
         with mock.patch.dict(sys.modules, {"xarray": None, "netCDF4": None}):
             with self.assertRaisesRegex(ImportError, "xarray and netCDF4: pip install"):

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
 
 # Places between two points of the wheel's curve at which the clearance is looked at.
 _BETWEEN = 6
-# Steps of the golden section: an interval shrinks by 1e-12.
-_SECTIONS = 58
-_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+# An interval around a minimum is divided by 32 points, nine times: it shrinks by 16^9.
+_SECTIONS, _PARTS = 9, 32
 # Steps of the search of a roll, in which each has about 1.6 times the digits of the one before.
 _ROLLS = 40
 
@@ -51,11 +50,13 @@ def _minima(pair: Pair) -> list[tuple[float, float]]:
     t = pair.tread.between(_BETWEEN)
     found = _clearance(pair, t)
     inner = np.nonzero((found[1:-1] <= found[:-2]) & (found[1:-1] < found[2:]) & np.isfinite(found[1:-1]))[0] + 1
-    low, high = t[inner - 1].copy(), t[inner + 1].copy()
+    if not len(inner):
+        return []
+    low, high = t[inner - 1], t[inner + 1]
     for _ in range(_SECTIONS):
-        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        is_left = _clearance(pair, left) < _clearance(pair, right)
-        high, low = np.where(is_left, right, high), np.where(is_left, low, left)
+        places = low + (high - low) * (np.arange(_PARTS + 1) / _PARTS)[:, None]
+        least = np.clip(_clearance(pair, places.ravel()).reshape(places.shape).argmin(axis=0), 1, _PARTS - 1)
+        low, high = (np.take_along_axis(places, (least + by)[None], axis=0)[0] for by in (-1, 1))
     middle = 0.5 * (low + high)
     return sorted(zip(_clearance(pair, middle).tolist(), middle.tolist()))
 

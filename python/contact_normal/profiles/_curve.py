@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
 
 # Newton's steps of an inversion. Each doubles the digits; the start, on the polygon, has three.
-_STEPS = 6
+_STEPS = 4
 
 
 def second_derivatives(t: Doubles, values: Doubles) -> Doubles:
@@ -80,10 +80,8 @@ class Curve:
 
 def growing(places: Doubles, middle: int) -> tuple[int, int]:
     """The first and the last index of the run around `middle` in which each place is larger than the one before."""
-    is_larger = np.diff(places) > 0.0
-    first, last = middle, middle
-    while first > 0 and is_larger[first - 1]:
-        first -= 1
-    while last < len(places) - 1 and is_larger[last]:
-        last += 1
+    stops = np.flatnonzero(~(np.diff(places) > 0.0))
+    k = int(np.searchsorted(stops, middle))
+    first = int(stops[k - 1]) + 1 if k > 0 else 0
+    last = int(stops[k]) if k < len(stops) else len(places) - 1
     return first, last

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 # Newton's steps for a distance along the normal. Each doubles the digits; the start is off by the curvature of the wheel only.
 _STEPS = 8
+# A grid is made for the approach times the second number, and made anew if it was made for more than the first one.
+_LOOSE, _RESERVE = 1.5, 1.1
 # The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
 _FARTHEST = 1024
 _LEAST = 8
@@ -155,7 +157,7 @@ class ContactPoint:
         dx, dy : float
             Element sizes, in mm.
         depth : float
-            First guess of the approach, in mm. The grid grows until `depth` is at least the approach that is found.
+            First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
@@ -165,9 +167,10 @@ class ContactPoint:
             gap = self.gap(dx, dy, depth)
             result = gap.solve(force=force, **scene)
             approach = result.approach - float(gap.h.min())
-            if not approach > depth:
+            if approach <= depth <= _LOOSE * approach or not approach > 0.0:
                 break
-            depth = 1.25 * approach
+            # A grid that is too small finds a larger approach than there is.
+            depth = _RESERVE * approach
         if friction is not None:
             centre = (-gap.middle[0], -gap.middle[1])
             result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)

@@ -24,7 +24,7 @@ _EQUAL = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Heights:
-    """Heights of a surface, positive out of the material.
+    """Heights of a surface, positive out of the material; x and y of it are the centres of columns and rows, relative to the middle.
 
     Attributes
     ----------

@@ -93,7 +93,7 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
 
     Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
-    found by Newton's method with Broyden's updates, some ten solves.
+    found by Newton's method with Broyden's updates, in four to ten solves.
 
     Parameters
     ----------

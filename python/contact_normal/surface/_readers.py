@@ -80,7 +80,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     try:
         read_topography = importlib.import_module("SurfaceTopography").read_topography
     except ImportError as error:
-        raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[topography]'") from error
+        raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
     return from_topography(read_topography(os.fspath(path)), **given)
 
 
