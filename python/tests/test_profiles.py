@@ -194,6 +194,9 @@ class Loaded(unittest.TestCase):
         # The spin is about the contact point, wherever the middle of the grid is.
         again = gap.solve(force=10e3, friction={**friction, "spin_centre": (-gap.middle[0], -gap.middle[1])}, **STEEL)
         self.assertEqual(again.tangential_force, result.tangential_force)
+        # On the left side the same force, mirrored.
+        left = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)), side="left")[0]
+        self.assertEqual(left.force_on_wheel(result), (forward, -right, down))
         # Places are those of the gap, around the contact point.
         self.assertNotEqual(gap.middle[1], 0.0)
         np.testing.assert_array_equal(result.y, gap.y)
@@ -286,6 +289,9 @@ class Profiles(unittest.TestCase):
             profiles.Profile(-made.y[::-1], made.z[::-1], "wheel")
         with self.assertRaisesRegex(ValueError, 'kind is \'tyre\'; it must be "wheel" or "rail"'):
             profiles.Profile(made.y, made.z, "tyre")
+        for y, z in ((made.y[1:], made.z), (made.y[:3], made.z[:3]), (made.y[:20].reshape(2, 10), made.z[:20].reshape(2, 10))):
+            with self.assertRaisesRegex(ValueError, "they must be rows of at least 4 points"):
+                profiles.Profile(y, z, "wheel")
         with self.assertRaisesRegex(ValueError, "points that are not finite"):
             profiles.Profile(np.where(made.y > 0, np.nan, made.y), made.z, "wheel")
         with self.assertRaisesRegex(ValueError, "rail is a wheel"):

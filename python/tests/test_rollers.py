@@ -40,6 +40,7 @@ class Gaps(unittest.TestCase):
     def test_what_is_no_roller_is_refused(self):
         for wrong, message in (
             (lambda: rollers.gap((1, 1), (4, 4), (6.0, -5.0)), "their curvatures add up to"),
+            (lambda: rollers.gap((1, 1), (4, 4), (np.inf,)), "their curvatures add up to 0.0"),
             (lambda: rollers.gap((1, 1), (4, 0), (6.0,)), "elements are 4 and 0"),
             (lambda: rollers.gap((0, 1), (4, 4), (6.0,)), r"size\[0\] is 0.0; it must be positive"),
             (lambda: rollers.iso_16281(40.0, 12.0), "lengths of up to 2.5 times the diameter, 30.0"),

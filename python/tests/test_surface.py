@@ -11,6 +11,7 @@ import numpy as np
 
 import contact_normal as cn
 from contact_normal import surface
+from contact_normal.surface._faults import neighbours_median
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
@@ -63,6 +64,11 @@ class Arrays(unittest.TestCase):
                 surface.heights(self.Z, **given)
         with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
             surface.heights(self.Z, x=[0.0, 1.0, 2.0, 3.1], y=[0.0, 1.0, 2.0])
+        with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
+            surface.heights(self.Z, x=[0.0, 1e-6, 2e-6, 3.1e-6], y=[0.0, 1e-6, 2e-6])
+        for given in ({"x": [0.0, 1.0, 2.0, 3.0]}, {"dy": 1.0}, {"dx": 1.0}):
+            with self.assertRaises(TypeError):
+                surface.heights(self.Z, **given)
         with self.assertRaisesRegex(ValueError, r"y has shape \(4,\); it must be \(3,\)"):
             surface.heights(self.Z, x=[0.0, 1.0, 2.0, 3.0], y=[0.0, 1.0, 2.0, 3.0])
         with self.assertRaisesRegex(ValueError, "element sizes are 0.0 and 1.0; they must be positive"):
@@ -108,6 +114,18 @@ class Faults(unittest.TestCase):
         steps = np.where(np.arange(64) < 32, 0.0, 5.0) + np.zeros((64, 1))
         self.assertEqual(surface.faults(surface.heights(steps, 1, 1)).fill_values, ())
         self.assertEqual(surface.faults(surface.heights(np.full((5, 5), np.nan), 1, 1)).spikes.sum(), 0)
+
+    def test_the_median_of_neighbours(self):
+        z = rough(16)[:6, :7]
+        z[2, 3] = z[0, 1] = z[5, 6] = np.nan
+        z[3, 0:2] = np.nan
+        for period, modes in ((None, ("constant", "constant")), ("x", ("constant", "wrap")), ("y", ("wrap", "constant")), ("xy", ("wrap", "wrap"))):
+            padded = z
+            for axis, mode in enumerate(modes):
+                width = [(1, 1) if k == axis else (0, 0) for k in range(2)]
+                padded = np.pad(padded, width, **({"mode": "wrap"} if mode == "wrap" else {"constant_values": np.nan}))
+            around = np.stack([padded[j : j + 6, i : i + 7] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
+            np.testing.assert_array_equal(neighbours_median(z, period), np.nanmedian(around, axis=0))
 
     def test_spikes_are_found_also_at_borders_and_beside_holes(self):
         z = rough()
@@ -175,6 +193,11 @@ class Levels(unittest.TestCase):
 
     def test_jumps_at_the_border_tell_a_period(self):
         self.assertLess(max(surface.border_jumps(surface.heights(rough(), 1, 1))), 1.5)
+        self.assertEqual(surface.border_jumps(surface.heights(np.ones((4, 5)), 1, 1)), (0.0, 0.0))
+        steps = np.where(np.arange(4)[:, None] < 2, 0.0, 1.0) + np.zeros((4, 5))
+        self.assertEqual(surface.border_jumps(surface.heights(steps, 1, 1))[0], 0.0)
+        # Of two rows of steps one is a jump of 1, as is that across the border: 1 over the root of 1/3.
+        self.assertAlmostEqual(surface.border_jumps(surface.heights(steps, 1, 1))[1], np.sqrt(3.0), delta=1e-12)
         tilted = rough() + 0.2 * np.arange(64)
         jump_x, jump_y = surface.border_jumps(surface.heights(tilted, 1, 1))
         self.assertGreater(jump_x, 10.0)
@@ -188,6 +211,10 @@ class Gaps(unittest.TestCase):
         gap = surface.gap(surface.heights(z, DX, DY, period="x", units=("mm", "N")))
         np.testing.assert_array_equal(gap.h, np.where(np.isnan(z), np.inf, np.nanmax(z) - z))
         self.assertEqual((gap.dx, gap.dy, gap.period, gap.units), (DX, DY, "x", ("mm", "N")))
+        self.assertEqual(gap.area, 64 * 64 * DX * DY)
+        moved = surface.Gap(gap.h[:10], DX, DY, middle=(3.0, -4.0))
+        np.testing.assert_allclose(moved.x, 3.0 + (np.arange(64) - 31.5) * DX, atol=1e-13)
+        np.testing.assert_allclose(moved.y, -4.0 + (np.arange(10) - 4.5) * DY, atol=1e-13)
         result = gap.solve(force=1e-2, e_star=1.0)
         self.assertEqual(result.pressure[3, 4], 0.0)
         self.assertEqual(result.units, ("mm", "N"))
