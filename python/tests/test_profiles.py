@@ -8,6 +8,7 @@ import numpy as np
 
 import contact_normal as cn
 from contact_normal import profiles
+from contact_normal.profiles._curve import Curve
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 # A conical tread, and a head that is one arc between two flanks. Lengths in mm.
@@ -169,6 +170,22 @@ class Loaded(unittest.TestCase):
         self.assertGreater(border.min(), result.approach)
         self.assertEqual(result.warnings, ())
 
+    def test_a_position_that_overlaps_gives_the_same_pressures(self):
+        touching = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
+        lower = profiles.Position(z=touching.position.z + 0.02)
+        overlapping = profiles.contact_points(self.TRACK, self.WHEELSET, lower)[0]
+        self.assertAlmostEqual(overlapping.clearance, -0.02, delta=1e-9)
+        (gap, result), (other_gap, other) = (point.press(10e3, 0.3, 0.3, **STEEL) for point in (touching, overlapping))
+        self.assertEqual(gap.h.shape, other_gap.h.shape)
+        self.assertAlmostEqual(other_gap.h.min(), -0.02, delta=1e-6)
+        # A cylinder that is lowered by 0.02 mm on 460 mm has the same shape to 5e-5.
+        self.assertAlmostEqual(other.max_pressure / result.max_pressure, 1.0, delta=2e-4)
+        self.assertAlmostEqual(other.approach + 0.02, result.approach, delta=1e-5)
+        # By position: no further approach is the overlap.
+        by_position = overlapping.gap(0.3, 0.3, 0.02).solve(approach=0.0, **STEEL)
+        by_approach = touching.gap(0.3, 0.3, 0.02).solve(approach=0.02, **STEEL)
+        self.assertAlmostEqual(by_position.force / by_approach.force, 1.0, delta=1e-3)
+
     def test_a_grid_that_cannot_be_large_enough_is_refused(self):
         point = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
         with self.assertRaisesRegex(ValueError, "the grid would need more than 2048 elements"):
@@ -271,6 +288,39 @@ class Profiles(unittest.TestCase):
         np.testing.assert_allclose(z, HEAD - np.sqrt(HEAD**2 - (y - MIDDLE) ** 2), atol=EXACT)
         np.testing.assert_allclose(dz / dy, (y - MIDDLE) / np.sqrt(HEAD**2 - (y - MIDDLE) ** 2), atol=1e-6)
         self.assertTrue(np.isnan(curve.where(MIDDLE + 50.0)))
+
+    def test_a_curve_is_the_natural_spline(self):
+        rng = np.random.default_rng(3)
+        y, z = np.cumsum(rng.uniform(0.2, 1.0, 12)), rng.normal(size=12)
+        curve = Curve(y, z)
+        np.testing.assert_allclose(np.diff(curve.t), np.hypot(np.diff(y), np.diff(z)), rtol=1e-13)
+        for points, values, slopes in ((y, 0, 2), (z, 1, 3)):
+            np.testing.assert_allclose(curve.at(curve.t)[values], points, atol=1e-13)
+            # It is a cubic between points, so differences of its derivative, a parabola, are exact second derivatives at the middle of two places.
+            step = 1e-3
+            before, after = curve.at(curve.t[1:-1] - 1e-9)[slopes], curve.at(curve.t[1:-1] + 1e-9)[slopes]
+            np.testing.assert_allclose(before, after, atol=1e-7)
+
+            def second(t, slopes=slopes):
+                return (curve.at(t + step)[slopes] - curve.at(t - step)[slopes]) / (2 * step)
+
+            left = 2 * second(curve.t[1:-1] - step) - second(curve.t[1:-1] - 2 * step)
+            right = 2 * second(curve.t[1:-1] + step) - second(curve.t[1:-1] + 2 * step)
+            # Second derivatives are linear: from both sides to one value, and to 0 at the ends.
+            np.testing.assert_allclose(left, right, atol=1e-8)
+            for end, inwards in ((curve.t[0], step), (curve.t[-1], -step)):
+                self.assertAlmostEqual(2 * second(end + inwards) - second(end + 2 * inwards), 0.0, delta=1e-8)
+            # The derivative is that of the values.
+            at = np.linspace(curve.t[0] + 0.01, curve.t[-1] - 0.01, 50)
+            np.testing.assert_allclose((curve.at(at + 1e-5)[values] - curve.at(at - 1e-5)[values]) / 2e-5, curve.at(at)[slopes], atol=1e-7)
+
+    def test_a_place_is_searched_around_another_one(self):
+        y = np.linspace(0.0, 4.0 * np.pi, 200)
+        curve = Curve(y, -np.cos(y))
+        for near, expected in ((0.25, 0.5 * np.pi), (0.75, 2.5 * np.pi)):
+            found = curve.where(0.0, (0.0, 1.0), near * curve.t[-1])
+            self.assertAlmostEqual(float(curve.at(found)[0]), expected, delta=1e-6)
+        self.assertTrue(np.isnan(curve.where(1.5, (0.0, 1.0), 0.25 * curve.t[-1])))
 
     def test_points_that_lie_on_each_other_count_once(self):
         plain = wheel()
