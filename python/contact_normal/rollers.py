@@ -41,7 +41,8 @@ def _positive(name: str, value: Any) -> float:
 
 
 def circle(x: Any, radius: float) -> Doubles:
-    """How far a circle of a radius has left its tangent at a distance x: exact, not a parabola; inf beyond the radius. A negative radius: a hollow."""
+    """How far a circle of a radius has left its tangent at a distance x: exact, not a parabola; inf beyond the radius. A negative radius is a
+    hollow."""
     x, r = np.asarray(x, dtype=np.float64), abs(radius)
     if np.isinf(r):
         return np.zeros_like(x)
@@ -84,7 +85,7 @@ def _logarithm(half: float, relief: float) -> Drop:
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
-    """The logarithmic profile of Lundberg (1939), whose pressures under the force it is made for are the same all along.
+    """The logarithmic profile of Lundberg (1939), whose pressures under the force it is made for are nearly the same all along.
 
     drop(y) = force/(pi length E*) ln(1/(1 - (2 y/length)^2))
 

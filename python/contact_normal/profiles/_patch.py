@@ -147,7 +147,9 @@ class ContactPoint:
         middle = (float(k[columns][[0, -1]].mean()) * dx, float(k[rows][[0, -1]].mean()) * dy)
         return Gap(np.ascontiguousarray(h[rows, columns]), dx, dy, middle, units=("mm", "N"))
 
-    def press(self, force: float, dx: float, dy: float, *, depth: float = 0.01, friction: dict[str, Any] | None = None, **scene: Any) -> tuple[Gap, Result]:
+    def press(
+        self, force: float, dx: float, dy: float, *, depth: float = 0.01, friction: dict[str, Any] | None = None, **scene: Any
+    ) -> tuple[Gap, Result]:
         """Presses wheel and rail together by a force along the normal: the gap, on a grid as large as needed, and the result.
 
         Parameters

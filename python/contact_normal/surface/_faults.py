@@ -59,7 +59,8 @@ class Faults:
         for value in self.fill_values:
             lines.append(f"{(self.heights.z == value).sum()} elements have the value {value:g}, which seems to stand for 'not measured'")
         places = np.argwhere(self.spikes)
-        lines.append(f"{len(places)} spikes" + (", the first ones at (iy, ix) = " + ", ".join(str((int(iy), int(ix))) for iy, ix in places[:5]) if len(places) else ""))
+        first = ", ".join(str((int(iy), int(ix))) for iy, ix in places[:5])
+        lines.append(f"{len(places)} spikes" + (f", the first ones at (iy, ix) = {first}" if first else ""))
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._arguments import both, flag, number, real
+from .._arguments import flag, number, real, two
 from .._grid import centres
 from .._units import Units, checked
 
@@ -101,6 +101,43 @@ def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
     return abs(d), d < 0.0
 
 
+def _plain(values: Any) -> Doubles:
+    """An array of two indices, NaN where nothing was measured."""
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
+    z = real("values", values)
+    if z.ndim != 2 or not z.size:
+        raise ValueError(f"values has shape {z.shape}; heights have two indices")
+    return np.asarray(np.where(np.isfinite(z), z, np.nan))
+
+
+def _element_sizes(
+    shape: tuple[int, ...], dx: Any, dy: Any, size: Any, span: Any, x: Any, y: Any
+) -> tuple[tuple[float, float], tuple[bool, bool]]:
+    """The sizes of an element by the one way in which they are given, and whether coordinates fall."""
+    my, mx = shape
+    ways = (dx is not None or dy is not None, size is not None, span is not None, x is not None or y is not None)
+    if sum(ways) != 1:
+        raise TypeError("give the size of an element in one way: dx and dy, or size, or span, or x and y")
+    falls = False, False
+    if ways[0]:
+        sizes = number("dx", dx), number("dy", dy)
+    elif ways[1]:
+        lx, ly = two("size", size)
+        sizes = lx / mx, ly / my
+    elif ways[2]:
+        if min(mx, my) < 2:
+            raise ValueError(f"span needs at least 2 samples in each direction; there are {mx} and {my}")
+        lx, ly = two("span", span)
+        sizes = lx / (mx - 1), ly / (my - 1)
+    else:
+        (one, x_falls), (other, y_falls) = _spacing("x", x, mx), _spacing("y", y, my)
+        sizes, falls = (one, other), (x_falls, y_falls)
+    if not all(d > 0.0 and np.isfinite(d) for d in sizes):
+        raise ValueError(f"element sizes are {sizes[0]} and {sizes[1]}; they must be positive and finite")
+    return sizes, falls
+
+
 def heights(
     values: npt.ArrayLike,
     dx: float | None = None,
@@ -145,39 +182,16 @@ def heights(
     -------
     Heights
     """
-    given: Any = values
-    if isinstance(given, np.ma.MaskedArray):
-        given = np.ma.filled(given.astype(np.float64), np.nan)
-    z = np.array(real("values", given))
-    if z.ndim != 2 or not z.size:
-        raise ValueError(f"values has shape {z.shape}; heights have two indices")
+    z = _plain(values)
     if axes not in ("yx", "xy"):
         raise ValueError(f'axes is {axes!r}; it must be "yx" or "xy"')
-    z = z.T if axes == "xy" else z
     if period not in (None, "x", "y", "xy"):
         raise ValueError(f'period is {period!r}; it must be "x", "y" or "xy"')
-    ways = (dx is not None or dy is not None, size is not None, span is not None, x is not None or y is not None)
-    if sum(ways) != 1:
-        raise TypeError("give the size of an element in one way: dx and dy, or size, or span, or x and y")
-    my, mx = z.shape
-    if ways[0]:
-        sizes = number("dx", dx), number("dy", dy)
-    elif size is not None:
-        lx, ly = both("size", size)
-        sizes = number("size[0]", lx) / mx, number("size[1]", ly) / my
-    elif span is not None:
-        if min(mx, my) < 2:
-            raise ValueError(f"span needs at least 2 samples in each direction; there are {mx} and {my}")
-        lx, ly = both("span", span)
-        sizes = number("span[0]", lx) / (mx - 1), number("span[1]", ly) / (my - 1)
-    else:
-        (one, x_falls), (other, y_falls) = _spacing("x", x, mx), _spacing("y", y, my)
-        sizes, z = (one, other), z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
-    if not all(d > 0.0 and np.isfinite(d) for d in sizes):
-        raise ValueError(f"element sizes are {sizes[0]} and {sizes[1]}; they must be positive and finite")
+    z = z.T if axes == "xy" else z
+    (one, other), (x_falls, y_falls) = _element_sizes(z.shape, dx, dy, size, span, x, y)
     if flag("top_first", top_first):
-        z = z[::-1]
-    z = np.where(np.isfinite(z), z, np.nan)
+        y_falls = not y_falls
+    z = z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        z[z == number("fill", fill)] = np.nan
-    return Heights(np.ascontiguousarray(z), *sizes, period, checked(units))
+        z = np.where(z == number("fill", fill), np.nan, z)
+    return Heights(np.ascontiguousarray(z), one, other, period, checked(units))

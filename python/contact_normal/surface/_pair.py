@@ -40,7 +40,8 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
     z, period, units = lower.z, lower.period, lower.units
     if upper is not None:
         if upper.z.shape != z.shape or not np.allclose((upper.dx, upper.dy), (lower.dx, lower.dy), rtol=1e-9, atol=0.0):
-            raise ValueError(f"the surfaces have {z.shape} elements of {(lower.dx, lower.dy)} and {upper.z.shape} of {(upper.dx, upper.dy)}; grids must be equal")
+            sides = [f"{side.z.shape} elements of {side.dx} x {side.dy}" for side in (lower, upper)]
+            raise ValueError(f"the surfaces have {sides[0]} and {sides[1]}; grids must be equal")
         if upper.period != period:
             raise ValueError(f"the periods are {period!r} and {upper.period!r}; they must be equal")
         z = z + (upper.turned_over(turned) if turned else upper).z
@@ -52,7 +53,8 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
 
 
 def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
-    """E* of two bodies, with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson 1985, eq. 4.33); one value stands for both bodies, inf for a rigid one."""
+    """E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2). One value stands for both bodies, inf for
+    a rigid one."""
     sum_of = 0.0
     for body in range(2):
         young, nu = (number(name, value if np.ndim(value) == 0 else two(name, value)[body])
@@ -89,6 +91,12 @@ def _tilted(gap: Gap, tilt: Doubles) -> Gap:
     return dataclasses.replace(gap, h=h - h.min())
 
 
+def _centre(gap: Gap, result: Result) -> Doubles:
+    """Centre of the pressures, in coordinates of the gap."""
+    weights = result.pressure / result.pressure.sum()
+    return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
+
+
 def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolerance: float = 1e-4, **scene: Any) -> Balanced:
     """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
 
@@ -121,12 +129,10 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         raise ValueError(f"the gap repeats itself in {gap.period}: a body with a period cannot tilt")
     aim = np.array(two("at", at))
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
-    x, y = gap.x, gap.y
 
     def solved(tilt: Doubles) -> tuple[Result, Doubles]:
         result = _tilted(gap, tilt).solve(force=force, **scene)
-        weights = result.pressure / result.pressure.sum()
-        return result, np.array([weights.sum(axis=0) @ x, weights.sum(axis=1) @ y]) - aim
+        return result, _centre(gap, result) - aim
 
     tilt = np.zeros(2)
     result, off = solved(tilt)
@@ -137,7 +143,8 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
     for _ in range(_SOLVES):
         if np.abs(off / sizes).max() <= tolerance:
-            return Balanced(_tilted(gap, tilt), (float(tilt[0]), float(tilt[1])), result, (float(off[0] + aim[0]), float(off[1] + aim[1])))
+            x, y = (float(place) for place in off + aim)
+            return Balanced(_tilted(gap, tilt), (float(tilt[0]), float(tilt[1])), result, (x, y))
         try:
             step = -np.linalg.solve(slopes, off)
         except np.linalg.LinAlgError:
@@ -151,4 +158,5 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         step = part * step
         slopes += np.outer(there - off - slopes @ step, step) / (step @ step)
         tilt, result, off = tilt + step, moved, there
-    raise ValueError(f"no tilt was found that brings the centre of the pressures to {at}: it stays {tuple(off.tolist())} away; are there elements all around it?")
+    raise ValueError(f"no tilt was found that brings the centre of the pressures to {at}: it stays {tuple(off.tolist())} away; "
+                     "are there elements all around it?")
