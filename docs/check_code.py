@@ -77,7 +77,7 @@ def declared(block: str) -> str:
 def main(prefix: Path, folder: Path) -> None:
     """Checks all pages."""
     folder.mkdir(parents=True, exist_ok=True)
-    for data in (root / "data" / "wheel_rail").glob("*.txt"):
+    for data in (*(root / "data" / "wheel_rail").glob("*.txt"), *(root / "data" / "heights").glob("*.npy"), *(root / "data" / "profiles").glob("*.pr?")):
         (folder / data.name).write_bytes(data.read_bytes())
     environment = {**os.environ, "LD_LIBRARY_PATH": str(prefix / "lib"), "MPLBACKEND": "Agg", "MPLCONFIGDIR": str(folder)}
     flags = [f"-I{prefix / 'include'}"]

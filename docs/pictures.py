@@ -34,6 +34,7 @@ EXAMPLES = {
     "effects": Example(tuple(f"effects_{name}" for name in EFFECTS), takes_folder=True),
     "ledger": Example(("ledger",)),
     "price_list": Example(("price_list",)),
+    "what_matters": Example(("what_matters",)),
 }
 
 
