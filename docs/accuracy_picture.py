@@ -10,7 +10,6 @@ matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
 PAGE = Path(__file__).with_name("accuracy.md")
-MARKERS = ("o", "s", "D")
 
 
 def table() -> tuple[list[str], dict[str, list[tuple[int, float] | None]]]:
@@ -25,26 +24,18 @@ def table() -> tuple[list[str], dict[str, list[tuple[int, float] | None]]]:
 
 
 def draw(path: str) -> None:
-    """One line for each surface, with the elements in a direction beside the markers."""
+    """Error against seconds: a line for each surface, with the elements in a direction of its points in the legend."""
     targets, surfaces = table()
-    figure, axes = pyplot.subplots(figsize=(6.8, 4.2), layout="constrained")
-    for y, (name, prices) in enumerate(reversed(surfaces.items())):
-        paid = [price for price in prices if price]
-        axes.plot([ms for _, ms in paid], [y] * len(paid), "-", color="0.5", alpha=0.4, zorder=0)
-        for k, price in enumerate(prices):
-            if price:
-                axes.plot(price[1], y, MARKERS[k], color=f"C{k}", markersize=8)
-        # Grids once, where several accuracies have the same.
-        grids = list(dict.fromkeys(m for m, _ in paid))
-        told = ", ".join(map(str, grids)) + (", finer than studied" if None in prices else "")
-        axes.annotate(told, (max(ms for _, ms in paid), y), xytext=(9, 0), textcoords="offset points", va="center", fontsize=9)
-    for k, target in enumerate(targets):
-        axes.plot([], [], MARKERS[k], color=f"C{k}", label=target)
-    axes.set_yticks(range(len(surfaces)), list(reversed(surfaces)))
-    axes.set(xscale="log", xlabel="time of a call, one thread [ms]; numbers: elements in a direction", ylim=(-0.6, len(surfaces) - 0.4))
-    axes.set_xlim(right=20 * axes.get_xlim()[1])
-    axes.grid(axis="x", alpha=0.3)
-    axes.legend(title="error of the force", loc="upper center", bbox_to_anchor=(0.5, 1.22), ncols=len(targets))
+    figure, axes = pyplot.subplots(figsize=(6.8, 4.6), layout="constrained")
+    errors = [float(target.strip(" %")) / 100.0 for target in targets]
+    for k, (name, prices) in enumerate(surfaces.items()):
+        points = [(1e-3 * price[1], error) for price, error in zip(prices, errors) if price]
+        grids = ", ".join(str(price[0]) for price in prices if price)
+        axes.plot(*zip(*points), "o-", color=f"C{k}", label=f"{name}: {grids}", markersize=5)
+    axes.set(xscale="log", yscale="log", xlabel="time of a call, one thread [s]", ylabel="relative error of the force")
+    axes.set_ylim(0.4 * min(errors), 2.5 * max(errors))
+    axes.grid(True, which="major", color="0.5", alpha=0.2)
+    axes.legend(title="elements in a direction", loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.savefig(path)
 
 

@@ -77,7 +77,7 @@ def main(picture=None):
             most = max(rows, key=lambda row: abs(row.relative))
             quantity = "approach" if most.quantity == "force" else most.quantity.replace("_", " ")
             verdict = "needed" if omitted[0] in bill.needed else "negligible" if omitted[0] in bill.negligible else "not decided"
-            print(f"{name:16}{omitted[0].replace('_', ' '):20}{quantity:>18}{most.relative:10.1%}  {verdict}")
+            print(f"{name:16}{omitted[0].replace('_', ' '):20}{quantity:>18}{round(most.relative, 3) + 0.0:10.1%}  {verdict}")
         if picture and name == "wheel on rail":
             axes = bill.plot()
             axes.set_title("Wheel on rail: what 1 % calls for", fontsize=10)

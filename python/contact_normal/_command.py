@@ -1,4 +1,4 @@
-"""The command line: `contact-normal solve`, `prices`, `creep-table`, `replay`."""
+"""The command line: `contact-normal solve`, `prices`, `bill`, `creep-table`, `replay`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from . import _command_prices, _command_replay, _command_solve, _command_table
+from . import _command_bill, _command_prices, _command_replay, _command_solve, _command_table
 from ._library import VERSION, ContactNormalError
 
 # What the program returns; the page on the command line has the same table.
@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"contact-normal {VERSION}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (_command_solve, _command_prices, _command_table, _command_replay):
+    for module in (_command_solve, _command_prices, _command_bill, _command_table, _command_replay):
         module.add(commands)
     return top
 

@@ -49,6 +49,23 @@ def add_scene(command: argparse.ArgumentParser) -> None:
     command.add_argument("--threads", type=int, default=0, help="default 0: all cores")
 
 
+def add_effects(command: argparse.ArgumentParser) -> None:
+    """The options of effects."""
+    effects = command.add_argument_group("effects")
+    effects.add_argument("--period", choices=("x", "y", "xy"), help="the grid is one period of a scene that repeats itself")
+    effects.add_argument("--pressure-limit", type=float, metavar="P", help="no pressure is larger: hardness")
+    effects.add_argument("--layer", type=float, metavar="C", help="compliance of a thin layer, a length per pressure")
+    for body in (1, 2):
+        effects.add_argument(f"--coating-{body}", type=float, nargs=3, metavar=("T", "G", "NU"),
+                             help=f"a layer bonded to body {body}: thickness, shear modulus, Poisson ratio")
+
+
+def effects_of(given: argparse.Namespace) -> dict[str, Any]:
+    """Effects as the functions of the package take them."""
+    coating = tuple(tuple(layer) if layer else None for layer in (given.coating_1, given.coating_2))
+    return {"period": given.period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
+
+
 def surface_of(given: argparse.Namespace) -> Surface:
     """The undeformed distance that the options name."""
     found = read_heights(given.file, given.variable)

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ._command_scene import add_scene, scene_arguments, surface_of
+from ._command_scene import add_effects, add_scene, effects_of, scene_arguments, surface_of
 from ._constants import OK
-from ._field_files import FIELDS, PICTURES, draw, write_fields
+from ._field_files import FIELDS, PICTURES, save, write_fields
 from ._library import library
 from ._result import Result
 from ._solve import solve
@@ -21,10 +21,7 @@ def add(commands: Any) -> None:
     command = commands.add_parser("solve", help="pressures and contact area of a surface",
                                   description="Finds the pressures and the contact area of a surface that is pressed onto a plane.")
     add_scene(command)
-    effects = command.add_argument_group("effects")
-    effects.add_argument("--period", choices=("x", "y", "xy"), help="the grid is one period of a scene that repeats itself")
-    effects.add_argument("--pressure-limit", type=float, metavar="P", help="no pressure is larger: hardness")
-    effects.add_argument("--layer", type=float, metavar="C", help="compliance of a thin layer, a length per pressure")
+    add_effects(command)
     out = command.add_argument_group("output")
     out.add_argument("-o", "--output", action="append", default=[], metavar="FILE", help=f"fields as {', '.join(FIELDS)}; may be repeated")
     out.add_argument("--plot", nargs="?", const="", metavar="FILE",
@@ -41,13 +38,13 @@ def run(given: argparse.Namespace) -> int:
             raise ValueError(f"{name} must end in one of {', '.join(endings)}")
     surface = surface_of(given)
     progress = sys.stderr.isatty() if given.progress is None else given.progress
-    result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress, period=given.period,
-                   pressure_limit=given.pressure_limit, layer=given.layer, **scene_arguments(given))
+    result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,
+                   **effects_of(given), **scene_arguments(given))
     print("\n".join(f"{name:24}{text}" for name, text in told(result)))
     for name in given.output:
         write_fields(name, result)
     if plot:
-        draw(plot, result)
+        save(plot, result.plot)
     return 0 if result.status == OK else 1
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,10 +54,9 @@ def _write_mesh(path: Path, result: Result) -> None:
     meshio.Mesh(corners, [("quad", quadrilaterals)], cell_data=fields).write(path)
 
 
-def draw(path: str | Path, result: Result) -> None:
-    """Draws the pressures and the contact area."""
+def save(path: str | Path, plot: Callable[[], Any]) -> None:
+    """Saves what `plot` draws, in the style of this package."""
     from ._style import matplotlib_style
 
     with matplotlib_style():
-        figure: Any = result.plot().figure
-        figure.savefig(path)
+        plot().figure.savefig(path)

@@ -17,8 +17,8 @@ _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#
 
 
 def _error_axes(axes: Axes) -> None:
-    axes.set(xscale="log", yscale="log", xlabel="seconds", ylabel="relative error")
-    axes.grid(True, which="major", color="0.88", linewidth=0.8)
+    axes.set(xscale="log", yscale="log", xlabel="time [s]", ylabel="relative error")
+    axes.grid(True, which="major", color="0.5", alpha=0.2, linewidth=0.8)
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -39,12 +39,20 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
 
 
 def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> None:
-    """The elements of each grid, along the upper border."""
-    for seconds, (my, mx) in dict((shape, (seconds, shape)) for seconds, shape in grids).values():
-        axes.axvline(seconds, color="0.9", linewidth=0.8, zorder=0)
+    """The elements of each grid, along the upper border; the finest ones first, and none where another is too near."""
+    if not grids:
+        return
+    places = sorted(dict((shape, (seconds, shape)) for seconds, shape in grids).values(), reverse=True)
+    apart = max(1.2, (places[0][0] / places[-1][0]) ** 0.08)
+    last = float("inf")
+    for seconds, (my, mx) in places:
+        if seconds * apart > last:
+            continue
+        last = seconds
+        axes.axvline(seconds, color="0.5", alpha=0.2, linewidth=0.8, zorder=0)
         axes.annotate(
             f"{mx} × {my}", (seconds, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 4), textcoords="offset points", fontsize=8,
-            color="0.35", ha="center", rotation=30,
+            ha="center", rotation=30,
         )
 
 
@@ -53,7 +61,7 @@ def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
     axes = axes or new_axes(SIZE)
     had = [price for price in prices if not price.obstacle and price.seconds > 0]
     axes.plot([price.seconds for price in had], [price.error for price in had], "-", color=_COLOURS[0], label="predicted")
-    axes.plot([price.seconds for price in had], [price.error for price in had], "o", mfc="white", mec=_COLOURS[0], label="grids of the list")
+    axes.plot([price.seconds for price in had], [price.error for price in had], "o", mfc="none", mec=_COLOURS[0], label="grids of the list")
     if measured:
         seconds, errors = zip(*measured)
         axes.plot(seconds, errors, "s", color=_COLOURS[1], label="measured")
@@ -78,13 +86,13 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
             place, size = k + (q - 0.5 * (len(quantities) - 1)) * height, max(abs(row.relative), 1e-12)
             error = row.error / abs(row.value) if row.error >= 0 else 0.0
             axes.barh(place, size, height * 0.9, color=_COLOURS[q % len(_COLOURS)], label=quantity.replace("_", " ") if k == 0 else None,
-                      xerr=[[min(error, 0.99 * size)], [error]], error_kw={"elinewidth": 1, "ecolor": "0.3"})
-    axes.axvline(bill.target, color="0.2", linestyle="--", linewidth=1)
-    axes.annotate("target", (bill.target, 1.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)
+                      xerr=[[min(error, 0.99 * size)], [error]], error_kw={"elinewidth": 1, "ecolor": "0.5"})
+    axes.axvline(bill.target, color="0.5", linestyle="--", linewidth=1)
+    axes.annotate("target", (bill.target, 0.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)
     axes.set(xscale="log", xlabel="relative change without the effect", yticks=range(len(singles)))
     axes.set_yticklabels([_bill_label(bill, omitted) for omitted in singles])
     axes.invert_yaxis()
-    axes.grid(True, axis="x", color="0.88", linewidth=0.8)
+    axes.grid(True, axis="x", color="0.5", alpha=0.2, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     if singles:

@@ -181,8 +181,18 @@ class Commands(unittest.TestCase):
         code, out, _ = called("prices", self.npy, *BALL, "--targets", "1e-2", "1e-15")
         rows = [line.split() for line in out.splitlines()]
         self.assertEqual((code, rows[0][:2], rows[1][0], rows[2][0]), (0, ["relative", "error"], "1.0e-02", "1.0e-15"))
-        self.assertGreaterEqual(int(rows[1][1]), MX)
+        # Enough for forces: docs/accuracy.md.
+        self.assertGreaterEqual(int(rows[1][1]), 8)
         self.assertTrue(out.rstrip().endswith("below round-off"), out)
+
+    def test_bills(self):
+        code, out, told = called("bill", self.npy, *BALL, "--layer", "1e-12", "--pressure-limit", "300", "--plot", self.folder / "bill.svg")
+        self.assertEqual((code, told), (0, ""))
+        # The ball's largest pressure is 1000: a limit of 300 is reached.
+        self.assertEqual(out.splitlines()[-1], "needed: pressure_limit; negligible: layer")
+        self.assertGreater((self.folder / "bill.svg").stat().st_size, 1000)
+        code, out, _ = called("bill", self.npy, *BALL)
+        self.assertEqual((code, out), (0, "the scene names no effect: there is nothing to leave out\n"))
 
     def test_creep_tables(self):
         code, out, _ = called("creep-table", "--xi", "0:0.02:3", "--eta", "0", "--phi", "0", "--elements", "35")
