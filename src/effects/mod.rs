@@ -23,7 +23,7 @@
 //!
 //! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
 //! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
-//! in turns with the normal problem, or remembers the steps before, is [`Coupled`].
+//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example.
 
 mod coating;
 mod coupled;
@@ -56,3 +56,9 @@ pub use together::{
     beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
     limits, own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
 };
+
+#[cfg(test)]
+#[path = "../../tests/unit/foundation.rs"]
+mod foundation;
+#[cfg(test)]
+pub use foundation::Foundation;
