@@ -3,7 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`coefficients`], `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
-//! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
@@ -23,7 +23,6 @@ mod bracket;
 mod certificate;
 pub mod coefficients;
 mod compliance;
-mod component;
 mod corral;
 pub mod cross;
 pub mod dense;
@@ -54,7 +53,6 @@ mod series;
 mod shift;
 mod solution;
 mod solver;
-mod spectrum;
 mod step;
 mod sweep;
 mod system;
@@ -65,7 +63,6 @@ mod toeplitz;
 mod unit;
 mod vectors;
 mod window;
-mod workspace;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
@@ -76,4 +73,3 @@ pub use request::{Request, Start};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;
-pub use workspace::Workspace;

@@ -8,11 +8,11 @@ use super::row_product::RowProduct;
 use super::sweep::{Rolling, Sweep};
 use super::toeplitz::Toeplitz;
 use super::unit::unit_of;
-use super::workspace::Workspace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
+use toeplitz::Memory;
 
 /// An iteration gains by several threads on a grid of so many times fewer elements than the normal problem does: it multiplies more.
 const WORK: usize = 4;
@@ -22,9 +22,9 @@ pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
     /// None: single precision serves for all, on a coarser grid; or there are tables per loaded row.
-    exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
-    fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
-    inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
+    exact: Option<(Toeplitz<f64>, Memory<f64>)>,
+    fast: Option<(Toeplitz<f32>, Memory<f32>)>,
+    inverse: Option<(Toeplitz<f32>, Memory<f32>)>,
     /// Of tables per loaded row, in place of `exact` and `fast`.
     rows: Option<RowProduct>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
@@ -182,7 +182,7 @@ impl Operators {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        fn of<T: Real>(operator: &Option<(Toeplitz<T>, Workspace<T>)>) -> usize {
+        fn of<T: Real>(operator: &Option<(Toeplitz<T>, Memory<T>)>) -> usize {
             operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
         }
         let excess = self.excess.as_ref().map_or(0, Excess::bytes);
@@ -204,7 +204,7 @@ fn product<T: Real>(
     }
 }
 
-fn with_workspace<T: Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Workspace<T>)> {
+fn with_workspace<T: Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Memory<T>)> {
     let workspace = operator.workspace()?;
     Ok((operator, workspace))
 }

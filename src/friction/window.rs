@@ -4,12 +4,12 @@ use super::plane::Vector;
 use super::row_product::RowProduct;
 use super::row_tables::RowTables;
 use super::toeplitz::Toeplitz;
-use super::workspace::Workspace;
 use super::Tangential;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
+use toeplitz::Memory;
 
 /// A box of elements: the first column and row, and behind the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub struct Displaced {
 }
 
 enum Product {
-    Toeplitz(Box<Toeplitz<f64>>, Workspace<f64>),
+    Toeplitz(Box<Toeplitz<f64>>, Memory<f64>),
     ByRow(RowProduct),
 }
 

@@ -26,18 +26,6 @@ use par::memory::unwritten;
 use par::threads::Threads;
 use par::Result;
 
-/// The block that a thread takes after block b, one of so many, as it came from the one before; at first the one beside b away from the end.
-fn next_block(before: usize, b: usize, count: usize) -> usize {
-    let on = (2 * b).wrapping_sub(before);
-    if on != b && on < count {
-        on
-    } else if 2 * b < count {
-        b + 1
-    } else {
-        b - 1
-    }
-}
-
 /// Transforms in y, and the symbol.
 pub(crate) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
@@ -90,8 +78,8 @@ impl<T: Real> Convolution<T> {
             return rows.threads.share(blocks, pieces, |(b, (block, symbol)), piece| {
                 #[cfg(feature = "test-panics")]
                 crate::panics::at_a_block();
-                let next = next_block(std::mem::replace(&mut piece.block, b), b, in_x.blocks());
-                let next = block.as_ptr().wrapping_add(next.wrapping_sub(b).wrapping_mul(length));
+                let next = piece.next_block(block.as_ptr(), b, length, in_x.blocks());
+                piece.block = b;
                 let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
                 even.multiply((block, columns), next, loaded.clone(), symbol, &mut piece.columns);
             });

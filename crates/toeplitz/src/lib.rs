@@ -5,6 +5,7 @@
 //!
 //! c(kx, ky) = c(-kx, ky) = c(kx, -ky)                 S is real and even: half of each of its columns is kept
 //! c(k) = c(-k)                                        S is real
+//! c(kx, ky) = -c(-kx, ky) = -c(kx, -ky)               S is real and odd: likewise
 //! any other c                                         S is complex
 //! ```
 //!
@@ -30,6 +31,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`Product`] | the product of one matrix |
+//! | [`VectorProduct`] | the same of two components, by a symmetric matrix of each offset |
 //! | [`coefficients`] | what a matrix is made of |
 //! | [`fft`] | transforms of rows and columns: stages in lanes, and any length |
 //! | [`plan`] | plans that the threads of a process share |
@@ -56,11 +58,15 @@ mod set_up;
 mod set_up_columns;
 mod set_up_lanes;
 mod symbol;
+mod vector_product;
+mod vector_set_up;
+mod vector_symbol;
 mod workspace;
 
-pub use coefficients::{Coefficients, Even};
+pub use coefficients::{Coefficients, Even, EvenMatrix};
 pub use product::{even_period, Product};
 pub use real::{Complex, Real};
 pub use rows::Rows;
 pub use set_up::SetUp;
+pub use vector_product::{vector_period, VectorProduct};
 pub use workspace::{Memory, Piece, Room};

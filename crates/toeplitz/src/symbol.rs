@@ -176,7 +176,7 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
 }
 
 /// A symbol made of another one.
-fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
+pub(crate) fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
     from: &[A],
     convert: impl Fn(&A) -> B + Sync + Send,
     mark: B,
