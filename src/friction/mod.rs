@@ -8,7 +8,7 @@
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `vectors`, `beside` | passes over fields, residuals continued beside C |
+//! | `vectors`, `lanes`, `beside` | passes over fields, in vectors of the machine, residuals continued beside C |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `fgmres`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
@@ -33,6 +33,7 @@ mod excess;
 mod fgmres;
 mod forces;
 mod interpolation;
+mod lanes;
 mod last;
 mod levels;
 mod near_element;

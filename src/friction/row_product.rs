@@ -6,7 +6,10 @@
 //!
 //! For each of the `px/2 + 1` bins that is a matrix of 2 my by 2 my complex numbers, all of which a product reads.
 
+use std::array::from_fn;
+
 use super::coefficients::Tangential;
+use super::plane::Vector;
 use super::row_tables::{Full, RowTables};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -93,7 +96,7 @@ impl RowProduct {
             size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {nb} values of {MATRICES}")))?;
         let nan = Wave::new(f64::NAN, f64::NAN);
         let piece = |_| {
-            let (row, bins) = (zeros(px, MATRICES)?, zeros(4 * nb, MATRICES)?);
+            let (row, bins) = (zeros(px.max(2 * mx), MATRICES)?, zeros(4 * nb, MATRICES)?);
             Ok(Piece { entries: zeros(2 * mx - 1, MATRICES)?, row, scratch: transform.scratch()?, bins })
         };
         let mut pieces = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
@@ -105,6 +108,7 @@ impl RowProduct {
                 let Piece { entries, row, scratch, bins } = piece;
                 entries.iter_mut().zip(-last..).for_each(|(value, kx)| *value = entry(jy, iy, kx));
                 for component in 0..4 {
+                    let row = &mut row[..px];
                     row.fill(0.0);
                     for (value, kx) in entries.iter().zip(-last..) {
                         row[kx.rem_euclid(px as i64) as usize] = value[component] / px as f64;
@@ -126,15 +130,46 @@ impl RowProduct {
         Ok(RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads: threads.clone() })
     }
 
-    /// `u = by A q` of fields in any precision.
-    pub fn apply<S: Real>(&mut self, q: &[[S; 2]], by: f64, u: &mut [[S; 2]]) {
+    /// `u = A q`.
+    pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
+        let mx = self.mx;
+        let load = |component: usize, first: usize, row: &mut [f64]| {
+            row.iter_mut().zip(&q[first..]).for_each(|(value, q)| *value = q[component]);
+        };
+        let write = |u: &mut [Vector], [x, y]: [&[f64]; 2]| {
+            u.iter_mut().zip(x).zip(y).for_each(|((u, x), y)| *u = [*x, *y]);
+        };
+        self.multiply(load, (u.chunks_mut(mx), write));
+    }
+
+    /// `u = by A q` of fields by component, in any precision.
+    pub fn apply_by_component<S: Real>(&mut self, q: [&[S]; 2], by: f64, [ux, uy]: [&mut [S]; 2]) {
+        let mx = self.mx;
+        let load = |component: usize, first: usize, row: &mut [f64]| {
+            row.iter_mut().zip(&q[component][first..]).for_each(|(value, q)| *value = by * q.to_double());
+        };
+        let write = |(ux, uy): (&mut [S], &mut [S]), values: [&[f64]; 2]| {
+            for (u, values) in [ux, uy].into_iter().zip(values) {
+                u.iter_mut().zip(values).for_each(|(u, value)| *u = S::of(*value));
+            }
+        };
+        self.multiply(load, (ux.chunks_mut(mx).zip(uy.chunks_mut(mx)), write));
+    }
+
+    /// `load(component, first element, row)` gives a row of q; `write(piece, [x, y])` takes one of u, of which `pieces` are.
+    fn multiply<P: Send>(
+        &mut self,
+        load: impl Fn(usize, usize, &mut [f64]) + Sync + Send,
+        (pieces_of_u, write): (
+            impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
+            impl Fn(P, [&[f64]; 2]) + Sync + Send,
+        ),
+    ) {
         let RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads } = self;
         let (mx, my, nb) = (*mx, *my, transform.bins());
-        assert!(q.len() == mx * my && u.len() == mx * my);
         // Rows of x components, then those of y.
         threads.for_each_row(rows, nb, pieces, |k, bins, Piece { row, scratch, .. }| {
-            let of_row = &q[k % my * mx..][..mx];
-            row[..mx].iter_mut().zip(of_row).for_each(|(value, q)| *value = by * q[k / my].to_double());
+            load(k / my, k % my * mx, &mut row[..mx]);
             transform.forward(&row[..mx], bins, scratch);
         });
         let (rows, matrices) = (&rows[..], &matrices[..]);
@@ -151,15 +186,17 @@ impl RowProduct {
             }
         });
         let columns = &columns[..];
-        threads.for_each_row(u, mx, pieces, |iy, u, Piece { row, scratch, bins, .. }| {
-            for component in 0..2 {
+        threads.share(pieces_of_u.enumerate(), pieces, |(iy, u), Piece { row, scratch, bins, .. }| {
+            let mut values = row[..2 * mx].chunks_exact_mut(mx);
+            let mut values: [&mut [f64]; 2] = from_fn(|_| values.next().unwrap_or_default());
+            for (component, values) in values.iter_mut().enumerate() {
                 let bins = &mut bins[..nb];
                 bins.iter_mut()
                     .enumerate()
                     .for_each(|(bin, value)| *value = columns[bin * 2 * my + component * my + iy]);
-                transform.inverse(bins, &mut row[..mx], scratch);
-                u.iter_mut().zip(&*row).for_each(|(u, value)| u[component] = S::of(*value));
+                transform.inverse(bins, values, scratch);
             }
+            write(u, values.map(|values| &*values));
         });
     }
 

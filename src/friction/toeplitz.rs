@@ -146,29 +146,57 @@ impl<T: Real> Toeplitz<T> {
 
     /// `u = A q`. Values of q are computed with in units of `unit`, a power of two.
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], memory: &mut Memory<T>) {
-        self.apply_scaled(q, (1.0 / unit, unit * self.unit), u, memory);
-    }
-
-    /// `u = A q` of fields in any precision, q times the first of the scales, and u times the second and in the unit of the coefficients.
-    pub fn apply_scaled<S: Real>(&self, q: &[[S; 2]], scales: (f64, f64), u: &mut [[S; 2]], memory: &mut Memory<T>) {
         let (mx, my) = self.product.grid();
         assert!(q.len() == mx * my && u.len() == mx * my, "fields of another grid");
+        let [to, from] = self.scales(unit);
         let load = |component: usize, first: usize, rows: &mut [T]| {
             let q = &q[first * mx..][..rows.len()];
-            rows.iter_mut().zip(q).for_each(|(to, q)| *to = T::of(scales.0 * q[component].to_double()));
+            rows.iter_mut().zip(q).for_each(|(value, q)| *value = T::of(to * q[component]));
         };
-        let write = |u: &mut [[S; 2]], _: usize, [x, y]: [&[T]; 2]| {
+        let write = |u: &mut [Vector], _: usize, [x, y]: [&[T]; 2]| {
             for ((u, x), y) in u.iter_mut().zip(x).zip(y) {
-                *u = [x, y].map(|value| S::of(scales.1 * value.to_double()));
+                *u = [from * x.to_double(), from * y.to_double()];
             }
         };
         let loaded = match self.product.is_uncoupled() {
-            false => rows_with(q, mx, |q| !(q[0].is_zero() && q[1].is_zero()))
-                .map_or([0..0, 0..0], |rows| [rows.clone(), rows]),
-            true => [0, 1].map(|component| rows_with(q, mx, |q| !q[component].is_zero()).unwrap_or(0..0)),
+            false => [rows_with(q, mx, |q| *q != [0.0; 2]); 2],
+            true => [0, 1].map(|component| rows_with(q, mx, |q| q[component] != 0.0)),
         };
         let pieces = u.chunks_mut(self.product.rows_at_a_time() * mx);
-        self.product.apply(loaded, load, (pieces, write), memory);
+        self.product.apply(loaded.map(range), load, (pieces, write), memory);
+    }
+
+    /// The same of fields by component, in any precision, q times the first of the scales, and u times the second.
+    pub fn apply_by_component<S: Real>(
+        &self,
+        q: [&[S]; 2],
+        [to, from]: [f64; 2],
+        u: [&mut [S]; 2],
+        memory: &mut Memory<T>,
+    ) {
+        let (mx, my) = self.product.grid();
+        assert!(q.iter().all(|q| q.len() == mx * my), "fields of another grid");
+        let load = |component: usize, first: usize, rows: &mut [T]| {
+            let q = &q[component][first * mx..][..rows.len()];
+            rows.iter_mut().zip(q).for_each(|(value, q)| *value = T::of(to * q.to_double()));
+        };
+        let write = |(ux, uy): (&mut [S], &mut [S]), _: usize, values: [&[T]; 2]| {
+            for (u, values) in [ux, uy].into_iter().zip(values) {
+                u.iter_mut().zip(values).for_each(|(u, value)| *u = S::of(from * value.to_double()));
+            }
+        };
+        let loaded = q.map(|q| rows_with(q, mx, |q| !q.is_zero()));
+        let loaded = match self.product.is_uncoupled() {
+            false => [(loaded[0].0.min(loaded[1].0), loaded[0].1.max(loaded[1].1)); 2],
+            true => loaded,
+        };
+        let [x, y] = u.map(|u| u.chunks_mut(self.product.rows_at_a_time() * mx));
+        self.product.apply(loaded.map(range), load, (x.zip(y), write), memory);
+    }
+
+    /// What q is to be multiplied by, and u, where q is computed with in units of `unit`.
+    pub fn scales(&self, unit: f64) -> [f64; 2] {
+        [1.0 / unit, unit * self.unit]
     }
 }
 
@@ -177,10 +205,16 @@ fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
     (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER as f64 <= grid.mx as f64).then_some(by.0 as i64)
 }
 
-/// The run of rows outside of which nothing is loaded.
-fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> Option<Range<usize>> {
-    let has_any = |row: &[A]| row.iter().any(&is_loaded);
-    let first = q.chunks_exact(mx).position(has_any)?;
-    let last = q.chunks_exact(mx).rposition(has_any).unwrap_or(first);
-    Some(first..last + 1)
+/// The run of rows outside of which nothing is loaded: the first, and that behind the last; the number of rows and 0 if nothing is.
+fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, usize) {
+    // All of a row, which the compiler can vectorise.
+    let has_any = |row: &[A]| row.iter().fold(false, |any, q| any | is_loaded(q));
+    let first = q.chunks_exact(mx).position(has_any);
+    let last = q.chunks_exact(mx).rposition(has_any);
+    first.zip(last).map_or((q.len() / mx, 0), |(first, last)| (first, last + 1))
+}
+
+/// As a range: nothing where the first is not before the last.
+fn range((first, last): (usize, usize)) -> Range<usize> {
+    first.min(last)..last
 }

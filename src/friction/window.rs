@@ -82,7 +82,7 @@ impl Displaced {
     pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
         match &mut self.product {
             Product::Toeplitz(operator, workspace) => operator.apply(q, 1.0, u, workspace),
-            Product::ByRow(product) => product.apply(q, 1.0, u),
+            Product::ByRow(product) => product.apply(q, u),
         }
     }
 
