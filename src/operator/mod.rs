@@ -2,11 +2,9 @@
 
 mod circulant;
 pub mod dense;
-mod engine;
 #[allow(clippy::module_inception)]
 mod operator;
 mod periods;
-mod row_tables;
 mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};

@@ -1,4 +1,4 @@
-//! Products by block Toeplitz matrices of two levels, by FFT.
+//! Products by block Toeplitz matrices of two levels, by FFT; also by those that are Toeplitz in x only.
 //!
 //! ```text
 //! u_I = sum_J c(I - J) p_J = [F^-1 (S . F p)]_I       I, J elements of a grid of mx * my,   S = F c, the symbol
@@ -53,6 +53,7 @@ pub mod panics;
 pub mod plan;
 mod product;
 mod real;
+mod row_matrices;
 mod rows;
 mod set_up;
 mod set_up_columns;
@@ -66,7 +67,7 @@ mod workspace;
 pub use coefficients::{Coefficients, Even, EvenMatrix};
 pub use product::{even_period, Product};
 pub use real::{Complex, Real};
-pub use rows::Rows;
+pub use row_matrices::OfRows;
 pub use set_up::SetUp;
 pub use vector_product::{vector_period, VectorProduct};
-pub use workspace::{Memory, Piece, Room};
+pub use workspace::{Memory, Room};
