@@ -32,6 +32,7 @@
 //! |---|---|
 //! | [`Product`] | the product of one matrix |
 //! | [`VectorProduct`] | the same of two components, by a symmetric matrix of each offset |
+//! | [`ParityProduct`] | sums of products by kernels that are even or odd in either direction |
 //! | [`coefficients`] | what a matrix is made of |
 //! | [`fft`] | transforms of rows and columns: stages in lanes, and any length |
 //! | [`plan`] | plans that the threads of a process share |
@@ -50,6 +51,7 @@ pub mod lengths;
 #[cfg(feature = "test-panics")]
 #[doc(hidden)]
 pub mod panics;
+mod parity;
 pub mod plan;
 mod product;
 mod real;
@@ -65,6 +67,7 @@ mod vector_symbol;
 mod workspace;
 
 pub use coefficients::{Coefficients, Even, EvenMatrix};
+pub use parity::{ParityMemory, ParityProduct, Term};
 pub use product::{even_period, Product};
 pub use real::{Complex, Real};
 pub use row_matrices::OfRows;

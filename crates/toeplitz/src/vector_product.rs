@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use crate::block::{blocks_of, Block, BLOCK};
 use crate::coefficients::EvenMatrix;
-use crate::fft::even_columns::{Blocks, EvenColumns};
+use crate::fft::lane_columns::{Blocks, LaneColumns};
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::stages::{before_a_line, from_a_line};
 use crate::lengths::length_for_stages;
@@ -31,7 +31,7 @@ pub struct VectorProduct<T: Real> {
     mx: usize,
     my: usize,
     rows: LaneRows<T>,
-    columns: EvenColumns<T>,
+    columns: LaneColumns<T>,
     symbol: VectorSymbol<T>,
     px: usize,
     threads: Threads,
@@ -95,7 +95,7 @@ impl<T: Real> VectorProduct<T> {
     ) -> Result<VectorProduct<T>> {
         let rows = LaneRows::of_any(pulp::Arch::new(), px)?;
         let rows = rows.unwrap_or_else(|| unreachable!("no stages have the period {px}"));
-        let columns = EvenColumns::new(py)?.unwrap_or_else(|| unreachable!("no stages have the period {py}"));
+        let columns = LaneColumns::new(py)?.unwrap_or_else(|| unreachable!("no stages have the period {py}"));
         Ok(VectorProduct { mx, my, rows, columns, symbol, px, threads: threads.clone() })
     }
 

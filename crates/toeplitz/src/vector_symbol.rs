@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use pulp::Simd;
 
 use crate::block::BLOCK;
-use crate::fft::even_columns::{even_value, At, Blocks, EvenColumns, EvenSymbol, Factor};
+use crate::fft::lane_columns::{even_value, At, Blocks, EvenSymbol, Factor, LaneColumns};
 use crate::fft::lanes::{lane_count, Arithmetic, Parts, C};
 use crate::real::{Complex, Real};
 use crate::symbol::{converted, SYMBOL};
@@ -91,18 +91,18 @@ impl<T: Real> VectorSymbol<T> {
     }
 
     /// Multiplies a block of columns of both components, which are coupled.
-    pub fn multiply(&self, columns: &EvenColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
+    pub fn multiply(&self, columns: &LaneColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
         let planes = [0, 1, 2].map(|plane| self.plane(block, plane));
         match self.is_even {
-            true => self.multiply_by(columns, block, of, EvenMatrix(planes), memory),
-            false => columns.multiply_all(of, &GeneralMatrix(planes), memory),
+            true => self.multiply_by(columns, block, of, RealMatrix(planes), memory),
+            false => columns.multiply_all(of, &ComplexMatrix(planes), memory),
         }
     }
 
     /// The same of one component alone.
     pub fn multiply_one(
         &self,
-        columns: &EvenColumns<T>,
+        columns: &LaneColumns<T>,
         (block, component): (usize, usize),
         of: Blocks<'_, T, 1>,
         memory: &mut [Complex<T>],
@@ -110,13 +110,13 @@ impl<T: Real> VectorSymbol<T> {
         let plane = self.plane(block, component);
         match self.is_even {
             true => self.multiply_by(columns, block, of, EvenSymbol(plane), memory),
-            false => columns.multiply_all(of, &GeneralSymbol(plane), memory),
+            false => columns.multiply_all(of, &ComplexSymbol(plane), memory),
         }
     }
 
     fn multiply_by<F: Factor<T, K>, const K: usize>(
         &self,
-        columns: &EvenColumns<T>,
+        columns: &LaneColumns<T>,
         block: usize,
         of: Blocks<'_, T, K>,
         factor: F,
@@ -130,9 +130,9 @@ impl<T: Real> VectorSymbol<T> {
 }
 
 /// xx, yy and xy of a block of columns, `[kept row][column]`.
-struct EvenMatrix<'a, T>([&'a [T]; 3]);
+struct RealMatrix<'a, T>([&'a [T]; 3]);
 
-impl<T: Real> Factor<T, 2> for EvenMatrix<'_, T> {
+impl<T: Real> Factor<T, 2> for RealMatrix<'_, T> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
         let [xx, yy, xy] = self.0.map(|plane| even_value::<T, S>(plane, at));
@@ -156,35 +156,35 @@ struct Displaced<'a, T, F> {
 impl<T: Real, F: Factor<T, K>, const K: usize> Factor<T, K> for Displaced<'_, T, F> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K] {
-        let by = general_value::<T, S>(self.factors, 0, at.vector);
+        let by = complex_value::<T, S>(self.factors, 0, at.vector);
         self.of.times(a, at, x).map(|value| a.mul(value, by))
     }
 }
 
 /// Complex values of a block of columns, `[row][part][column]`.
-struct GeneralSymbol<'a, T>(&'a [T]);
+struct ComplexSymbol<'a, T>(&'a [T]);
 
-impl<T: Real> Factor<T, 1> for GeneralSymbol<'_, T> {
+impl<T: Real> Factor<T, 1> for ComplexSymbol<'_, T> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x]: [C<T, S>; 1]) -> [C<T, S>; 1] {
-        [a.mul(x, general_value::<T, S>(self.0, at.row + at.q, at.vector))]
+        [a.mul(x, complex_value::<T, S>(self.0, at.row + at.q, at.vector))]
     }
 }
 
 /// The same of xx, yy and xy.
-struct GeneralMatrix<'a, T>([&'a [T]; 3]);
+struct ComplexMatrix<'a, T>([&'a [T]; 3]);
 
-impl<T: Real> Factor<T, 2> for GeneralMatrix<'_, T> {
+impl<T: Real> Factor<T, 2> for ComplexMatrix<'_, T> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
-        let [xx, yy, xy] = self.0.map(|plane| general_value::<T, S>(plane, at.row + at.q, at.vector));
+        let [xx, yy, xy] = self.0.map(|plane| complex_value::<T, S>(plane, at.row + at.q, at.vector));
         [a.add(a.mul(x, xx), a.mul(y, xy)), a.add(a.mul(y, yy), a.mul(x, xy))]
     }
 }
 
 /// A vector of columns of a row of complex values, `[row][part][column]`.
 #[inline(always)]
-fn general_value<T: Real, S: Simd>(values: &[T], row: usize, vector: usize) -> C<T, S> {
+fn complex_value<T: Real, S: Simd>(values: &[T], row: usize, vector: usize) -> C<T, S> {
     let per_part = BLOCK / lane_count::<T, S>();
     let row = &T::vectors::<S>(values)[2 * per_part * row..][..2 * per_part];
     Parts { re: row[vector], im: row[per_part + vector] }

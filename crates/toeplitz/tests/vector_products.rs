@@ -200,7 +200,7 @@ fn no_bit_depends_on_the_number_of_threads() {
         let (x, y) = (values(grid, 1), values(grid, 2));
         let by = |count: usize| {
             let threads = Threads::new(count).expect("threads");
-            let even = even_product::<f32>(grid, 1, true, &threads).less_further_on(1).expect("memory");
+            let rolling = even_product::<f32>(grid, 1, true, &threads).less_further_on(1).expect("memory");
             let fill = |kx: i64, ky: i64, rows: [&mut [f64]; 3]| {
                 for (component, row) in rows.into_iter().enumerate() {
                     let value = |kx: i64| even(kx as f64 + 0.3, ky as f64)[component];
@@ -208,7 +208,7 @@ fn no_bit_depends_on_the_number_of_threads() {
                 }
             };
             let general = VectorProduct::<f64>::uneven(grid, true, fill, &threads).expect("memory");
-            (apply(&even, [&x, &y]), apply(&general, [&x, &y]))
+            (apply(&rolling, [&x, &y]), apply(&general, [&x, &y]))
         };
         assert!(by(1) == by(3), "{grid:?}");
     }

@@ -25,20 +25,20 @@ use crate::fft::stages::{backwards, first, forward, inlined, last, multiply, of_
 use crate::real::{Complex, Real};
 
 /// Products of columns of one length.
-pub(crate) struct EvenColumns<T: Real> {
+pub(crate) struct LaneColumns<T: Real> {
     plan: Arc<EvenPlan<T>>,
     arch: pulp::Arch,
 }
 
-impl<T: Real> EvenColumns<T> {
+impl<T: Real> LaneColumns<T> {
     /// None where the length has no plan.
-    pub fn new(length: usize) -> Result<Option<EvenColumns<T>>> {
-        EvenColumns::on(pulp::Arch::new(), length)
+    pub fn new(length: usize) -> Result<Option<LaneColumns<T>>> {
+        LaneColumns::on(pulp::Arch::new(), length)
     }
 
     /// With the vectors of these instructions; no bit depends on them.
-    fn on(arch: pulp::Arch, length: usize) -> Result<Option<EvenColumns<T>>> {
-        Ok(EvenPlan::shared(length)?.map(|plan| EvenColumns { plan, arch }))
+    fn on(arch: pulp::Arch, length: usize) -> Result<Option<LaneColumns<T>>> {
+        Ok(EvenPlan::shared(length)?.map(|plan| LaneColumns { plan, arch }))
     }
 
     /// The length.
@@ -271,5 +271,5 @@ fn between<T: Real, S: Simd, const K: usize>(
 }
 
 #[cfg(test)]
-#[path = "../../tests/unit/even_columns.rs"]
+#[path = "../../tests/unit/lane_columns.rs"]
 mod tests;
