@@ -11,7 +11,6 @@ use super::sweep::Sweep;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
-use crate::operator::fft::Real;
 
 /// r on the elements of a grid.
 pub struct Excess {
@@ -33,31 +32,29 @@ impl Excess {
         self.values[i]
     }
 
-    /// Adds `by` times what q displaces; with a sweep, in a step of steady rolling.
-    pub fn add<T: Real>(&self, q: &[[T; 2]], by: f64, sweep: Option<&Sweep>, u: &mut [[T; 2]]) {
-        for (i, u) in u.iter_mut().enumerate() {
-            let here = self.displaced(q, i);
-            let there = sweep.map_or([0.0; 2], |sweep| self.ahead(q, sweep, i));
-            for k in 0..2 {
-                u[k] = T::of(u[k].to_double() + by * (here[k] - there[k]));
-            }
+    /// Calls `add(i, what q displaces)` for each element; with a sweep, in a step of steady rolling.
+    pub fn add(&self, q: impl Fn(usize) -> Vector, sweep: Option<&Sweep>, mut add: impl FnMut(usize, Vector)) {
+        for i in 0..self.values.len() {
+            let here = self.displaced(&q, i);
+            let there = sweep.map_or([0.0; 2], |sweep| self.ahead(&q, sweep, i));
+            add(i, [here[0] - there[0], here[1] - there[1]]);
         }
     }
 
     /// Subtracts what tractions before displaced at the places of a step of transient rolling.
     pub fn subtract_ahead(&self, q: &[Vector], sweep: &Sweep, w: &mut [Vector]) {
         for (i, w) in w.iter_mut().enumerate() {
-            let there = self.ahead(q, sweep, i);
+            let there = self.ahead(&|i| q[i], sweep, i);
             *w = [w[0] - there[0], w[1] - there[1]];
         }
     }
 
-    fn displaced<T: Real>(&self, q: &[[T; 2]], i: usize) -> Vector {
-        q[i].map(|q| self.values[i] * q.to_double())
+    fn displaced(&self, q: &impl Fn(usize) -> Vector, i: usize) -> Vector {
+        q(i).map(|q| self.values[i] * q)
     }
 
     /// `r q` at the place of element i after a step.
-    fn ahead<T: Real>(&self, q: &[[T; 2]], sweep: &Sweep, i: usize) -> Vector {
+    fn ahead(&self, q: &impl Fn(usize) -> Vector, sweep: &Sweep, i: usize) -> Vector {
         let mut sum = self.displaced(q, i).map(|v| sweep.own() * v);
         for &(in_x, in_y, weight) in sweep.neighbours() {
             let (x, y) = ((i % self.mx).wrapping_add_signed(in_x), (i / self.mx).wrapping_add_signed(in_y));

@@ -3,12 +3,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`coefficients`], `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
-//! | [`Toeplitz`], [`Workspace`], `spectrum`, `component`, [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `vectors`, `beside` | passes over fields, residuals continued beside C |
+//! | `vectors`, `lanes`, `beside` | passes over fields, in vectors of the machine, residuals continued beside C |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `fgmres`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
@@ -23,7 +23,6 @@ mod bracket;
 mod certificate;
 pub mod coefficients;
 mod compliance;
-mod component;
 mod corral;
 pub mod cross;
 pub mod dense;
@@ -34,6 +33,7 @@ mod excess;
 mod fgmres;
 mod forces;
 mod interpolation;
+mod lanes;
 mod last;
 mod levels;
 mod near_element;
@@ -54,7 +54,6 @@ mod series;
 mod shift;
 mod solution;
 mod solver;
-mod spectrum;
 mod step;
 mod sweep;
 mod system;
@@ -65,7 +64,6 @@ mod toeplitz;
 mod unit;
 mod vectors;
 mod window;
-mod workspace;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
@@ -76,4 +74,3 @@ pub use request::{Request, Start};
 pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;
-pub use workspace::Workspace;

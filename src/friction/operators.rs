@@ -2,17 +2,17 @@
 
 use super::coefficients::Tangential;
 use super::excess::Excess;
-use super::plane::Vector;
+use super::plane::{add, Vector};
 use super::quadrant::Quadrant;
 use super::row_product::RowProduct;
 use super::sweep::{Rolling, Sweep};
 use super::toeplitz::Toeplitz;
 use super::unit::unit_of;
-use super::workspace::Workspace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
+use toeplitz::Memory;
 
 /// An iteration gains by several threads on a grid of so many times fewer elements than the normal problem does: it multiplies more.
 const WORK: usize = 4;
@@ -22,9 +22,9 @@ pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
     /// None: single precision serves for all, on a coarser grid; or there are tables per loaded row.
-    exact: Option<(Toeplitz<f64>, Workspace<f64>)>,
-    fast: Option<(Toeplitz<f32>, Workspace<f32>)>,
-    inverse: Option<(Toeplitz<f32>, Workspace<f32>)>,
+    exact: Option<(Toeplitz<f64>, Memory<f64>)>,
+    fast: Option<(Toeplitz<f32>, Memory<f32>)>,
+    inverse: Option<(Toeplitz<f32>, Memory<f32>)>,
     /// Of tables per loaded row, in place of `exact` and `fast`.
     rows: Option<RowProduct>,
     /// Of steady rolling: the step, of which B is made, and the way to undo it.
@@ -111,19 +111,19 @@ impl Operators {
     /// `u = A q` in double precision, or B q; on coarser grids in the precision that there is, for q of the order of `unit`.
     pub fn multiply(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
-            (Some(rows), ..) => rows.apply(q, 1.0, u),
+            (Some(rows), ..) => rows.apply(q, u),
             (_, Some((operator, workspace)), _) => operator.apply(q, 1.0, u, workspace),
             (.., Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
             _ => unreachable!("there is one of them"),
         }
-        self.add_excess(q, 1.0, u);
+        self.add_excess(q, u);
         self.products += 1;
     }
 
     /// What a layer adds that is not uniform.
-    fn add_excess<T: Real>(&self, q: &[[T; 2]], by: f64, u: &mut [[T; 2]]) {
+    fn add_excess(&self, q: &[Vector], u: &mut [Vector]) {
         if let Some(excess) = &self.excess {
-            excess.add(q, by, self.rolling.as_ref().map(|(_, sweep)| sweep), u);
+            excess.add(|i| q[i], self.rolling.as_ref().map(|(_, sweep)| sweep), |i, v| u[i] = add(u[i], v));
         }
     }
 
@@ -131,19 +131,27 @@ impl Operators {
     pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         let Some((operator, workspace)) = &mut self.fast else { return self.multiply(q, unit, u) };
         operator.apply(q, unit_of(unit), u, workspace);
-        self.add_excess(q, 1.0, u);
+        self.add_excess(q, u);
         self.products += 1;
     }
 
-    /// The same in units of a traction, and of that times [`unit`](Self::unit).
-    pub fn multiply_plain<S: Real>(&mut self, q: &[[S; 2]], u: &mut [[S; 2]]) {
+    /// The same of fields by component, in units of a traction, and of that times [`unit`](Self::unit).
+    pub fn multiply_plain<S: Real>(&mut self, q: [&[S]; 2], u: [&mut [S]; 2]) {
+        let [ux, uy] = u;
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
-            (Some(rows), ..) => rows.apply(q, 1.0 / self.unit, u),
-            (.., Some((operator, workspace))) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
-            (_, Some((operator, workspace)), _) => operator.apply_scaled(q, (1.0, 1.0), u, workspace),
+            (Some(rows), ..) => rows.apply_by_component(q, 1.0 / self.unit, [&mut *ux, &mut *uy]),
+            (.., Some((operator, memory))) => operator.apply_by_component(q, [1.0; 2], [&mut *ux, &mut *uy], memory),
+            (_, Some((operator, memory)), _) => operator.apply_by_component(q, [1.0; 2], [&mut *ux, &mut *uy], memory),
             _ => unreachable!("there is one of them"),
         }
-        self.add_excess(q, 1.0 / self.unit(), u);
+        if let Some(excess) = &self.excess {
+            let by = 1.0 / self.unit;
+            let add = |i: usize, v: Vector| {
+                (ux[i], uy[i]) = (S::of(ux[i].to_double() + by * v[0]), S::of(uy[i].to_double() + by * v[1]));
+            };
+            let q = |i: usize| [q[0][i].to_double(), q[1][i].to_double()];
+            excess.add(q, self.rolling.as_ref().map(|(_, sweep)| sweep), add);
+        }
         self.products += 1;
     }
 
@@ -171,18 +179,33 @@ impl Operators {
         }
     }
 
+    /// The same of fields by component.
+    pub fn precondition_components(&mut self, u: [&[f64]; 2], unit: f64, q: [&mut [f64]; 2]) {
+        let unit = unit_of(unit * self.a0);
+        let scales = self.inverse.as_ref().map_or([1.0; 2], |(operator, _)| operator.scales(unit));
+        self.precondition_scaled(u, (scales, 1.0 / self.a0), q);
+    }
+
     /// The same in units of a traction, and of that times [`unit`](Self::unit).
-    pub fn precondition_plain<S: Real>(&mut self, u: &[[S; 2]], q: &mut [[S; 2]]) {
-        let of_one = S::of(self.unit() / self.a0);
+    pub fn precondition_plain<S: Real>(&mut self, u: [&[S]; 2], q: [&mut [S]; 2]) {
+        self.precondition_scaled(u, ([1.0; 2], self.unit / self.a0), q);
+    }
+
+    /// With these scales of a product, or by a number where there is no inverse.
+    fn precondition_scaled<S: Real>(&mut self, u: [&[S]; 2], (scales, by): ([f64; 2], f64), q: [&mut [S]; 2]) {
         match &mut self.inverse {
-            Some((operator, workspace)) => operator.apply_scaled(u, (1.0, 1.0), q, workspace),
-            None => q.iter_mut().zip(u).for_each(|(q, u)| *q = u.map(|u| of_one * u)),
+            Some((operator, memory)) => operator.apply_by_component(u, scales, q, memory),
+            None => {
+                for (q, u) in q.into_iter().zip(u) {
+                    q.iter_mut().zip(u).for_each(|(q, u)| *q = S::of(by * u.to_double()));
+                }
+            }
         }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        fn of<T: Real>(operator: &Option<(Toeplitz<T>, Workspace<T>)>) -> usize {
+        fn of<T: Real>(operator: &Option<(Toeplitz<T>, Memory<T>)>) -> usize {
             operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
         }
         let excess = self.excess.as_ref().map_or(0, Excess::bytes);
@@ -204,7 +227,7 @@ fn product<T: Real>(
     }
 }
 
-fn with_workspace<T: Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Workspace<T>)> {
+fn with_workspace<T: Real>(operator: Toeplitz<T>) -> Result<(Toeplitz<T>, Memory<T>)> {
     let workspace = operator.workspace()?;
     Ok((operator, workspace))
 }

@@ -1,53 +1,102 @@
 //! The elements of C one after the other: fields of an iteration hold these only.
 //!
 //! They are cut into blocks at rows of the grid, so that a pass has both the values of its elements and their rows of a field on the grid. Blocks depend on C
-//! alone: sums by blocks have the same bits for any number of threads.
+//! alone: sums by blocks have the same bits for any number of threads. A block has a whole number of vectors: what it lacks of
+//! that is filled up with elements that are nowhere, of which all is zero.
 
-use std::ops::Range;
-
+use super::lanes::LANES;
 use super::vectors::BLOCK;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
+use crate::operator::fft::Real;
 
 /// Where the elements of C are.
 #[derive(Default)]
 pub struct Places {
-    /// Of each element of C its place on the grid. Grids of more elements than 32 bits count would take 300 GB.
-    elements: Vec<u32>,
+    /// Elements of C that are neighbours in a row.
+    runs: Vec<Run>,
     blocks: Vec<Block>,
     mx: usize,
+    count: usize,
 }
 
 /// A grid has so many blocks, where they are not too small then.
 const BLOCKS: usize = 64;
 
+/// Elements side by side: the place of the first on the grid, and how many. Grids of more elements than 32 bits count would take 300 GB.
+#[derive(Clone, Copy)]
+struct Run {
+    first: u32,
+    length: u32,
+}
+
 /// Some rows of the grid, with up to [`BLOCK`] elements of C or a row more.
 #[derive(Clone, Copy)]
 struct Block {
-    places: (usize, usize),
+    runs: (usize, usize),
     rows: (usize, usize),
+    elements: usize,
 }
 
-/// A block of a pass: its elements, and where they are.
+impl Block {
+    /// Elements and those that fill up a vector.
+    fn length(&self) -> usize {
+        self.elements.next_multiple_of(LANES)
+    }
+}
+
+/// A block of a pass: where its elements are.
 pub struct Part<'a> {
-    /// The first element.
-    pub start: usize,
-    elements: &'a [u32],
+    runs: &'a [Run],
     /// The first place of its rows.
     first: usize,
 }
 
-impl<'a> Part<'a> {
-    /// Places on the grid, in the order of the elements.
-    pub fn on_grid(&self) -> impl Iterator<Item = usize> + 'a {
-        self.elements.iter().map(|&i| i as usize)
+impl Part<'_> {
+    /// Calls `work(place on the grid, place in the block, elements)` on each run of elements.
+    #[inline(always)]
+    fn each_run(&self, mut work: impl FnMut(usize, usize, usize)) {
+        let mut at = 0;
+        for run in self.runs {
+            let length = run.length as usize;
+            work(run.first as usize, at, length);
+            at += length;
+        }
     }
 
-    /// The same within the rows of the block.
-    pub fn in_rows(&self) -> impl Iterator<Item = usize> + 'a {
-        let first = self.first;
-        self.on_grid().map(move |i| i - first)
+    /// Takes the values of its elements from a field on the grid.
+    #[inline(always)]
+    pub fn gather<T: Real>(&self, field: &[T], to: &mut [f64]) {
+        self.each_run(
+            #[inline(always)]
+            |place, at, length| {
+                let to = to[at..at + length].iter_mut();
+                to.zip(&field[place..place + length]).for_each(|(to, value)| *to = value.to_double());
+            },
+        );
+    }
+
+    /// Puts the values of its elements to its rows of a field on the grid.
+    #[inline(always)]
+    pub fn scatter<T: Real>(&self, from: &[f64], rows: &mut [T]) {
+        self.each_run(
+            #[inline(always)]
+            |place, at, length| {
+                let to = rows[place - self.first..][..length].iter_mut();
+                to.zip(&from[at..at + length]).for_each(|(to, value)| *to = T::of(*value));
+            },
+        );
+    }
+
+    /// Calls `work(place on the grid, place in the block)` on each element.
+    pub fn each(&self, mut work: impl FnMut(usize, usize)) {
+        self.each_run(|place, at, length| (0..length).for_each(|k| work(place + k, at + k)));
+    }
+
+    /// The first place of its rows on the grid.
+    pub fn first(&self) -> usize {
+        self.first
     }
 }
 
@@ -56,68 +105,73 @@ impl Places {
     pub fn new(grid: &Grid) -> Result<Places> {
         let what = "the elements of C";
         let mut places = Places { mx: grid.mx, ..Places::default() };
-        reserve(&mut places.elements, grid.len(), what)?;
+        reserve(&mut places.runs, grid.my * grid.mx.div_ceil(2), what)?;
         reserve(&mut places.blocks, grid.my, what)?;
         Ok(places)
     }
 
     /// C has changed: where `bound` is positive.
     pub fn contact_changed(&mut self, bound: &[f64]) {
-        let Places { elements, blocks, mx } = self;
-        elements.clear();
+        let Places { runs, blocks, mx, count } = self;
+        runs.clear();
         blocks.clear();
         let rows = bound.len() / *mx;
         let least = (bound.len() / BLOCKS).clamp(BLOCK / 4, BLOCK);
-        let mut begun = Block { places: (0, 0), rows: (0, 0) };
+        let mut begun = Block { runs: (0, 0), rows: (0, 0), elements: 0 };
+        *count = 0;
         for (iy, row) in bound.chunks_exact(*mx).enumerate() {
-            let inside = row.iter().enumerate().filter(|(_, g)| **g > 0.0);
-            elements.extend(inside.map(|(ix, _)| (iy * *mx + ix) as u32));
-            (begun.places.1, begun.rows.1) = (elements.len(), iy + 1);
-            if begun.places.1 - begun.places.0 >= least || iy + 1 == rows {
+            let mut at = iy * *mx;
+            for run in row.chunk_by(|g, next| (*g > 0.0) == (*next > 0.0)) {
+                if run[0] > 0.0 {
+                    runs.push(Run { first: at as u32, length: run.len() as u32 });
+                    begun.elements += run.len();
+                }
+                at += run.len();
+            }
+            (begun.runs.1, begun.rows.1) = (runs.len(), iy + 1);
+            if begun.elements >= least || iy + 1 == rows {
+                *count += begun.elements;
                 blocks.push(begun);
-                begun = Block { places: (elements.len(), elements.len()), rows: (iy + 1, iy + 1) };
+                begun = Block { runs: (runs.len(), runs.len()), rows: (iy + 1, iy + 1), elements: 0 };
             }
         }
     }
 
     /// Elements of C.
     pub fn count(&self) -> usize {
-        self.elements.len()
+        self.count
+    }
+
+    /// Values of a field: elements, and those that fill up vectors.
+    pub fn length(&self) -> usize {
+        self.blocks.iter().map(Block::length).sum()
     }
 
     /// Their places on the grid.
     pub fn elements(&self) -> impl Iterator<Item = usize> + '_ {
-        self.elements.iter().map(|&i| i as usize)
+        self.runs.iter().flat_map(|run| (0..run.length).map(|k| (run.first + k) as usize))
     }
 
     /// The blocks.
     pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
-        self.blocks.iter().map(|block| {
-            let elements = &self.elements[block.range()];
-            Part { start: block.places.0, elements, first: block.rows.0 * self.mx }
-        })
+        let part = |block: &Block| Part { runs: &self.runs[block.runs.0..block.runs.1], first: block.rows.0 * self.mx };
+        self.blocks.iter().map(part)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.elements.capacity() * size_of::<u32>() + self.blocks.capacity() * size_of::<Block>()
+        self.runs.capacity() * size_of::<Run>() + self.blocks.capacity() * size_of::<Block>()
     }
 
-    /// A field on C by blocks.
-    pub fn cut<'a, A>(&'a self, field: &'a mut [A]) -> impl Iterator<Item = &'a mut [A]> {
-        debug_assert_eq!(field.len(), self.count());
-        cut(field, self.blocks.iter().map(|block| block.range().len()))
+    /// So many fields on C by blocks: those of a block one after the other.
+    pub fn cut<'a, A>(&'a self, fields: &'a mut [A], count: usize) -> impl Iterator<Item = &'a mut [A]> {
+        debug_assert_eq!(fields.len(), count * self.length());
+        cut(fields, self.blocks.iter().map(move |block| count * block.length()))
     }
 
     /// A field on the grid by blocks.
     pub fn cut_grid<'a, A>(&'a self, field: &'a mut [A]) -> impl Iterator<Item = &'a mut [A]> {
         cut(field, self.blocks.iter().map(|block| (block.rows.1 - block.rows.0) * self.mx))
-    }
-}
-
-impl Block {
-    fn range(&self) -> Range<usize> {
-        self.places.0..self.places.1
     }
 }
 
@@ -137,8 +191,9 @@ mod tests {
     /// Every element of C stands in one block, in order, and its block has its row of the grid.
     #[test]
     fn blocks_have_all_elements_and_all_rows() {
-        for (mx, my, inside) in [(70, 50, 3), (1, 9, 2), (3000, 2, 1), (5, 4, 1000)] {
-            let bound: Vec<f64> = (0..mx * my).map(|i| if i % inside == 1 % inside { 1.0 } else { 0.0 }).collect();
+        for (mx, my, inside) in [(70, 50, 3), (1, 9, 2), (3000, 2, 1), (5, 4, 1000), (9, 9, 5)] {
+            let is_inside = |i: usize| i % inside == 1 % inside || i % 17 < 4 && inside == 5;
+            let bound: Vec<f64> = (0..mx * my).map(|i| if is_inside(i) { 1.0 } else { 0.0 }).collect();
             let mut places = Places::new(&Grid::new(mx, my, 1.0, 1.0).unwrap()).unwrap();
             // What C was before is forgotten.
             places.contact_changed(&vec![1.0; mx * my]);
@@ -146,15 +201,20 @@ mod tests {
             let expected: Vec<usize> = (0..mx * my).filter(|&i| bound[i] > 0.0).collect();
             assert!(places.elements().eq(expected.iter().copied()));
             assert_eq!(places.count(), expected.len());
-            let (mut on_grid, mut on_c) = (vec![0; mx * my], vec![0; expected.len()]);
-            let blocks = places.parts().zip(places.cut(&mut on_c)).zip(places.cut_grid(&mut on_grid));
+            // There and back: each element has its own value, and nothing else has one.
+            let numbers: Vec<f64> = (0..mx * my).map(|i| i as f64 + 1.0).collect();
+            let (mut on_c, mut on_grid) = (vec![0.0; 2 * places.length()], vec![0.0f32; mx * my]);
+            let blocks = places.parts().zip(places.cut(&mut on_c, 2)).zip(places.cut_grid(&mut on_grid));
             for ((part, on_c), on_grid) in blocks {
-                assert!(part.on_grid().eq(expected[part.start..part.start + on_c.len()].iter().copied()));
-                part.in_rows().for_each(|place| on_grid[place] += 1);
-                on_c.iter_mut().for_each(|count| *count += 1);
+                assert_eq!(on_c.len() % (2 * LANES), 0);
+                let (first, second) = on_c.split_at_mut(on_c.len() / 2);
+                part.gather(&numbers, second);
+                part.scatter(second, on_grid);
+                part.each(|place, at| first[at] = place as f64 + 1.0);
+                assert!(first == second);
             }
-            assert!(on_c.iter().all(|count| *count == 1));
-            assert!(on_grid.iter().zip(&bound).all(|(count, g)| f64::from(*count) == *g));
+            let value = |i: usize| if bound[i] > 0.0 { i as f32 + 1.0 } else { 0.0 };
+            assert!(on_grid.iter().enumerate().all(|(i, found)| *found == value(i)));
             assert_eq!(places.cut_grid(&mut on_grid).map(|rows| rows.len()).sum::<usize>(), mx * my);
         }
     }

@@ -3,9 +3,6 @@
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];
 
-/// The same in either precision.
-pub type Pair<T> = [T; 2];
-
 /// Squares of a length may round up: so much is left between a traction and its bound.
 const MARGIN: f64 = 4.0 * f64::EPSILON;
 

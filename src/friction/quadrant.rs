@@ -2,6 +2,8 @@
 //!
 //! Coefficients are homogeneous: elements twice as long and twice as wide have twice the coefficient at the same offset in elements.
 
+use toeplitz::vector_period;
+
 use super::coefficients::{Entry, Tangential};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -66,6 +68,12 @@ impl Quadrant {
         [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
     }
 
+    /// Axx (component 0), Ayy (1) or Axy (2) at the offsets `(0.., ky)`.
+    pub fn fill_row(&self, component: usize, ky: i64, out: &mut [f64]) {
+        let row = &self.values[ky as usize * self.cx..][..out.len()];
+        out.iter_mut().zip(row).for_each(|(value, entry)| *value = entry[component]);
+    }
+
     /// The same `by` elements further on: computed where they are not at whole offsets within reach.
     pub fn displaced(&self, x: i64, y: i64, by: (f64, f64)) -> Entry {
         let (at_x, at_y) = (x as f64 + by.0, y as f64 + by.1);
@@ -79,10 +87,18 @@ impl Quadrant {
     }
 }
 
+/// The period of the circulant near A, an element longer than the grid, and offsets up to half of it; of one row or column there is one offset.
+pub fn circulant_period(grid: &Grid) -> ((usize, usize), (usize, usize)) {
+    let (px, py) = vector_period((grid.mx + 1, grid.my + 1));
+    let given = |m: usize, period: usize| if m == 1 { 1 } else { period / 2 + 1 };
+    ((px, py), (given(grid.mx, px), given(grid.my, py)))
+}
+
 /// Offsets in each direction. A step beyond the grid is no reason to keep what lies between, but of own tables.
 fn reach(tangential: &Tangential, grid: &Grid, by: (f64, f64)) -> (usize, usize) {
     let is_whole = by.0.fract() == 0.0 && by.1.fract() == 0.0;
     let is_short = by.0.abs() <= grid.mx as f64 && by.1.abs() <= grid.my as f64;
     let (in_x, in_y) = if is_whole && (is_short || tangential.is_own()) { by } else { (0.0, 0.0) };
-    (grid.mx + 1 + in_x.abs() as usize, grid.my + 1 + in_y.abs() as usize)
+    let (_, (given_x, given_y)) = circulant_period(grid);
+    ((grid.mx + 1 + in_x.abs() as usize).max(given_x), (grid.my + 1 + in_y.abs() as usize).max(given_y))
 }

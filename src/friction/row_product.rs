@@ -1,51 +1,30 @@
 //! Products with [one table per loaded row](super::row_tables): A is Toeplitz in x only.
 //!
-//! ```text
-//! u^(iy, kx) = sum over jy of S_kx(jy, iy) q^(jy, kx),     ^: the transform in x;  S: a 2 x 2 matrix
-//! ```
-//!
-//! For each of the `px/2 + 1` bins that is a matrix of 2 my by 2 my complex numbers, all of which a product reads.
+//! Both components are rows of one grid, those of x before those of y: a traction of either is a loaded row, and so is its displacement.
+
+use toeplitz::fft::{good_length, Real};
+use toeplitz::{Memory, OfRows, Product};
 
 use super::coefficients::Tangential;
+use super::plane::Vector;
 use super::row_tables::{Full, RowTables};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{blank, keep, zeros};
-use crate::operator::fft::{good_length, Complex, Real};
-use crate::operator::row_transform::RowTransform;
+use crate::memory::{blank, keep};
 use crate::threads::Threads;
-
-/// What memory is for.
-const MATRICES: &str = "the transforms of tangential tables per row";
-
-type Wave = Complex<f64>;
 
 /// The operator of one grid, with its workspace.
 pub struct RowProduct {
-    mx: usize,
-    my: usize,
-    transform: RowTransform<f64>,
-    /// `[bin][iy][jy]`: `xx, yy, xy, yx`, with the normalisation.
-    matrices: Vec<[Wave; 4]>,
-    /// `[2 my][bins]`, and the other way round.
-    rows: Vec<Wave>,
-    columns: Vec<Wave>,
-    pieces: Vec<Piece>,
-    threads: Threads,
-}
-
-/// Memory of one piece of the work.
-struct Piece {
-    entries: Vec<Full>,
-    row: Vec<f64>,
-    scratch: Vec<Wave>,
-    bins: Vec<Wave>,
+    product: Product<f64>,
+    memory: Memory<f64>,
+    /// `[2][my][mx]`: tractions and displacements.
+    q: Vec<f64>,
+    u: Vec<f64>,
 }
 
 impl Drop for RowProduct {
     fn drop(&mut self) {
-        keep([&mut self.rows, &mut self.columns]);
-        keep([&mut self.matrices]);
+        keep([&mut self.q, &mut self.u]);
     }
 }
 
@@ -85,92 +64,47 @@ impl RowProduct {
         threads: &Threads,
     ) -> Result<RowProduct> {
         let Grid { mx, my, .. } = *grid;
-        let px = good_length(2 * mx - 1);
-        let transform = RowTransform::<f64>::new(px)?;
-        let nb = transform.bins();
-        let size = my.checked_mul(my).and_then(|n| n.checked_mul(nb));
-        let size =
-            size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {nb} values of {MATRICES}")))?;
-        let nan = Wave::new(f64::NAN, f64::NAN);
-        let piece = |_| {
-            let (row, bins) = (zeros(px, MATRICES)?, zeros(4 * nb, MATRICES)?);
-            Ok(Piece { entries: zeros(2 * mx - 1, MATRICES)?, row, scratch: transform.scratch()?, bins })
-        };
-        let mut pieces = (0..threads.count()).map(piece).collect::<Result<Vec<_>>>()?;
-        let mut matrices = blank(size, [nan; 4], MATRICES)?;
-        let mut of_row = blank(my * nb, [nan; 4], MATRICES)?;
         let last = mx as i64 - 1;
-        for iy in 0..my {
-            threads.for_each_row(&mut of_row, nb, &mut pieces, |jy, out, piece| {
-                let Piece { entries, row, scratch, bins } = piece;
-                entries.iter_mut().zip(-last..).for_each(|(value, kx)| *value = entry(jy, iy, kx));
-                for component in 0..4 {
-                    row.fill(0.0);
-                    for (value, kx) in entries.iter().zip(-last..) {
-                        row[kx.rem_euclid(px as i64) as usize] = value[component] / px as f64;
-                    }
-                    transform.forward(row, &mut bins[component * nb..][..nb], scratch);
-                }
-                for (bin, out) in out.iter_mut().enumerate() {
-                    *out = [0, 1, 2, 3].map(|component| bins[component * nb + bin]);
-                }
-            });
-            let of_row = &of_row[..];
-            threads.for_each_plain_row(&mut matrices, my * my, |bin, matrix| {
-                let column = of_row[bin..].iter().step_by(nb);
-                matrix[iy * my..][..my].iter_mut().zip(column).for_each(|(to, from)| *to = *from);
-            });
-        }
-        keep([&mut of_row]);
-        let (rows, columns) = (blank(2 * my * nb, nan, MATRICES)?, blank(2 * my * nb, nan, MATRICES)?);
-        Ok(RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads: threads.clone() })
+        let fill = |from: usize, to: usize, period: &mut [f64]| {
+            // Of the displacement in x, then in y, by a traction in x, then in y.
+            let component = [[0, 2], [3, 1]][to / my][from / my];
+            let px = period.len() as i64;
+            period.fill(0.0);
+            (-last..=last).for_each(|kx| period[kx.rem_euclid(px) as usize] = entry(from % my, to % my, kx)[component]);
+        };
+        let of = OfRows { are_even: false, fill, factor: 1.0 };
+        let product = Product::per_row((mx, 2 * my), &of, good_length(2 * mx - 1), threads)?;
+        let (memory, what) = (product.memory()?, "the fields of tangential tables per row");
+        let field = || blank(2 * mx * my, f64::NAN, what);
+        Ok(RowProduct { product, memory, q: field()?, u: field()? })
     }
 
-    /// `u = by A q` of fields in any precision.
-    pub fn apply<S: Real>(&mut self, q: &[[S; 2]], by: f64, u: &mut [[S; 2]]) {
-        let RowProduct { mx, my, transform, matrices, rows, columns, pieces, threads } = self;
-        let (mx, my, nb) = (*mx, *my, transform.bins());
-        assert!(q.len() == mx * my && u.len() == mx * my);
-        // Rows of x components, then those of y.
-        threads.for_each_row(rows, nb, pieces, |k, bins, Piece { row, scratch, .. }| {
-            let of_row = &q[k % my * mx..][..mx];
-            row[..mx].iter_mut().zip(of_row).for_each(|(value, q)| *value = by * q[k / my].to_double());
-            transform.forward(&row[..mx], bins, scratch);
-        });
-        let (rows, matrices) = (&rows[..], &matrices[..]);
-        threads.for_each_plain_row(columns, 2 * my, |bin, column| {
-            let (x, y) = column.split_at_mut(my);
-            let matrix = &matrices[bin * my * my..][..my * my];
-            for ((x, y), row) in x.iter_mut().zip(y).zip(matrix.chunks_exact(my)) {
-                let mut sum = [Wave::default(); 2];
-                for (jy, [xx, yy, xy, yx]) in row.iter().enumerate() {
-                    let (qx, qy) = (rows[jy * nb + bin], rows[(my + jy) * nb + bin]);
-                    sum = [sum[0] + xx * qx + xy * qy, sum[1] + yx * qx + yy * qy];
-                }
-                (*x, *y) = (sum[0], sum[1]);
-            }
-        });
-        let columns = &columns[..];
-        threads.for_each_row(u, mx, pieces, |iy, u, Piece { row, scratch, bins, .. }| {
-            for component in 0..2 {
-                let bins = &mut bins[..nb];
-                bins.iter_mut()
-                    .enumerate()
-                    .for_each(|(bin, value)| *value = columns[bin * 2 * my + component * my + iy]);
-                transform.inverse(bins, &mut row[..mx], scratch);
-                u.iter_mut().zip(&*row).for_each(|(u, value)| u[component] = S::of(*value));
-            }
-        });
+    /// `u = A q`.
+    pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
+        for (component, own) in self.q.chunks_exact_mut(q.len()).enumerate() {
+            own.iter_mut().zip(q).for_each(|(own, q)| *own = q[component]);
+        }
+        self.product.apply(&self.q, &mut self.u, &mut self.memory);
+        for (component, own) in self.u.chunks_exact(u.len()).enumerate() {
+            u.iter_mut().zip(own).for_each(|(u, own)| u[component] = *own);
+        }
+    }
+
+    /// `u = by A q` of fields by component, in any precision.
+    pub fn apply_by_component<S: Real>(&mut self, q: [&[S]; 2], by: f64, u: [&mut [S]; 2]) {
+        for (own, q) in self.q.chunks_exact_mut(q[0].len()).zip(q) {
+            own.iter_mut().zip(q).for_each(|(own, q)| *own = by * q.to_double());
+        }
+        self.product.apply(&self.q, &mut self.u, &mut self.memory);
+        for (own, u) in self.u.chunks_exact(u[0].len()).zip(u) {
+            u.iter_mut().zip(own).for_each(|(u, own)| *u = S::of(*own));
+        }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let piece = |piece: &Piece| {
-            let Piece { entries, row, scratch, bins } = piece;
-            size_of_val(&entries[..]) + size_of_val(&row[..]) + size_of_val(&scratch[..]) + size_of_val(&bins[..])
-        };
-        let fields = size_of_val(&self.rows[..]) + size_of_val(&self.columns[..]);
-        size_of_val(&self.matrices[..]) + fields + self.pieces.iter().map(piece).sum::<usize>()
+        let fields = size_of_val(&self.q[..]) + size_of_val(&self.u[..]);
+        self.product.bytes() + self.memory.bytes() + fields
     }
 }
 

@@ -20,12 +20,12 @@ use crate::error::Result;
 use crate::memory::zeros;
 
 /// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
-const MIXED: f64 = 0.5;
+pub(super) const MIXED: f64 = 0.5;
 
 /// Tractions are near their circles within this part of the radius.
-const NEAR_THE_CIRCLE: f64 = 0.2;
+pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
 /// And where the natural map turns them by less than the angle of this cosine: those against their slip are to turn round.
-const ALIGNED: f64 = 0.9;
+pub(super) const ALIGNED: f64 = 0.9;
 
 /// What an element does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -197,14 +197,7 @@ impl Tangent {
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let threads = problem.threads().clone();
-        vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
-        // The sweep starts from nothing at each leading edge: what is beside C does not help it.
-        let compliance = problem.operators.relative_compliance();
-        let operators = &mut problem.operators;
-        match &mut problem.extension {
-            Some(extension) => extension.between(mixed, z, compliance, |r, z| operators.precondition(r, unit, z)),
-            None => operators.precondition(mixed, unit, z),
-        }
+        self.invert(problem, r, unit, mixed, z);
         // The own inverse, where something slips or a layer is softer than elsewhere.
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| excess.at(i));
         let own = |i: usize| match self.side[i] {
@@ -233,5 +226,29 @@ impl Tangent {
         sweep.solve(&problem.grid, |i| mixing(self.curvature[i], a0 * soft(i)), project, &threads, z);
         let after = |i: usize| if self.side[i] == Side::Slip { own(i) } else { 0.0 };
         vectors::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
+    }
+
+    /// `z = X' M X E r`, of no meaning outside C. `mixed` is overwritten.
+    fn invert(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
+        let (threads, n) = (problem.threads().clone(), r.len());
+        let compliance = problem.operators.relative_compliance();
+        let Problem { operators, extension, .. } = problem;
+        // The sweep starts from nothing at each leading edge: what is beside C does not help it.
+        let Some(extension) = extension else {
+            vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
+            return operators.precondition(mixed, unit, z);
+        };
+        // By component: both fields have room for that.
+        let (x, y) = z.as_flattened_mut().split_at_mut(n);
+        for (component, given) in [&mut *x, &mut *y].into_iter().enumerate() {
+            threads.for_each_plain_row(given, BLOCK, |k, given| {
+                let mixing = self.mixing[k * BLOCK..].iter().zip(&r[k * BLOCK..]);
+                given.iter_mut().zip(mixing).for_each(|(given, (mixing, r))| *given = mixing * r[component]);
+            });
+        }
+        let (to_x, to_y) = mixed.as_flattened_mut().split_at_mut(n);
+        let apply = |r: [&[f64]; 2], z: [&mut [f64]; 2]| operators.precondition_components(r, unit, z);
+        extension.between([x, y], [&mut *to_x, &mut *to_y], compliance, apply);
+        vectors::fill(&threads, z, |i| [to_x[i], to_y[i]]);
     }
 }

@@ -1,61 +1,37 @@
-//! Products `u = A q` of two components by FFT.
+//! Products `u = A q` of tractions, by [`VectorProduct`].
 //!
-//! ```text
-//! (ux, uy)_I = sum_J [Axx Axy; Axy Ayy](I - J) (qx, qy)_J = [F^-1 (S . F q)]_I
-//! ```
+//! Axx and Ayy are even in both directions, Axy is odd in both. So are they in steady rolling by whole elements along x, of which a product
+//! takes the differences; between the centres, of which rolling asks else, they are neither.
 //!
-//! Axx and Ayy are even in both directions, Axy is odd in both, so that all three transforms are real: a symmetric 2 x 2 matrix S a
-//! wave, of which a quarter of the plane is kept (Sxy changes its sign with the wave's y). Coefficients between the centres, of which
-//! rolling asks, are neither: their transforms are complex.
-//!
-//! Both components are one complex number, `qx + i qy`: one complex transform has the place of two real ones. A wave k is multiplied
-//! together with -k ([`spectrum`](super::spectrum) has the formulas), so a block of columns comes with its mirror image.
-//!
-//! Without Axy (a Poisson ratio of 0, a single row) a traction in one direction displaces in that direction only: then there is one real
-//! transform, half of the work, and the other component is exactly 0.
+//! Without Axy (a Poisson ratio of 0, a single row) a traction in one direction displaces in that direction only: the other component is exactly
+//! 0, and takes no time where it is zero.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use toeplitz::fft::Real;
+use toeplitz::{vector_period, EvenMatrix, Memory, VectorProduct};
 
 use super::coefficients::{Entry, Tangential};
 use super::plane::Vector;
-use super::quadrant::Quadrant;
-use super::spectrum::{self, Kind, Spectrum, SPECTRUM};
+use super::quadrant::{circulant_period, Quadrant};
 use super::unit::unit_of;
-use super::workspace::{Piece, Workspace};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{computed, keep};
-use crate::operator::columns::for_each_mirrored_block;
-use crate::operator::fft::{good_length, ColumnTransform, Complex, Real};
-use crate::operator::row_transform::RowTransform;
 use crate::threads::Threads;
 
 /// Displacements at the centres.
 const HERE: (f64, f64) = (0.0, 0.0);
 
+/// A period that steps by whole elements lengthen by this part at most is worth the half of the symbol that is not kept, and three quarters of its
+/// set-up.
+const LONGER: usize = 8;
+
 /// The operator of one grid.
 pub struct Toeplitz<T: Real> {
-    pub(super) mx: usize,
-    pub(super) my: usize,
-    pub(super) rows: ColumnTransform<T>,
-    /// Of one component alone.
-    pub(super) real_rows: RowTransform<T>,
-    pub(super) columns: ColumnTransform<T>,
-    pub(super) spectrum: Spectrum<T>,
-    /// Whether there is no Axy.
-    is_uncoupled: bool,
-    pub(super) threads: Threads,
+    product: VectorProduct<T>,
     /// Coefficients are kept in this unit, a power of two: single precision has a small range.
-    pub(super) unit: f64,
-}
-
-impl<T: Real> Drop for Toeplitz<T> {
-    fn drop(&mut self) {
-        match &mut self.spectrum {
-            Spectrum::Even(waves) => keep([waves]),
-            Spectrum::General(waves) => keep([waves]),
-        }
-    }
+    unit: f64,
 }
 
 impl<T: Real> Toeplitz<T> {
@@ -73,38 +49,24 @@ impl<T: Real> Toeplitz<T> {
     /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
     pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
         let quadrant = Quadrant::new(tangential, grid, by, threads)?;
+        if let Some(n) = whole_step(grid, by) {
+            let product = Toeplitz::even(&quadrant, grid, n.unsigned_abs() as usize, threads)?;
+            return Ok(Toeplitz { product: product.product.further_on(n)?, ..product });
+        }
         Toeplitz::general((&quadrant, by), grid, |x, y| quadrant.displaced(x, y, by), threads)
     }
 
     /// Products with coefficients that were computed.
     pub fn direct(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
-        let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
-        let fill = |x: usize, y: usize| quadrant.at(x as i64, y as i64);
-        let unit = unit_of(quadrant.at(0, 0)[0]);
-        let product = spectrum::even(period, (grid.mx, grid.my), fill, Kind::Direct, unit, threads)?;
-        let spectrum = product.unwrap_or_else(|| unreachable!("only an inverse may not be"));
-        Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, HERE)), unit, threads)
-    }
-
-    /// See [`inverse`](Self::inverse).
-    pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
-        let length = |m: usize| if m == 1 { 1 } else { good_length(m + 1) };
-        let period = (length(grid.mx), length(grid.my));
-        let given = (period.0 / 2 + 1, period.1 / 2 + 1);
-        // An odd function has no value half-way around.
-        let half_way = |k: usize, period: usize| 2 * k == period;
-        let fill = |x: usize, y: usize| {
-            let [xx, yy, xy] = quadrant.at(x as i64, y as i64);
-            [xx, yy, if half_way(x, period.0) || half_way(y, period.1) { 0.0 } else { xy }]
-        };
-        let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
-        let inverse = spectrum::even(period, given, fill, Kind::Inverse, unit, threads)?;
-        let uncoupled = quadrant.is_uncoupled(grid, HERE);
-        inverse.map(|spectrum| Toeplitz::with(grid, period, (spectrum, uncoupled), unit, threads)).transpose()
+        Toeplitz::even(quadrant, grid, 0, threads)
     }
 
     /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
     pub fn rolling(quadrant: &Quadrant, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
+        if let Some(n) = whole_step(grid, by) {
+            let product = Toeplitz::even(quadrant, grid, n.unsigned_abs() as usize, threads)?;
+            return Ok(Toeplitz { product: product.product.less_further_on(n)?, ..product });
+        }
         let fill = |x: i64, y: i64| {
             let (here, there) = (quadrant.at(x, y), quadrant.displaced(x, y, by));
             [here[0] - there[0], here[1] - there[1], here[2] - there[2]]
@@ -112,175 +74,147 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::general((quadrant, by), grid, fill, threads)
     }
 
-    /// Of coefficients that are neither even nor odd: `fill(x, y)` gives that of an offset.
+    /// With a period for offsets of so many elements more in x.
+    fn even(quadrant: &Quadrant, grid: &Grid, more: usize, threads: &Threads) -> Result<Toeplitz<T>> {
+        let (given, unit) = ((grid.mx + more, grid.my), unit_of(quadrant.at(0, 0)[0]));
+        let coefficients = EvenMatrix {
+            given,
+            is_coupled: !quadrant.is_uncoupled(grid, HERE),
+            fill: |component, ky, row: &mut [f64]| quadrant.fill_row(component, ky, row),
+            finish: |values: [f64; 3]| values.map(|value| value / unit),
+        };
+        let period = vector_period((2 * given.0 - 1, 2 * given.1 - 1));
+        Ok(Toeplitz { product: VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?, unit })
+    }
+
+    /// See [`inverse`](Self::inverse).
+    pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
+        let (period, given) = circulant_period(grid);
+        let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
+        let fill = |component: usize, ky: i64, row: &mut [f64]| {
+            quadrant.fill_row(component, ky, row);
+            // An odd function has no value half-way around.
+            if component == 2 {
+                let half_way = if 2 * ky as usize == period.1 { 0..row.len() } else { period.0 / 2..row.len() };
+                row[half_way].fill(0.0);
+            }
+        };
+        let is_positive = AtomicBool::new(true);
+        let finish = |[xx, yy, xy]: [f64; 3]| {
+            let determinant = xx * yy - xy * xy;
+            if !(determinant > 0.0 && xx > 0.0) {
+                is_positive.store(false, Ordering::Relaxed);
+            }
+            [yy, xx, -xy].map(|value| value / determinant / unit)
+        };
+        let coefficients = EvenMatrix { given, is_coupled: !quadrant.is_uncoupled(grid, HERE), fill, finish };
+        let product = VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?;
+        Ok(is_positive.into_inner().then_some(Toeplitz { product, unit }))
+    }
+
+    /// Of coefficients that are neither even nor odd: `at(x, y)` gives those of an offset.
     fn general(
         (quadrant, by): (&Quadrant, (f64, f64)),
         grid: &Grid,
-        fill: impl Fn(i64, i64) -> Entry + Sync + Send,
+        at: impl Fn(i64, i64) -> Entry + Sync + Send,
         threads: &Threads,
     ) -> Result<Toeplitz<T>> {
-        let period = (good_length(2 * grid.mx - 1), good_length(2 * grid.my - 1));
         let unit = unit_of(quadrant.at(0, 0)[0]);
-        let spectrum = spectrum::general(grid, period, fill, unit, threads)?;
-        Toeplitz::with(grid, period, (spectrum, quadrant.is_uncoupled(grid, by)), unit, threads)
-    }
-
-    fn with(
-        grid: &Grid,
-        (px, py): (usize, usize),
-        (spectrum, is_uncoupled): (Spectrum<T>, bool),
-        unit: f64,
-        threads: &Threads,
-    ) -> Result<Toeplitz<T>> {
-        Ok(Toeplitz {
-            mx: grid.mx,
-            my: grid.my,
-            rows: ColumnTransform::new(px)?,
-            real_rows: RowTransform::new(px)?,
-            columns: ColumnTransform::new(py)?,
-            spectrum,
-            is_uncoupled,
-            threads: threads.clone(),
-            unit,
-        })
+        let fill = |kx: i64, ky: i64, [xx, yy, xy]: [&mut [f64]; 3]| {
+            for (((kx, xx), yy), xy) in (kx..).zip(xx).zip(yy).zip(xy) {
+                [*xx, *yy, *xy] = at(kx, ky).map(|value| value / unit);
+            }
+        };
+        let is_coupled = !quadrant.is_uncoupled(grid, by);
+        Ok(Toeplitz { product: VectorProduct::uneven((grid.mx, grid.my), is_coupled, fill, threads)?, unit })
     }
 
     /// Memory for products by this operator.
-    pub fn workspace(&self) -> Result<Workspace<T>> {
-        let of_rows = self.rows.scratch_length().max(self.real_rows.scratch_length());
-        let scratch = of_rows.max(self.columns.scratch_length());
-        Workspace::new((self.rows.length(), self.columns.length()), self.my, scratch, &self.threads)
+    pub fn workspace(&self) -> Result<Memory<T>> {
+        Ok(self.product.memory()?)
     }
 
     /// The same operator in another precision.
     pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
-        let real = |value: T| S::of(value.to_double());
-        let spectrum = match &self.spectrum {
-            Spectrum::Even(from) => Spectrum::Even(computed(from.iter().map(|wave| wave.map(real)), SPECTRUM)?),
-            Spectrum::General(from) => {
-                let complex = |value: Complex<T>| Complex::new(real(value.re), real(value.im));
-                Spectrum::General(computed(from.iter().map(|wave| wave.map(complex)), SPECTRUM)?)
-            }
-        };
-        let grid = Grid { mx: self.mx, my: self.my, dx: 1.0, dy: 1.0 };
-        let periods = (self.rows.length(), self.columns.length());
-        Toeplitz::with(&grid, periods, (spectrum, self.is_uncoupled), self.unit, &self.threads)
+        Ok(Toeplitz { product: self.product.in_precision()?, unit: self.unit })
     }
 
-    /// Bytes of the spectrum.
+    /// Bytes of the symbol.
     pub fn bytes(&self) -> usize {
-        match &self.spectrum {
-            Spectrum::Even(s) => size_of_val(&s[..]),
-            Spectrum::General(s) => size_of_val(&s[..]),
-        }
+        self.product.bytes()
     }
 
     /// `u = A q`. Values of q are computed with in units of `unit`, a power of two.
-    pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], workspace: &mut Workspace<T>) {
-        self.apply_scaled(q, (1.0 / unit, unit * self.unit), u, workspace);
+    pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], memory: &mut Memory<T>) {
+        let (mx, my) = self.product.grid();
+        assert!(q.len() == mx * my && u.len() == mx * my, "fields of another grid");
+        let [to, from] = self.scales(unit);
+        let load = |component: usize, first: usize, rows: &mut [T]| {
+            let q = &q[first * mx..][..rows.len()];
+            rows.iter_mut().zip(q).for_each(|(value, q)| *value = T::of(to * q[component]));
+        };
+        let write = |u: &mut [Vector], _: usize, [x, y]: [&[T]; 2]| {
+            for ((u, x), y) in u.iter_mut().zip(x).zip(y) {
+                *u = [from * x.to_double(), from * y.to_double()];
+            }
+        };
+        let loaded = match self.product.is_uncoupled() {
+            false => [rows_with(q, mx, |q| *q != [0.0; 2]); 2],
+            true => [0, 1].map(|component| rows_with(q, mx, |q| q[component] != 0.0)),
+        };
+        let pieces = u.chunks_mut(self.product.rows_at_a_time() * mx);
+        self.product.apply(loaded.map(range), load, (pieces, write), memory);
     }
 
-    /// `u = A q` of fields in any precision, q times the first of the scales, and u times the second and in the unit of the coefficients.
-    pub fn apply_scaled<S: Real>(
+    /// The same of fields by component, in any precision, q times the first of the scales, and u times the second.
+    pub fn apply_by_component<S: Real>(
         &self,
-        q: &[[S; 2]],
-        scales: (f64, f64),
-        u: &mut [[S; 2]],
-        workspace: &mut Workspace<T>,
+        q: [&[S]; 2],
+        [to, from]: [f64; 2],
+        u: [&mut [S]; 2],
+        memory: &mut Memory<T>,
     ) {
-        let n = self.mx * self.my;
-        assert!(q.len() == n && u.len() == n);
-        if self.is_uncoupled {
-            let is_zero = |component: usize| q.iter().all(|q| q[component].is_zero());
-            if let Some(other) = [1, 0].into_iter().find(|&component| is_zero(component)) {
-                return self.apply_one(1 - other, q, scales, u, workspace);
+        let (mx, my) = self.product.grid();
+        assert!(q.iter().all(|q| q.len() == mx * my), "fields of another grid");
+        let load = |component: usize, first: usize, rows: &mut [T]| {
+            let q = &q[component][first * mx..][..rows.len()];
+            rows.iter_mut().zip(q).for_each(|(value, q)| *value = T::of(to * q.to_double()));
+        };
+        let write = |(ux, uy): (&mut [S], &mut [S]), _: usize, values: [&[T]; 2]| {
+            for (u, values) in [ux, uy].into_iter().zip(values) {
+                u.iter_mut().zip(values).for_each(|(u, value)| *u = S::of(from * value.to_double()));
             }
-        }
-        let (px, length) = (self.rows.length(), self.columns.length());
-        let Workspace { bins, pieces } = workspace;
-        let loaded = rows_with_traction(q, self.mx);
-        self.forward(q, scales.0, &loaded, bins, pieces);
-        for_each_mirrored_block(bins, px, &self.threads, pieces, |block, piece| {
-            let count = block.columns() * length;
-            let (columns, mirrored) = (&mut piece.columns[..count], &mut piece.mirrored[..count]);
-            block.gather(loaded.clone(), length, columns, mirrored);
-            self.columns.forward(columns, &mut piece.scratch);
-            self.columns.forward(mirrored, &mut piece.scratch);
-            let pairs = columns.chunks_exact_mut(length).zip(mirrored.chunks_exact_mut(length));
-            pairs.enumerate().for_each(|(c, (z, w))| self.multiply(block.first() + c, z, w));
-            self.columns.inverse(columns, &mut piece.scratch);
-            self.columns.inverse(mirrored, &mut piece.scratch);
-            block.scatter(0..self.my, length, columns, mirrored);
-        });
-        self.back(scales.1, u, bins, pieces);
+        };
+        let loaded = q.map(|q| rows_with(q, mx, |q| !q.is_zero()));
+        let loaded = match self.product.is_uncoupled() {
+            false => [(loaded[0].0.min(loaded[1].0), loaded[0].1.max(loaded[1].1)); 2],
+            true => loaded,
+        };
+        let [x, y] = u.map(|u| u.chunks_mut(self.product.rows_at_a_time() * mx));
+        self.product.apply(loaded.map(range), load, (x.zip(y), write), memory);
     }
 
-    fn forward<S: Real>(
-        &self,
-        q: &[[S; 2]],
-        scale: f64,
-        loaded: &Range<usize>,
-        bins: &mut [Complex<T>],
-        pieces: &mut [Piece<T>],
-    ) {
-        let (mx, px, first) = (self.mx, self.rows.length(), loaded.start);
-        let rows = &mut bins[first * px..loaded.end * px];
-        self.threads.for_each_row(rows, px, pieces, |i, row, piece| {
-            let q = &q[(first + i) * mx..(first + i + 1) * mx];
-            for (to, q) in row.iter_mut().zip(q) {
-                *to = Complex::new(T::of(scale * q[0].to_double()), T::of(scale * q[1].to_double()));
-            }
-            row[mx..].fill(Complex::default());
-            self.rows.forward(row, &mut piece.scratch);
-        });
-    }
-
-    fn back<S: Real>(&self, scale: f64, u: &mut [[S; 2]], bins: &mut [Complex<T>], pieces: &mut [Piece<T>]) {
-        let px = self.rows.length();
-        self.threads.for_each_row_pair_with((u, self.mx), (bins, px), pieces, |_, u, row, piece| {
-            self.rows.inverse(row, &mut piece.scratch);
-            for (u, value) in u.iter_mut().zip(row) {
-                *u = [S::of(scale * value.re.to_double()), S::of(scale * value.im.to_double())];
-            }
-        });
-    }
-
-    /// Multiplies the waves of x bin `kx`, z, and the conjugates of their opposites, w.
-    fn multiply(&self, kx: usize, z: &mut [Complex<T>], w: &mut [Complex<T>]) {
-        let py = self.columns.length();
-        match &self.spectrum {
-            Spectrum::Even(spectrum) => {
-                let half = py / 2 + 1;
-                let waves = &spectrum[kx * half..(kx + 1) * half];
-                let (low_z, high_z) = z.split_at_mut(half);
-                let (low_w, high_w) = w.split_at_mut(half);
-                let turn = |z: &mut Complex<T>, w: &mut Complex<T>, [alpha, beta, gamma]: [T; 3]| {
-                    let of_w = Complex::new(beta * w.re - gamma * w.im, beta * w.im + gamma * w.re);
-                    let of_z = Complex::new(beta * z.re + gamma * z.im, beta * z.im - gamma * z.re);
-                    (*z, *w) = (*z * alpha + of_w, *w * alpha + of_z);
-                };
-                for ((z, w), &wave) in low_z.iter_mut().zip(low_w).zip(waves) {
-                    turn(z, w, wave);
-                }
-                for ((z, w), &[alpha, beta, gamma]) in
-                    high_z.iter_mut().rev().zip(high_w.iter_mut().rev()).zip(&waves[1..])
-                {
-                    turn(z, w, [alpha, beta, -gamma]);
-                }
-            }
-            Spectrum::General(spectrum) => {
-                for ((z, w), &[alpha, delta, epsilon]) in z.iter_mut().zip(w).zip(&spectrum[kx * py..(kx + 1) * py]) {
-                    (*z, *w) = (*z * alpha + *w * delta, *w * alpha + *z * epsilon);
-                }
-            }
-        }
+    /// What q is to be multiplied by, and u, where q is computed with in units of `unit`.
+    pub fn scales(&self, unit: f64) -> [f64; 2] {
+        [1.0 / unit, unit * self.unit]
     }
 }
 
-/// The run of rows outside of which q is zero.
-pub(super) fn rows_with_traction<S: Real>(q: &[[S; 2]], mx: usize) -> Range<usize> {
-    let loaded = |row: &[[S; 2]]| row.iter().any(|q| *q != [S::zero(); 2]);
-    let Some(first) = q.chunks_exact(mx).position(loaded) else { return 0..0 };
-    let last = q.chunks_exact(mx).rposition(loaded).unwrap_or(first);
-    first..last + 1
+/// Whole elements in x, if a step is that and short.
+fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
+    (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER as f64 <= grid.mx as f64).then_some(by.0 as i64)
+}
+
+/// The run of rows outside of which nothing is loaded: the first, and that behind the last; the number of rows and 0 if nothing is.
+fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, usize) {
+    // All of a row, which the compiler can vectorise.
+    let has_any = |row: &[A]| row.iter().fold(false, |any, q| any | is_loaded(q));
+    let first = q.chunks_exact(mx).position(has_any);
+    let last = q.chunks_exact(mx).rposition(has_any);
+    first.zip(last).map_or((q.len() / mx, 0), |(first, last)| (first, last + 1))
+}
+
+/// As a range: nothing where the first is not before the last.
+fn range((first, last): (usize, usize)) -> Range<usize> {
+    first.min(last)..last
 }

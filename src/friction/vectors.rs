@@ -1,9 +1,10 @@
 //! Passes over fields of two components, by several threads: sums are taken in blocks of fixed length and order, so that they have the
 //! same bits for any number of threads.
 
-use super::plane::{dot as dot_one, plus, Vector};
+use super::plane::{plus, Vector};
 use crate::error::Result;
 use crate::memory::unwritten;
+use crate::sums::Sums;
 use crate::threads::Threads;
 
 /// Elements of a block: both fields of it stay in the nearest cache.
@@ -138,14 +139,10 @@ pub fn over<B: Send, const K: usize>(
 }
 
 /// Four sums side by side: one would wait for each addition.
+#[inline(always)]
 fn dot_of_block(v: &[Vector], w: &[Vector]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (mut by_four, mut of_w) = (v.chunks_exact(4), w.chunks_exact(4));
-    for (v, w) in (&mut by_four).zip(&mut of_w) {
-        for k in 0..4 {
-            sums[k] += dot_one(v[k], w[k]);
-        }
-    }
-    let rest: f64 = by_four.remainder().iter().zip(of_w.remainder()).map(|(v, w)| dot_one(*v, *w)).sum();
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+    let mut sums = Sums::new();
+    sums.add::<f64, 2, 0>([v.as_flattened(), w.as_flattened()], [], |[v, w], []| [v * w]);
+    let [sum] = sums.values();
+    sum
 }

@@ -4,12 +4,12 @@ use super::plane::Vector;
 use super::row_product::RowProduct;
 use super::row_tables::RowTables;
 use super::toeplitz::Toeplitz;
-use super::workspace::Workspace;
 use super::Tangential;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
+use toeplitz::Memory;
 
 /// A box of elements: the first column and row, and behind the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub struct Displaced {
 }
 
 enum Product {
-    Toeplitz(Box<Toeplitz<f64>>, Workspace<f64>),
+    Toeplitz(Box<Toeplitz<f64>>, Memory<f64>),
     ByRow(RowProduct),
 }
 
@@ -82,7 +82,7 @@ impl Displaced {
     pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
         match &mut self.product {
             Product::Toeplitz(operator, workspace) => operator.apply(q, 1.0, u, workspace),
-            Product::ByRow(product) => product.apply(q, 1.0, u),
+            Product::ByRow(product) => product.apply(q, u),
         }
     }
 

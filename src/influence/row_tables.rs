@@ -124,19 +124,16 @@ impl RowTables {
         self.row(jy, iy)[self.column(kx)]
     }
 
-    /// Fills `out` with the period that starts at offset 0: offsets `0..mx-1` first, negative ones at its end.
-    pub fn fill_period(&self, jy: usize, iy: usize, out: &mut [f64]) {
+    /// The coefficients of a loaded row jy and a row iy: where all are even those at offsets 0 .. mx; else of a period, which starts at offset
+    /// 0, negative ones at its end.
+    pub fn fill(&self, jy: usize, iy: usize, out: &mut [f64]) {
         let (row, mx, n) = (self.row(jy, iy), self.mx, out.len());
-        out.fill(0.0);
         if self.even {
-            out[..mx].copy_from_slice(row);
-            for k in 1..mx {
-                out[n - k] = row[k];
-            }
-        } else {
-            out[..mx].copy_from_slice(&row[mx - 1..]);
-            out[n - (mx - 1)..].copy_from_slice(&row[..mx - 1]);
+            return out.copy_from_slice(row);
         }
+        out.fill(0.0);
+        out[..mx].copy_from_slice(&row[mx - 1..]);
+        out[n - (mx - 1)..].copy_from_slice(&row[..mx - 1]);
     }
 
     /// The coefficients of a loaded row jy and a row iy: at offsets `0..mx`, where all tables are even, or else from `1 - mx` on.

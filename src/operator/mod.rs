@@ -2,18 +2,15 @@
 
 mod circulant;
 pub mod dense;
-mod engine;
 #[allow(clippy::module_inception)]
 mod operator;
 mod periods;
-mod row_tables;
 mod workspace;
 
 pub(crate) use crate::memory::{reserve, zeros};
 pub use operator::Operator;
 pub(crate) use periods::even_periods;
 pub use periods::Reach;
-pub(crate) use toeplitz::block as columns;
 pub use toeplitz::fft;
 pub use toeplitz::fft::{length_for_stages, row_transform};
 pub use toeplitz::SetUp;

@@ -2,17 +2,14 @@
 //!
 //! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
 //!
-//! The products are those of the crate toeplitz, or where A is Toeplitz in x only by matrices
-//! ([`row_tables`](super::row_tables)); the diagonal is added as they are transformed back.
+//! The products are those of the crate toeplitz; the diagonal is added as they are transformed back.
 
 use std::iter::once;
 
 use toeplitz::fft::Real;
-use toeplitz::{Even, Memory, Product, SetUp};
+use toeplitz::{Even, Memory, OfRows, Product, SetUp};
 
-use super::engine::Engine;
 use super::periods::{full_reach, periods, Reach};
-use super::row_tables::PerRow;
 use super::workspace::{Needs, Workspace};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -25,7 +22,7 @@ const DIAGONAL: &str = "the operator's diagonal";
 
 /// The operator of one grid.
 pub struct Operator<T: Real> {
-    engine: Engine<T>,
+    product: Product<T>,
     /// Products with pressures that reach farther are wrong. Only even coefficients make use of it.
     reach: Reach,
     /// What A has on its diagonal beyond the coefficients; empty: nothing.
@@ -67,27 +64,33 @@ impl<T: Real> Operator<T> {
 
     /// By a product alone.
     pub(super) fn by(product: Product<T>, grid: &Grid) -> Operator<T> {
-        Operator { engine: Engine::Toeplitz(product), reach: full_reach(grid), diagonal: Vec::new(), coupling: None }
+        Operator { product, reach: full_reach(grid), diagonal: Vec::new(), coupling: None }
     }
 
     /// The threads of its products.
     pub fn threads(&self) -> &Threads {
-        self.engine.threads()
+        self.product.threads()
     }
 
     /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
     /// error, before it is renewed again.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (period, threads) = (periods(coefficients, grid, self.reach), self.threads().clone());
+        let elements = (grid.mx, grid.my);
         if let Some((tables, least)) = coefficients.row_tables() {
-            self.engine = Engine::PerRow(PerRow::new(tables, (least, factor), period.0, &threads)?);
+            let fill = |jy: usize, iy: usize, row: &mut [f64]| {
+                tables.fill(jy, iy, row);
+                if jy == iy {
+                    row[0] += least;
+                }
+            };
+            let of = OfRows { are_even: tables.is_even_in_x(), fill, factor };
+            self.product = Product::per_row(elements, &of, period.0, &threads)?;
         } else {
-            if !matches!(&self.engine, Engine::Toeplitz(product) if product.period() == period) {
-                self.engine = Engine::Toeplitz(Product::new((grid.mx, grid.my), period, &threads)?);
+            if self.product.period() != Some(period) {
+                self.product = Product::new(elements, period, &threads)?;
             }
-            if let Engine::Toeplitz(product) = &mut self.engine {
-                set_symbol(product, (coefficients, factor), (grid, self.reach), set_up)?;
-            }
+            set_symbol(&mut self.product, (coefficients, factor), (grid, self.reach), set_up)?;
         }
         let diagonal = coefficients.diagonal().unwrap_or_default();
         self.diagonal.clear();
@@ -100,8 +103,8 @@ impl<T: Real> Operator<T> {
     /// The same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
         let diagonal = computed(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
-        let (engine, coupling) = (self.engine.in_precision(factor)?, self.coupling.clone());
-        Ok(Operator { engine, reach: self.reach, diagonal, coupling })
+        let (product, coupling) = (self.product.in_precision(factor)?, self.coupling.clone());
+        Ok(Operator { product, reach: self.reach, diagonal, coupling })
     }
 
     /// Memory for products by this operator.
@@ -111,7 +114,7 @@ impl<T: Real> Operator<T> {
 
     /// Elements of the grid.
     pub fn elements(&self) -> usize {
-        let (mx, my) = self.engine.grid();
+        let (mx, my) = self.product.grid();
         mx * my
     }
 
@@ -122,13 +125,13 @@ impl<T: Real> Operator<T> {
 
     /// Bytes held by the operator.
     pub fn bytes(&self) -> usize {
-        self.engine.bytes() + size_of_val(&self.diagonal[..])
+        self.product.bytes() + size_of_val(&self.diagonal[..])
     }
 
     /// What its products need: the workspace of one operator serves another of the same needs.
     pub fn needs(&self) -> Needs {
         let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
-        Needs { room: self.engine.room(), masked }
+        Needs { room: self.product.room(), masked }
     }
 
     /// `u = A p`.
@@ -147,11 +150,11 @@ impl<T: Real> Operator<T> {
             given.copy_from_slice(p);
             return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, memory));
         }
-        self.engine.forward(p, memory);
+        self.product.forward(p, memory);
         if self.diagonal.is_empty() {
-            return self.engine.back(p, memory);
+            return self.product.back(p, memory);
         }
-        self.engine.back_with(p, memory, |first, p, values| {
+        self.product.back_with(p, memory, |first, p, values| {
             for ((p, value), d) in p.iter_mut().zip(values).zip(&self.diagonal[first..]) {
                 *p = *value + *d * *p;
             }
@@ -159,11 +162,11 @@ impl<T: Real> Operator<T> {
     }
 
     fn without_coupling(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
-        self.engine.forward(p, memory);
+        self.product.forward(p, memory);
         if self.diagonal.is_empty() {
-            return self.engine.back(u, memory);
+            return self.product.back(u, memory);
         }
-        self.engine.back_with(u, memory, |first, u, values| {
+        self.product.back_with(u, memory, |first, u, values| {
             for (((u, value), d), p) in u.iter_mut().zip(values).zip(&self.diagonal[first..]).zip(&p[first..]) {
                 *u = *value + *d * *p;
             }

@@ -30,7 +30,6 @@ mod point_force;
 mod points;
 mod product;
 mod tensor;
-mod transform;
 mod waves;
 
 pub use body::{Body, COMPONENTS};

@@ -1,24 +1,19 @@
 //! Sums over elements at one depth, by FFT.
 //!
-//! The loads are padded with zeros to `px * py >= (2 mx - 1) (2 my - 1)` and transformed once. With S of each kernel (see
-//! [`transform`](super::transform))
-//!
-//! ```text
-//! stress = F^-1 sum over loads of i^(number of odd directions) S . F load
-//! ```
+//! Loads are transformed once; a stress is the sum of their products by kernels, of those of a component at one depth ([`ParityProduct`]).
 //!
 //! With a period nothing is padded, and the waves that have faded at a depth are left out. Where patches scale what elements feel, each has
 //! loads and products of its own; kernels are those of all.
 
+use toeplitz::fft::{good_length, Complex};
+use toeplitz::{ParityMemory, ParityProduct, Term};
+
 use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
-use super::loads::Loads;
-use super::loads::Part;
+use super::loads::{Loads, Part};
 use super::periodic::Waves;
-use super::transform::{gap, Memory, Transforms, BLOCK};
 use crate::error::Result;
 use crate::memory::zeros;
-use crate::operator::fft::{good_length, Complex};
 use crate::scene::Patches;
 
 /// What memory is for.
@@ -30,7 +25,7 @@ type Spectra = [Option<Vec<Complex<f64>>>; 3];
 /// Products with the loads of one body, of all depths.
 pub struct Product<'a> {
     pub body: Body,
-    transforms: Transforms,
+    transforms: ParityProduct,
     /// What stresses each part.
     parts: Vec<(Part, Spectra)>,
     patches: Option<Patches<'a>>,
@@ -53,7 +48,7 @@ pub struct Workspace {
     near: bool,
     /// Bins in x and in y, from 0 on, that are not 0 at this depth.
     left: (usize, usize),
-    memory: Memory,
+    memory: ParityMemory,
     /// Of the kernels of one component, where tables were transformed: `[load][bin in x][bin in y >= 0]`.
     spectrum: Vec<f64>,
     /// Of the stresses: `[iy][bin in x]`.
@@ -67,7 +62,7 @@ impl<'a> Product<'a> {
     pub fn new(body: &Body, loads: &Loads<'a>, near: bool) -> Result<Product<'a>> {
         let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
         let (px, py) = (period(body.grid.mx), period(body.grid.my));
-        let (transforms, scale) = (Transforms::new(px, py)?, loads.scale());
+        let (transforms, scale) = (ParityProduct::new(px, py)?, loads.scale());
         let factor = 1.0 / (px as f64 * py as f64);
         let mut parts = Vec::new();
         for part in loads.parts() {
@@ -140,7 +135,7 @@ impl<'a> Product<'a> {
             self.multiply(loads, c, workspace);
             let Workspace { stress, memory, left, field, .. } = workspace;
             let to = if *part == Part::All { &mut *out } else { &mut field[..] };
-            self.transforms.rows_back(stress, left.0, self.scale, memory, to, self.body.grid.mx);
+            self.transforms.back(stress, left.0, self.scale, memory, to, self.body.grid.mx);
             if let (Part::Patch(patch), Some(patches)) = (part, &self.patches) {
                 for (i, (out, value)) in out.iter_mut().zip(&*field).enumerate() {
                     *out = if patches.of(i) == *patch { *value } else { *out };
@@ -168,71 +163,16 @@ impl<'a> Product<'a> {
 
     /// Products with all loads, and back in y.
     fn multiply(&self, loads: &Spectra, c: usize, workspace: &mut Workspace) {
-        let ((_, py), (nb, half)) = (self.transforms.lengths(), self.transforms.bins());
+        let (nb, half) = self.transforms.bins();
         let Workspace { source, spectrum, memory, stress, left, near, .. } = workspace;
         let (source, tables, near) = (&*source, &*spectrum, *near);
-        let spectrum = |load: usize| match source {
+        let symbol = |load: usize| match source {
             Source::Periodic(waves) if !near => waves.spectrum(load, c),
             _ => Some(&tables[load * nb * half..(load + 1) * nb * half]),
         };
-        for first in (0..left.0).step_by(BLOCK) {
-            let count = BLOCK.min(left.0 - first);
-            let columns = memory.columns.chunks_exact_mut(py).take(count);
-            columns.for_each(|column| column[gap(left.1, py)].fill(Complex::default()));
-            let mut first_load = true;
-            for (load, transform) in loads.iter().enumerate() {
-                let (Some(transform), Some(spectrum)) = (transform, spectrum(load)) else { continue };
-                for (k, column) in memory.columns.chunks_exact_mut(py).take(count).enumerate() {
-                    let bin = first + k;
-                    let (load_bins, s) = (&transform[bin * py..][..py], &spectrum[bin * half..][..left.1]);
-                    match first_load {
-                        true => put_product(column, load_bins, s, is_odd(load, c), |sum, value| *sum = value),
-                        false => put_product(column, load_bins, s, is_odd(load, c), |sum, value| *sum += value),
-                    }
-                }
-                first_load = false;
-            }
-            self.transforms.columns_back(count, memory);
-            for (iy, row) in stress.chunks_exact_mut(nb).enumerate() {
-                for (value, column) in row[first..first + count].iter_mut().zip(memory.columns.chunks_exact(py)) {
-                    *value = column[iy];
-                }
-            }
-        }
-    }
-}
-
-/// Puts `i^(number of odd directions) S . load` of one column, where S is given at bins in y >= 0.
-fn put_product(
-    column: &mut [Complex<f64>],
-    load: &[Complex<f64>],
-    s: &[f64],
-    (odd_x, odd_y): (bool, bool),
-    put: impl Fn(&mut Complex<f64>, Complex<f64>),
-) {
-    let sign = if odd_y { -1.0 } else { 1.0 };
-    match (odd_x, odd_y) {
-        (false, false) => put_turned(column, load, s, sign, put, |value| value),
-        (true, true) => put_turned(column, load, s, sign, put, |value| -value),
-        _ => put_turned(column, load, s, sign, put, |value| Complex::new(-value.im, value.re)),
-    }
-}
-
-#[inline]
-fn put_turned(
-    column: &mut [Complex<f64>],
-    load: &[Complex<f64>],
-    s: &[f64],
-    sign: f64,
-    put: impl Fn(&mut Complex<f64>, Complex<f64>),
-    turn: impl Fn(Complex<f64>) -> Complex<f64>,
-) {
-    let half = column.len() / 2 + 1;
-    let ((lower, upper), (load_lower, load_upper)) = (column.split_at_mut(half), load.split_at(half));
-    for ((value, load), s) in lower.iter_mut().zip(load_lower).zip(s) {
-        put(value, turn(load * s));
-    }
-    for ((value, load), s) in upper.iter_mut().rev().zip(load_upper.iter().rev()).zip(&s[1..]) {
-        put(value, turn(load * (sign * s)));
+        let terms = loads.iter().enumerate().filter_map(|(load, transform)| {
+            Some(Term { load: transform.as_ref()?, symbol: symbol(load)?, is_odd: is_odd(load, c) })
+        });
+        self.transforms.in_x(terms, *left, memory, stress);
     }
 }

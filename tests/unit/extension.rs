@@ -76,9 +76,9 @@ fn is_by_definition((mx, my): (usize, usize), threads: &Threads) {
     }
 }
 
-/// Vectors are extended component by component, and what is given stays.
+/// Fields of two components are extended as those of one, and what is given stays.
 #[test]
-fn vectors_are_extended_as_numbers_are() {
+fn components_are_extended_as_one_field_is() {
     for (mx, my) in SIZES {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         let contact = in_contact((mx, my));
@@ -90,15 +90,17 @@ fn vectors_are_extended_as_numbers_are() {
         both.count(&bound, |g| g > 0.0, |_| true);
         one.count(&contact, |inside| inside, |_| true);
         let value = |i: usize, of: f32| if contact[i] { (of * i as f32).sin() } else { 0.0 };
-        let given: Vec<[f32; 2]> = (0..mx * my).map(|i| [value(i, 1.0), value(i, 1.7)]).collect();
-        let mut answer = vec![[f32::NAN; 2]; mx * my];
-        both.between(&given, &mut answer, 1.5, |from, to| {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = [2.0 * from[0], 3.0 * from[1]]);
+        let given = [1.0, 1.7].map(|of| (0..mx * my).map(|i| value(i, of)).collect::<Vec<_>>());
+        let [mut x, mut y] = [vec![f32::NAN; mx * my], vec![f32::NAN; mx * my]];
+        both.between([&given[0], &given[1]], [&mut x, &mut y], 1.5, |from, to| {
+            for ((from, to), factor) in from.into_iter().zip(to).zip([2.0, 3.0]) {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = factor * from);
+            }
         });
-        for (component, factor) in [(0, 2.0), (1, 3.0)] {
-            let mut z: Vec<f32> = given.iter().map(|given| given[component]).collect();
+        for ((given, found), factor) in given.iter().zip([x, y]).zip([2.0, 3.0]) {
+            let mut z = given.clone();
             one.around(&mut z, 1.5, |z| z.iter_mut().for_each(|z| *z *= factor));
-            assert!((0..mx * my).all(|i| !contact[i] || answer[i][component] == z[i]), "{mx} x {my}, {component}");
+            assert!((0..mx * my).all(|i| !contact[i] || found[i] == z[i]), "{mx} x {my}, times {factor}");
         }
     }
 }

@@ -65,14 +65,6 @@ pub struct Block<'a, T> {
     owner: PhantomData<&'a mut [Complex<T>]>,
 }
 
-/// Columns `k` of one half of a row-major matrix, and of the other half their mirror images `-k`, modulo the width. Column 0, and of an
-/// even width the one half-way, are their own.
-pub struct MirroredBlock<'a, T> {
-    here: Block<'a, T>,
-    /// Without those that are here: in the order of the matrix.
-    there: Block<'a, T>,
-}
-
 // SAFETY: a block is a mutable borrow of its columns, which no other block has.
 unsafe impl<T: Send> Send for Block<'_, T> {}
 
@@ -97,80 +89,6 @@ pub fn for_each_block<T: Real, S: Send>(
     work: impl Fn(&mut Block<'_, T>, &mut S) + Sync + Send,
 ) {
     threads.share(blocks_of(data, width, 0..width, BLOCK), scratch, |mut block, s| work(&mut block, s));
-}
-
-/// Calls `work` on each block of columns of the matrix `data` with their mirror images, with the scratch of the thread that does it.
-pub fn for_each_mirrored_block<T: Real, S: Send>(
-    data: &mut [Complex<T>],
-    width: usize,
-    threads: &Threads,
-    scratch: &mut [S],
-    work: impl Fn(&mut MirroredBlock<'_, T>, &mut S) + Sync + Send,
-) {
-    let (matrix, half) = (Block::of(data, width), width / 2 + 1);
-    let blocks = (0..half.div_ceil(BLOCK)).map(move |b| {
-        let (first, end) = (b * BLOCK, ((b + 1) * BLOCK).min(half));
-        // The columns width - end + 1 .. width - first + 1, without those in the first half: no two of all blocks overlap.
-        let (mirrored, behind) = ((width + 1 - end).max(half), (width + 1 - first).min(width));
-        MirroredBlock { here: matrix.part(first, end - first), there: matrix.part(mirrored, behind - mirrored) }
-    });
-    threads.share(blocks, scratch, |mut block, s| work(&mut block, s));
-}
-
-impl<T: Real> MirroredBlock<'_, T> {
-    /// The first column of the first half.
-    pub fn first(&self) -> usize {
-        self.here.first
-    }
-
-    /// Number of columns in the first half.
-    pub fn columns(&self) -> usize {
-        self.here.columns
-    }
-
-    /// Columns of the first half that are their own mirror image, before those that are not: column 0.
-    fn own(&self) -> usize {
-        usize::from(self.here.first == 0)
-    }
-
-    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere; to `mirrored` the conjugates of the mirror images,
-    /// in the same order.
-    pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>], mirrored: &mut [Complex<T>]) {
-        let (columns, own) = (self.here.columns, self.own());
-        self.here.gather(rows.clone(), length, out);
-        for column in mirrored.chunks_exact_mut(length).take(columns) {
-            column[..rows.start].fill(Complex::default());
-            column[rows.end..].fill(Complex::default());
-        }
-        let mut row = rows.start;
-        while row < rows.end {
-            let tile = TILE.min(rows.end - row);
-            let at = |k: usize| row + k.min(tile - 1);
-            let here: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.here.row(at(k)));
-            let there: [&[Complex<T>]; TILE] = std::array::from_fn(|k| self.there.row(at(k)));
-            for (c, column) in mirrored.chunks_exact_mut(length).take(columns).enumerate() {
-                // The mirror images are in the order of the matrix, from behind; a column without one is its own.
-                let (from, c) = match self.there.columns.checked_sub(c + 1 - own) {
-                    Some(image) if c >= own => (&there, image),
-                    _ => (&here, c),
-                };
-                column[row..row + tile].iter_mut().zip(from).for_each(|(value, from)| *value = from[c].conj());
-            }
-            row += tile;
-        }
-    }
-
-    /// Copies the columns in `from`, each `length` long, to rows `rows`, and the conjugates of those in `mirrored` to their mirror images.
-    pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>], mirrored: &[Complex<T>]) {
-        let (own, there) = (self.own(), self.there.columns);
-        self.here.scatter(rows.clone(), length, from);
-        for row in rows {
-            let columns = mirrored.chunks_exact(length).skip(own).take(there);
-            for (value, column) in self.there.row_mut(row).iter_mut().rev().zip(columns) {
-                *value = column[row].conj();
-            }
-        }
-    }
 }
 
 impl<'a, T: Real> Block<'a, T> {

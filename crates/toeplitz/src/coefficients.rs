@@ -25,3 +25,25 @@ pub struct Even<F, G> {
     /// What is kept of each value of the symbol, but for the normalisation.
     pub finish: G,
 }
+
+/// What coefficients do where an offset changes its sign, in either direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`.
+    Even,
+    /// `c(kx, ky) = -c(-kx, ky) = -c(kx, -ky)`; 0 half a period away.
+    Odd,
+}
+
+/// Coefficients of products of two components: the matrix `[xx, xy; xy, yy]` of each offset, of which xx and yy are even in both directions and xy
+/// is odd in both.
+pub struct EvenMatrix<F, G> {
+    /// Coefficients that are not zero: offsets less than that.
+    pub given: (usize, usize),
+    /// Whether there is xy.
+    pub is_coupled: bool,
+    /// `fill(component, ky, row)` gives xx (component 0), yy (1) or xy (2) at offsets `(0.., ky)`.
+    pub fill: F,
+    /// What is kept of xx, yy and xy of each value of the symbol, but for the normalisation.
+    pub finish: G,
+}

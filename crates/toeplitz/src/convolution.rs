@@ -4,7 +4,7 @@
 //! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
 //! ```
 //!
-//! Per block of columns: by even coefficients as [`EvenColumns`] have them, where the machine has vectors; by others, they are gathered,
+//! Per block of columns: by even coefficients as [`LaneColumns`] have them, where the machine has vectors; by others, they are gathered,
 //! transformed, multiplied, transformed back and scattered.
 
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::block::{for_each_block, room_of_column, BLOCK};
 use crate::coefficients::Coefficients;
 use crate::coefficients::Even;
 use crate::fft::any_length::ColumnTransform;
-use crate::fft::even_columns::EvenColumns;
+use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::have_stages;
 use crate::real::Real;
@@ -26,23 +26,11 @@ use par::memory::unwritten;
 use par::threads::Threads;
 use par::Result;
 
-/// The block that a thread takes after block b, one of so many, as it came from the one before; at first the one beside b away from the end.
-fn next_block(before: usize, b: usize, count: usize) -> usize {
-    let on = (2 * b).wrapping_sub(before);
-    if on != b && on < count {
-        on
-    } else if 2 * b < count {
-        b + 1
-    } else {
-        b - 1
-    }
-}
-
 /// Transforms in y, and the symbol.
 pub(crate) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
     /// By an even symbol, of rows and columns in lanes.
-    by_lanes: Option<(LaneRows<T>, EvenColumns<T>)>,
+    by_lanes: Option<(LaneRows<T>, LaneColumns<T>)>,
     symbol: Symbol<T>,
 }
 
@@ -50,7 +38,7 @@ impl<T: Real> Convolution<T> {
     /// Transforms of a period; the symbol is still to be computed.
     pub fn new((px, py): (usize, usize)) -> Result<Convolution<T>> {
         // No plan is made in vain: one of a grid of one row is as large as the grid.
-        let by_lanes = if have_stages((px, py)) { LaneRows::new(px)?.zip(EvenColumns::new(py)?) } else { None };
+        let by_lanes = if have_stages((px, py)) { LaneRows::new(px)?.zip(LaneColumns::new(py)?) } else { None };
         Ok(Convolution { columns: ColumnTransform::new(py)?, by_lanes, symbol: Symbol::Even(Vec::new()) })
     }
 
@@ -90,8 +78,8 @@ impl<T: Real> Convolution<T> {
             return rows.threads.share(blocks, pieces, |(b, (block, symbol)), piece| {
                 #[cfg(feature = "test-panics")]
                 crate::panics::at_a_block();
-                let next = next_block(std::mem::replace(&mut piece.block, b), b, in_x.blocks());
-                let next = block.as_ptr().wrapping_add(next.wrapping_sub(b).wrapping_mul(length));
+                let next = piece.next_block(block.as_ptr(), b, length, in_x.blocks());
+                piece.block = b;
                 let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
                 even.multiply((block, columns), next, loaded.clone(), symbol, &mut piece.columns);
             });

@@ -1,10 +1,11 @@
-//! Products by block Toeplitz matrices of two levels, by FFT.
+//! Products by block Toeplitz matrices of two levels, by FFT; also by those that are Toeplitz in x only.
 //!
 //! ```text
 //! u_I = sum_J c(I - J) p_J = [F^-1 (S . F p)]_I       I, J elements of a grid of mx * my,   S = F c, the symbol
 //!
 //! c(kx, ky) = c(-kx, ky) = c(kx, -ky)                 S is real and even: half of each of its columns is kept
 //! c(k) = c(-k)                                        S is real
+//! c(kx, ky) = -c(-kx, ky) = -c(kx, -ky)               S is real and odd: likewise
 //! any other c                                         S is complex
 //! ```
 //!
@@ -30,6 +31,8 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`Product`] | the product of one matrix |
+//! | [`VectorProduct`] | the same of two components, by a symmetric matrix of each offset |
+//! | [`ParityProduct`] | sums of products by kernels that are even or odd in either direction |
 //! | [`coefficients`] | what a matrix is made of |
 //! | [`fft`] | transforms of rows and columns: stages in lanes, and any length |
 //! | [`plan`] | plans that the threads of a process share |
@@ -48,19 +51,26 @@ pub mod lengths;
 #[cfg(feature = "test-panics")]
 #[doc(hidden)]
 pub mod panics;
+mod parity;
 pub mod plan;
 mod product;
 mod real;
+mod row_matrices;
 mod rows;
 mod set_up;
 mod set_up_columns;
 mod set_up_lanes;
 mod symbol;
+mod vector_product;
+mod vector_set_up;
+mod vector_symbol;
 mod workspace;
 
-pub use coefficients::{Coefficients, Even};
+pub use coefficients::{Coefficients, Even, EvenMatrix};
+pub use parity::{ParityMemory, ParityProduct, Term};
 pub use product::{even_period, Product};
 pub use real::{Complex, Real};
-pub use rows::Rows;
+pub use row_matrices::OfRows;
 pub use set_up::SetUp;
-pub use workspace::{Memory, Piece, Room};
+pub use vector_product::{vector_period, VectorProduct};
+pub use workspace::{Memory, Room};

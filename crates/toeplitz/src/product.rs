@@ -1,4 +1,6 @@
 //! `u = A p` on a grid: transforms in x of the rows that hold values, the y direction, and transforms back in x.
+//!
+//! In y A is Toeplitz, too, or there is a matrix for each bin in x.
 
 use par::threads::Threads;
 use par::Result;
@@ -8,20 +10,40 @@ use crate::convolution::Convolution;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::{good_length, have_stages, length_for_stages};
 use crate::real::Real;
+use crate::row_matrices::{OfRows, RowMatrices};
 use crate::rows::Rows;
 use crate::set_up::SetUp;
 use crate::workspace::{Memory, Room};
 
-/// Products by one block Toeplitz matrix on a grid of `mx * my` elements. Arrays on it are `[my][mx]`, x fastest.
+/// Products by one block Toeplitz matrix on a grid of `mx * my` elements, or by one that is Toeplitz in x only. Arrays on it are `[my][mx]`, x
+/// fastest.
 pub struct Product<T: Real> {
     rows: Rows<T>,
-    columns: Convolution<T>,
+    columns: Columns<T>,
+}
+
+/// What is done in y.
+enum Columns<T: Real> {
+    Toeplitz(Convolution<T>),
+    PerRow(RowMatrices<T>),
 }
 
 impl<T: Real> Product<T> {
     /// Plans of a period, at least as long as the grid in either direction; the symbol is still to be computed. An error: there is no memory.
     pub fn new(grid: (usize, usize), period: (usize, usize), threads: &Threads) -> Result<Product<T>> {
-        Ok(Product { rows: Rows::new(grid, period.0, threads)?, columns: Convolution::new(period)? })
+        let columns = Columns::Toeplitz(Convolution::new(period)?);
+        Ok(Product { rows: Rows::new(grid, period.0, threads)?, columns })
+    }
+
+    /// By coefficients of each loaded row and each row, with a period in x that keeps the offsets apart.
+    pub fn per_row<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
+        grid: (usize, usize),
+        of: &OfRows<F>,
+        px: usize,
+        threads: &Threads,
+    ) -> Result<Product<T>> {
+        let columns = Columns::PerRow(RowMatrices::new(grid, of, px, threads)?);
+        Ok(Product { rows: Rows::new(grid, px, threads)?, columns })
     }
 
     /// A whole product of even coefficients, `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`, which are given at offsets >= 0.
@@ -50,9 +72,12 @@ impl<T: Real> Product<T> {
         (self.rows.mx, self.rows.my)
     }
 
-    /// The periods in x and y.
-    pub fn period(&self) -> (usize, usize) {
-        (self.rows.transform.length(), self.columns.columns.length())
+    /// The periods in x and y; None where A is Toeplitz in x only.
+    pub fn period(&self) -> Option<(usize, usize)> {
+        match &self.columns {
+            Columns::Toeplitz(columns) => Some((self.rows.transform.length(), columns.columns.length())),
+            Columns::PerRow(_) => None,
+        }
     }
 
     /// The threads of its products.
@@ -62,12 +87,21 @@ impl<T: Real> Product<T> {
 
     /// Bytes of the symbol.
     pub fn bytes(&self) -> usize {
-        self.columns.bytes()
+        match &self.columns {
+            Columns::Toeplitz(columns) => columns.bytes(),
+            Columns::PerRow(matrices) => matrices.bytes(),
+        }
     }
 
     /// What its products need, whatever the coefficients are.
     pub fn room(&self) -> Room {
-        self.rows.room_with(self.columns.lanes_if_even(), self.period().1, self.columns.columns.scratch_length())
+        match &self.columns {
+            Columns::Toeplitz(columns) => {
+                let y = &columns.columns;
+                self.rows.room_with(columns.lanes_if_even(), y.length(), y.scratch_length())
+            }
+            Columns::PerRow(matrices) => matrices.room(&self.rows),
+        }
     }
 
     /// Memory for its products.
@@ -81,27 +115,29 @@ impl<T: Real> Product<T> {
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        self.columns.set_even(even, self.rows.transform.length(), &self.rows.threads, set_up)
+        let px = self.rows.transform.length();
+        toeplitz(&mut self.columns).set_even(even, px, &self.rows.threads, set_up)
     }
 
     /// Computes the symbol of any coefficients, times a factor.
     pub fn set_uneven(&mut self, by: (&impl Coefficients, f64), set_up: &mut SetUp) -> Result<()> {
         let (grid, px) = (self.grid(), self.rows.transform.length());
-        self.columns.set_uneven(by, grid, px, &self.rows.threads, set_up)
+        toeplitz(&mut self.columns).set_uneven(by, grid, px, &self.rows.threads, set_up)
     }
 
     /// Takes an even symbol that is known: `value(x, y)` of the bins `0 ..= px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`.
     pub fn set_values(&mut self, value: impl Fn(usize, usize) -> f64) -> Result<()> {
-        self.columns.set_values((self.rows.transform.bins(), self.rows.transform.length()), value)
+        toeplitz(&mut self.columns).set_values((self.rows.transform.bins(), self.rows.transform.length()), value)
     }
 
     /// The same product in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Product<S>> {
         let (px, threads) = (self.rows.transform.length(), &self.rows.threads);
-        Ok(Product {
-            rows: Rows::new(self.grid(), px, threads)?,
-            columns: self.columns.in_precision(px, factor, threads)?,
-        })
+        let columns = match &self.columns {
+            Columns::Toeplitz(columns) => Columns::Toeplitz(columns.in_precision(px, factor, threads)?),
+            Columns::PerRow(matrices) => Columns::PerRow(matrices.in_precision(factor)?),
+        };
+        Ok(Product { rows: Rows::new(self.grid(), px, threads)?, columns })
     }
 
     /// `u = A p`.
@@ -114,24 +150,38 @@ impl<T: Real> Product<T> {
     pub fn forward(&self, p: &[T], memory: &mut Memory<T>) {
         assert_eq!(p.len(), self.rows.mx * self.rows.my, "values of another grid");
         memory.wake(self.room().bins, self.threads());
-        let loaded = self.rows.forward_by(p, memory, self.lanes());
-        self.columns.apply(&self.rows, loaded, memory);
+        let loaded = self.rows.forward(p, memory, self.lanes());
+        match &self.columns {
+            Columns::Toeplitz(columns) => columns.apply(&self.rows, loaded, memory),
+            Columns::PerRow(matrices) => matrices.apply(&self.rows, loaded, memory),
+        }
     }
 
     /// The second half: u.
     pub fn back(&self, u: &mut [T], memory: &mut Memory<T>) {
         assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
-        self.rows.back_by(u, memory, self.lanes());
+        self.rows.back(u, memory, self.lanes());
     }
 
     /// The second half: `write(first element, values of u, values of A p)` takes some rows at a time.
     pub fn back_with(&self, u: &mut [T], memory: &mut Memory<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
         assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
-        self.rows.write_by(u, memory, self.lanes(), write);
+        self.rows.back_with(u, memory, self.lanes(), write);
     }
 
     fn lanes(&self) -> Option<&LaneRows<T>> {
-        self.columns.lanes()
+        match &self.columns {
+            Columns::Toeplitz(columns) => columns.lanes(),
+            Columns::PerRow(_) => None,
+        }
+    }
+}
+
+/// Those whose symbol is set.
+fn toeplitz<T: Real>(columns: &mut Columns<T>) -> &mut Convolution<T> {
+    match columns {
+        Columns::Toeplitz(columns) => columns,
+        Columns::PerRow(_) => unreachable!("a symbol of a product that has none"),
     }
 }
 

@@ -78,14 +78,8 @@ impl<T: Real> Rows<T> {
         lanes.map_or(0, LaneRows::scratch_length).max(self.transform.scratch_length())
     }
 
-    /// Transforms the rows that hold values; returns which.
-    pub fn forward(&self, p: &[T], memory: &mut Memory<T>) -> Range<usize> {
-        memory.wake(self.bins(None), &self.threads);
-        self.forward_by(p, memory, None)
-    }
-
-    /// The same with these transforms or without.
-    pub(crate) fn forward_by(&self, p: &[T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
+    /// Transforms the rows that hold values, in lanes or without; returns which.
+    pub(crate) fn forward(&self, p: &[T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
         let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
         if let Some(lanes) = lanes {
             let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
@@ -117,23 +111,13 @@ impl<T: Real> Rows<T> {
         blocks_of(bins, self.height(lanes) * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
     }
 
-    /// Transforms all rows back to u.
-    pub fn back(&self, u: &mut [T], memory: &mut Memory<T>) {
-        self.back_by(u, memory, None);
-    }
-
-    /// The same; `write(first element, values of u, values)` takes some rows at a time.
-    pub fn back_with(&self, u: &mut [T], memory: &mut Memory<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
-        self.write_by(u, memory, None, write);
-    }
-
-    /// The same with these transforms or without.
-    pub(crate) fn back_by(&self, u: &mut [T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) {
+    /// Transforms all rows back to u, in lanes or without.
+    pub(crate) fn back(&self, u: &mut [T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) {
         self.each_back(u, memory, lanes, |_, u, piece, inverse| inverse(u, &mut piece.scratch));
     }
 
-    /// Transforms all rows back; `write(first element, values of u, values)` takes some of them.
-    pub(crate) fn write_by(
+    /// The same; `write(first element, values of u, values)` takes some of them.
+    pub(crate) fn back_with(
         &self,
         u: &mut [T],
         memory: &mut Memory<T>,

@@ -2,11 +2,11 @@
 //! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
 //! Here rows and columns are transformed by themselves; [`set_up_lanes`](crate::set_up_lanes) has even coefficients in lanes.
 
-use crate::coefficients::{Coefficients, Even};
+use crate::coefficients::{Coefficients, Even, Parity};
 use crate::fft::any_length::ColumnTransform;
 use crate::fft::row_transform::RowTransform;
 use crate::real::{Complex, Real};
-use crate::set_up_columns::{fill_even, fill_pairs, gather, Parts, Scaled, PAIRS};
+use crate::set_up_columns::{fill_pairs, fill_period, gather, Parts, Scaled, PAIRS};
 use crate::symbol::SYMBOL;
 use par::memory::{keep, unwritten};
 use par::threads::Threads;
@@ -106,7 +106,7 @@ impl<'a> Transforms<'a> {
         self.suit(pieces)?;
         self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row[..px];
-            fill_even(ky as i64, row_given, row, &even.fill);
+            fill_period(ky as i64, row_given, row, Parity::Even, &even.fill);
             self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::block::BLOCK;
+use crate::coefficients::Parity;
 use crate::real::{Complex, Real};
 
 /// Columns of complex numbers, or pairs of real ones, that are gathered at a time: the pairs of a block, whole cache lines.
@@ -78,13 +79,16 @@ fn copy_columns<V: Copy>(
     }
 }
 
-/// A period of even coefficients in row ky, of which `fill` gives those at offsets 0 .. `given`.
-pub(crate) fn fill_even(ky: i64, given: usize, row: &mut [f64], fill: impl Fn(i64, &mut [f64])) {
+/// A period of even coefficients in row ky, or of odd ones, of which `fill` gives those at offsets 0 .. `given`.
+pub(crate) fn fill_period(ky: i64, given: usize, row: &mut [f64], parity: Parity, fill: impl Fn(i64, &mut [f64])) {
     let px = row.len();
     row.fill(0.0);
     fill(ky, &mut row[..given]);
     for kx in 1..given {
-        row[px - kx] = row[kx];
+        row[px - kx] = match parity {
+            Parity::Even => row[kx],
+            Parity::Odd => -row[kx],
+        };
     }
 }
 

@@ -1,22 +1,23 @@
-//! How the symbol of even coefficients is computed where products go through stages of our own: rows and columns in lanes.
+//! How the symbol of even coefficients, or of odd ones, is computed where products go through stages of our own: rows and columns in lanes.
 //! The stages leave bins in the order in which products want them.
 //!
 //! Columns c and c + 8 of a block share a complex transform, one as its real and one as its imaginary part: so no bit depends on the length of
-//! vectors.
+//! vectors. Odd coefficients have imaginary transforms in either direction: with a and b real and odd, `F(a + i b) = i F_a - F_b`, both of them
+//! real.
 
 use std::sync::Arc;
 
 use pulp::{Simd, WithSimd};
 
 use crate::block::{blocks_of, parts, parts_mut, Block, BLOCK};
-use crate::coefficients::Even;
+use crate::coefficients::{Even, Parity};
 use crate::fft::even_plan::EvenPlan;
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::fft::stages::{before_a_line, first, inlined, of_radix, rows_of};
 use crate::real::{Complex, Real};
 use crate::set_up::{SetUp, COEFFICIENTS};
-use crate::set_up_columns::fill_even;
+use crate::set_up_columns::fill_period;
 use crate::symbol::{EvenOrder, SYMBOL};
 use par::memory::unwritten;
 use par::threads::Threads;
@@ -29,11 +30,11 @@ const PLACE: usize = BLOCK / 2;
 
 /// The transforms of both directions, and who does them.
 pub(crate) struct LaneTransforms<'a> {
-    rows: LaneRows<f64>,
-    plan: Arc<EvenPlan<f64>>,
+    pub(crate) rows: LaneRows<f64>,
+    pub(crate) plan: Arc<EvenPlan<f64>>,
     px: usize,
-    arch: pulp::Arch,
-    threads: &'a Threads,
+    pub(crate) arch: pulp::Arch,
+    pub(crate) threads: &'a Threads,
 }
 
 impl<'a> LaneTransforms<'a> {
@@ -43,16 +44,42 @@ impl<'a> LaneTransforms<'a> {
     }
 
     /// With the vectors of these instructions; no bit depends on them.
-    fn on(arch: pulp::Arch, (px, py): (usize, usize), threads: &'a Threads) -> Result<Option<LaneTransforms<'a>>> {
-        let both = LaneRows::on(arch, px)?.zip(EvenPlan::shared(py)?);
+    pub(crate) fn on(
+        arch: pulp::Arch,
+        (px, py): (usize, usize),
+        threads: &'a Threads,
+    ) -> Result<Option<LaneTransforms<'a>>> {
+        LaneTransforms::with(arch, LaneRows::on(arch, px)?, (px, py), threads)
+    }
+
+    /// The same also on a machine without vectors.
+    pub fn of_any(
+        arch: pulp::Arch,
+        (px, py): (usize, usize),
+        threads: &'a Threads,
+    ) -> Result<Option<LaneTransforms<'a>>> {
+        LaneTransforms::with(arch, LaneRows::of_any(arch, px)?, (px, py), threads)
+    }
+
+    fn with(
+        arch: pulp::Arch,
+        rows: Option<LaneRows<f64>>,
+        (px, py): (usize, usize),
+        threads: &'a Threads,
+    ) -> Result<Option<LaneTransforms<'a>>> {
+        let both = rows.zip(EvenPlan::shared(py)?);
         Ok(both.map(|(rows, plan)| LaneTransforms { rows, plan, px, arch, threads }))
+    }
+
+    pub(crate) fn period(&self) -> (usize, usize) {
+        (self.px, self.plan.stages.length())
     }
 
     /// The symbol of even coefficients.
     pub fn of_even<T: Real, F, G>(
         &self,
         even: &Even<F, G>,
-        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        set_up: &mut SetUp,
         order: EvenOrder<'_, T>,
         symbol: &mut Vec<T>,
     ) -> Result<()>
@@ -60,8 +87,24 @@ impl<'a> LaneTransforms<'a> {
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        let LaneTransforms { rows, plan, px, arch, threads } = self;
-        let (px, py, (row_given, rows_given)) = (*px, plan.stages.length(), even.given);
+        unwritten(symbol, order.len(), T::nan(), SYMBOL, self.threads)?;
+        self.of_plane((even, Parity::Even), set_up, (order.block(), 0), symbol)
+    }
+
+    /// The symbol of even or odd coefficients, at a place in each block of so many values.
+    pub fn of_plane<T: Real, F, G>(
+        &self,
+        (even, parity): (&Even<F, G>, Parity),
+        SetUp { complex: in_x, pieces, .. }: &mut SetUp,
+        (of_block, place): (usize, usize),
+        symbol: &mut [T],
+    ) -> Result<()>
+    where
+        F: Fn(i64, &mut [f64]) + Sync + Send,
+        G: Fn(f64) -> f64 + Sync + Send,
+    {
+        let LaneTransforms { rows, plan, arch, threads, .. } = self;
+        let ((px, py), (row_given, rows_given)) = (self.period(), even.given);
         let together = rows.at_a_time();
         let (nb, height) = (rows.blocks() * BLOCK, rows_given.next_multiple_of(together) * PLACE);
         let nan = Complex::new(f64::NAN, f64::NAN);
@@ -73,33 +116,43 @@ impl<'a> LaneTransforms<'a> {
         threads.share(groups, pieces, |(k, mut out), piece| {
             let count = together.min(rows_given - k * together);
             for (i, row) in piece.row[..count * px].chunks_exact_mut(px).enumerate() {
-                fill_even((k * together + i) as i64, row_given, row, &even.fill);
+                fill_period((k * together + i) as i64, row_given, row, parity, &even.fill);
             }
             let bins = &mut piece.column[..together * nb];
             rows.forward(&piece.row[..count * px], px, &mut Block::of(bins, together * BLOCK), &mut piece.rows);
-            // The real parts of blocks.
+            // The real parts of blocks, or the imaginary ones.
+            let part = parity.swapped() * BLOCK;
             for (b, block) in parts(bins).chunks_exact(together * 2 * BLOCK).enumerate() {
                 out.prefetch(b + 1, (0, 1));
                 let of_rows = block.chunks_exact(2 * BLOCK);
                 for (out, of_row) in parts_mut(out.row_mut(b)).chunks_exact_mut(BLOCK).zip(of_rows) {
-                    out.copy_from_slice(&of_row[..BLOCK]);
+                    out.copy_from_slice(&of_row[part..][..BLOCK]);
                 }
             }
         });
         let scale = 1.0 / (px as f64 * py as f64);
-        unwritten(symbol, order.len(), T::nan(), SYMBOL, threads)?;
-        threads.for_each_row(symbol, order.block(), pieces, |k, out, piece| {
+        let kept = BLOCK * plan.bins.len();
+        threads.for_each_row(symbol, of_block, pieces, |k, out, piece| {
+            let out = &mut out[place..place + kept];
             let (in_x, memory) = ((parts(&in_x[k * height..][..height]), rows_given), &mut piece.column[..]);
             let (columns, value) = (rows.bins() - k * BLOCK, |value: f64| scale * (even.finish)(value));
-            arch.dispatch(SymbolOfBlock { plan, in_x, columns, value, out, memory });
+            arch.dispatch(SymbolOfBlock { plan, parity, in_x, columns, value, out, memory });
         });
         Ok(())
+    }
+}
+
+impl Parity {
+    /// 1 where real coefficients have an imaginary transform.
+    fn swapped(self) -> usize {
+        usize::from(self == Parity::Odd)
     }
 }
 
 /// The symbol of one block of columns, in double precision, kept in another.
 struct SymbolOfBlock<'a, T, G> {
     plan: &'a EvenPlan<f64>,
+    parity: Parity,
     /// Coefficients transformed in x, `[ky][column]` at offsets ky >= 0; and how many rows there are.
     in_x: (&'a [f64], usize),
     /// Columns that mean something.
@@ -116,7 +169,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let SymbolOfBlock { plan, in_x: (in_x, given), columns, value, out, memory } = self;
+        let SymbolOfBlock { plan, parity, in_x: (in_x, given), columns, value, out, memory } = self;
         let (a, n, stages) = (Arithmetic::<f64, S>::new(simd), lane_count::<f64, S>(), &plan.stages);
         let length = stages.length();
         let rows = &mut rows_of::<f64, S>(memory)[..length];
@@ -131,7 +184,11 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
                         return zero;
                     }
                     let values = f64::vectors::<S>(&in_x[ky * BLOCK..][..BLOCK]);
-                    Parts { re: values[column / n], im: values[(column + HALF) / n] }
+                    let value = Parts { re: values[column / n], im: values[(column + HALF) / n] };
+                    if parity == Parity::Odd && row != ky {
+                        return a.sub(zero, value);
+                    }
+                    value
                 },
             );
             of_radix!(stages.first.radix, first, a, &stages.first, rows, load);
@@ -140,9 +197,14 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
                 for (q, row) in rows.iter().enumerate() {
                     let values: &[f64] = pulp::bytemuck::cast_slice(row);
                     let out = &mut out[(kept.first + q) * BLOCK..][..BLOCK];
-                    for (values, first) in values.chunks_exact(n).zip([column, column + HALF]) {
+                    // Of odd ones `i F_a - F_b`, times i for the direction x.
+                    let (first, signs) = match parity {
+                        Parity::Even => ([column, column + HALF], [1.0, 1.0]),
+                        Parity::Odd => ([column + HALF, column], [1.0, -1.0]),
+                    };
+                    for ((values, first), sign) in values.chunks_exact(n).zip(first).zip(signs) {
                         let (there, beyond) = out[first..][..n].split_at_mut(columns.saturating_sub(first).min(n));
-                        there.iter_mut().zip(values).for_each(|(out, bin)| *out = T::of(value(*bin)));
+                        there.iter_mut().zip(values).for_each(|(out, bin)| *out = T::of(value(sign * *bin)));
                         beyond.fill(T::zero());
                     }
                 }

@@ -15,7 +15,7 @@ use std::mem::take;
 
 use crate::block::BLOCK;
 use crate::coefficients::SYMMETRY;
-use crate::fft::even_columns::EvenColumns;
+use crate::fft::lane_columns::LaneColumns;
 use crate::real::{Complex, Real};
 use par::memory::{keep, unwritten};
 use par::threads::Threads;
@@ -29,7 +29,7 @@ const PIECE: usize = 1 << 12;
 
 /// The symbol, the normalisation folded in. Real ones have an even number of columns: the last may be there twice.
 pub(crate) enum Symbol<T: Real> {
-    /// Blocks of columns as [`EvenColumns`] have them; without, `py/2 + 1` values a column.
+    /// Blocks of columns as [`LaneColumns`] have them; without, `py/2 + 1` values a column.
     Even(Vec<T>),
     /// `py` values a column.
     Symmetric(Vec<T>),
@@ -54,7 +54,7 @@ pub(crate) fn is_coarse<T: Real>() -> bool {
 /// How the columns of an even symbol are kept: `columns` in all, of period py.
 #[derive(Clone, Copy)]
 pub(crate) struct EvenOrder<'a, T: Real> {
-    pub by_lanes: Option<&'a EvenColumns<T>>,
+    pub by_lanes: Option<&'a LaneColumns<T>>,
     pub columns: usize,
     pub py: usize,
 }
@@ -67,7 +67,7 @@ impl<T: Real> EvenOrder<'_, T> {
 
     /// Values of a block of columns.
     pub fn block(&self) -> usize {
-        BLOCK * self.by_lanes.map_or(self.half(), EvenColumns::kept_rows)
+        BLOCK * self.by_lanes.map_or(self.half(), LaneColumns::kept_rows)
     }
 
     /// Values in all: of whole blocks, or of an even number of columns, the last of which may be there twice.
@@ -176,7 +176,7 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
 }
 
 /// A symbol made of another one.
-fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
+pub(crate) fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
     from: &[A],
     convert: impl Fn(&A) -> B + Sync + Send,
     mark: B,

@@ -89,6 +89,28 @@ impl<T: Real> Memory<T> {
     }
 }
 
+impl<T: Real> Piece<T> {
+    /// Where the block stands that is worked on after block b, one of so many, each of `length` values: as b came from the one before; at first
+    /// the one beside b away from the end. Used to prefetch only.
+    pub(crate) fn next_block(
+        &self,
+        b_at: *const Complex<T>,
+        b: usize,
+        length: usize,
+        count: usize,
+    ) -> *const Complex<T> {
+        let on = (2 * b).wrapping_sub(self.block);
+        let next = if on != b && on < count {
+            on
+        } else if 2 * b < count {
+            b + 1
+        } else {
+            b.wrapping_sub(1)
+        };
+        b_at.wrapping_add(next.wrapping_sub(b).wrapping_mul(length))
+    }
+}
+
 /// Neither part is a number.
 fn nan<T: Real>() -> Complex<T> {
     Complex::new(T::nan(), T::nan())

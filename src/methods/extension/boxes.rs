@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::summand::{times, Summand};
+use super::summand::{Sum, Summand};
 use crate::operator::fft::Real;
 
 /// Elements of a box in each direction.
@@ -60,17 +60,17 @@ impl<A: Copy, F: Fn(A) -> bool> pulp::NullaryFnOnce for Count<'_, A, F> {
 }
 
 /// Rows of E z, from row y on.
-pub(super) struct Extend<'a, T, const K: usize> {
-    pub(super) z: &'a [[T; K]],
+pub(super) struct Extend<'a, T> {
+    pub(super) z: &'a [T],
     pub(super) mx: usize,
     pub(super) y: usize,
     pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
     pub(super) absent: T,
-    pub(super) values: &'a mut [[T; K]],
+    pub(super) values: &'a mut [T],
 }
 
-impl<T: Real, const K: usize> pulp::NullaryFnOnce for Extend<'_, T, K> {
+impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -81,14 +81,13 @@ impl<T: Real, const K: usize> pulp::NullaryFnOnce for Extend<'_, T, K> {
         box_sums(
             (z, mx),
             y..y + rows,
-            #[inline(always)]
-            |value| value,
+            Sum,
             #[inline(always)]
             |row, k| rim[row * chunks + k],
             #[inline(always)]
             |_, _, elements, sums| {
                 for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
-                    *value = value.plus(times(*sum, share(*near, absent)));
+                    *value = *value + sum.0 * share(*near, absent);
                 }
             },
         );
@@ -96,16 +95,16 @@ impl<T: Real, const K: usize> pulp::NullaryFnOnce for Extend<'_, T, K> {
 }
 
 /// What the elements outside C in a row pass on to each of C that is near them.
-pub(super) struct Share<'a, T, const K: usize> {
+pub(super) struct Share<'a, T> {
     /// Of this row.
-    pub(super) values: &'a [[T; K]],
+    pub(super) values: &'a [T],
     pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
     pub(super) absent: T,
-    pub(super) shares: &'a mut [[T; K]],
+    pub(super) shares: &'a mut [T],
 }
 
-impl<T: Real, const K: usize> pulp::NullaryFnOnce for Share<'_, T, K> {
+impl<T: Real> pulp::NullaryFnOnce for Share<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -114,26 +113,26 @@ impl<T: Real, const K: usize> pulp::NullaryFnOnce for Share<'_, T, K> {
         let chunks = shares.chunks_mut(CHUNK).zip(near.chunks(CHUNK)).zip(values.chunks(CHUNK));
         for (((shares, near), values), rim) in chunks.zip(rim) {
             if !*rim {
-                shares.fill(Summand::zero());
+                shares.fill(T::zero());
                 continue;
             }
             for ((to, value), near) in shares.iter_mut().zip(values).zip(near) {
-                *to = times(*value, share(*near, absent));
+                *to = *value * share(*near, absent);
             }
         }
     }
 }
 
 /// What elements of C get, from row y on.
-pub(super) struct Collect<'a, T, const K: usize> {
-    pub(super) shares: &'a [[T; K]],
+pub(super) struct Collect<'a, T> {
+    pub(super) shares: &'a [T],
     pub(super) mx: usize,
     pub(super) y: usize,
     pub(super) rim: &'a [bool],
-    pub(super) values: &'a mut [[T; K]],
+    pub(super) values: &'a mut [T],
 }
 
-impl<T: Real, const K: usize> pulp::NullaryFnOnce for Collect<'_, T, K> {
+impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -145,8 +144,7 @@ impl<T: Real, const K: usize> pulp::NullaryFnOnce for Collect<'_, T, K> {
         box_sums(
             (shares, mx),
             y..y + count,
-            #[inline(always)]
-            |share| share,
+            Sum,
             #[inline(always)]
             |_, k| {
                 let near = k.saturating_sub(1)..chunks.min(k + 2);
@@ -154,7 +152,7 @@ impl<T: Real, const K: usize> pulp::NullaryFnOnce for Collect<'_, T, K> {
             },
             #[inline(always)]
             |_, _, elements, sums| {
-                values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value = value.plus(*sum));
+                values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value = *value + sum.0);
             },
         );
     }

@@ -18,11 +18,12 @@
 //! an element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside
 //! and with boxes): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
 //!
-//! The normal problem extends numbers, the tangential problem vectors of the plane.
+//! The normal problem extends one field, the tangential problem one for each component.
 
 mod boxes;
 mod summand;
 
+use std::array::from_fn;
 use std::ops::Range;
 
 use crate::error::Result;
@@ -47,7 +48,7 @@ const WHAT: &str = "the extended residual";
 pub struct Extension<T: Real, const K: usize> {
     mx: usize,
     my: usize,
-    /// `[my][mx][K]`.
+    /// `[K][my][mx]`.
     values: Vec<T>,
     /// Elements of C in each box; 0 where its element is in C.
     near: Vec<u16>,
@@ -99,12 +100,12 @@ impl<T: Real, const K: usize> Extension<T, K> {
         T::of(ABSENT * in_a_box as f64 * compliance * compliance)
     }
 
-    /// values = E z, of z that is zero outside C.
-    fn extend(&mut self, z: &[[T; K]], compliance: f64) {
+    /// values = E z of component k, of z that is zero outside C.
+    fn extend(&mut self, k: usize, z: &[T], compliance: f64) {
         let absent = self.absent(compliance);
-        let Extension { mx, values, near, rim, threads, .. } = self;
-        let (mx, chunks) = (*mx, mx.div_ceil(CHUNK));
-        threads.for_each_plain_row(values.as_chunks_mut().0, ROWS * mx, |k, values| {
+        let Extension { mx, my, values, near, rim, threads, .. } = self;
+        let (mx, elements, chunks) = (*mx, *mx * *my, mx.div_ceil(CHUNK));
+        threads.for_each_plain_row(&mut values[k * elements..][..elements], ROWS * mx, |k, values| {
             let y = ROWS * k;
             let (near, rim) = (&near[y * mx..], &rim[y * chunks..]);
             pulp::Arch::new().dispatch(Extend { z, mx, y, near, rim, absent, values });
@@ -112,7 +113,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
     }
 
     /// values = E^T values on C; elsewhere they have no meaning. `shares` is overwritten.
-    fn collect(&self, values: &mut [[T; K]], shares: &mut [[T; K]], compliance: f64) {
+    fn collect(&self, values: &mut [T], shares: &mut [T], compliance: f64) {
         let (mx, chunks, absent) = (self.mx, self.mx.div_ceil(CHUNK), self.absent(compliance));
         let Extension { near, rim, threads, .. } = self;
         let from = &*values;
@@ -126,27 +127,21 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// z = E^T M E z; z is zero outside C before, and of no meaning there afterwards.
-    pub fn around(&mut self, z: &mut Vec<T>, compliance: f64, apply: impl FnOnce(&mut [T])) {
-        self.extend(z.as_chunks().0, compliance);
-        let mut values = std::mem::take(&mut self.values);
-        apply(&mut values);
-        self.collect(values.as_chunks_mut().0, z.as_chunks_mut().0, compliance);
-        self.values = std::mem::replace(z, values);
-    }
-
     /// `to = E^T M E from`, from being zero outside C; to has no meaning there.
     pub fn between(
         &mut self,
-        from: &[[T; K]],
-        to: &mut [[T; K]],
+        from: [&[T]; K],
+        mut to: [&mut [T]; K],
         compliance: f64,
-        apply: impl FnOnce(&[[T; K]], &mut [[T; K]]),
+        apply: impl FnOnce([&[T]; K], [&mut [T]; K]),
     ) {
-        self.extend(from, compliance);
-        let mut values = std::mem::take(&mut self.values);
-        apply(values.as_chunks().0, to);
-        self.collect(to, values.as_chunks_mut().0, compliance);
+        from.into_iter().enumerate().for_each(|(k, from)| self.extend(k, from, compliance));
+        let (mut values, elements) = (std::mem::take(&mut self.values), self.mx * self.my);
+        let mut planes = values.chunks_exact(elements);
+        apply(from_fn(|_| planes.next().unwrap_or_default()), to.each_mut().map(|to| &mut **to));
+        for (to, values) in to.into_iter().zip(values.chunks_exact_mut(elements)) {
+            self.collect(to, values, compliance);
+        }
         self.values = values;
     }
 
@@ -163,6 +158,17 @@ impl<T: Real, const K: usize> Extension<T, K> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.near.len() * (K * size_of::<T>() + size_of::<u16>()) + self.rim.len()
+    }
+}
+
+impl<T: Real> Extension<T, 1> {
+    /// z = E^T M E z; z is zero outside C before, and of no meaning there afterwards.
+    pub fn around(&mut self, z: &mut Vec<T>, compliance: f64, apply: impl FnOnce(&mut [T])) {
+        self.extend(0, z, compliance);
+        let mut values = std::mem::take(&mut self.values);
+        apply(&mut values);
+        self.collect(&mut values, z, compliance);
+        self.values = std::mem::replace(z, values);
     }
 }
 

@@ -1,6 +1,4 @@
-//! What boxes sum: counts, and values of K components.
-
-use std::array::from_fn;
+//! What boxes sum: counts, and values.
 
 use crate::operator::fft::Real;
 
@@ -25,20 +23,18 @@ impl Summand for u8 {
     }
 }
 
-impl<T: Real, const K: usize> Summand for [T; K] {
+/// A sum of real values.
+#[derive(Clone, Copy)]
+pub struct Sum<T>(pub T);
+
+impl<T: Real> Summand for Sum<T> {
     #[inline(always)]
-    fn zero() -> [T; K] {
-        [T::zero(); K]
+    fn zero() -> Sum<T> {
+        Sum(T::zero())
     }
 
     #[inline(always)]
-    fn plus(self, other: [T; K]) -> [T; K] {
-        from_fn(|k| self[k] + other[k])
+    fn plus(self, other: Sum<T>) -> Sum<T> {
+        Sum(self.0 + other.0)
     }
-}
-
-/// A multiple.
-#[inline(always)]
-pub fn times<T: Real, const K: usize>(value: [T; K], by: T) -> [T; K] {
-    value.map(|value| value * by)
 }

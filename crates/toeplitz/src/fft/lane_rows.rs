@@ -36,8 +36,16 @@ impl<T: Real> LaneRows<T> {
         LaneRows::on(pulp::Arch::new(), n)
     }
 
-    /// With the vectors of these instructions; no bit depends on them.
+    /// With the vectors of these instructions; no bit depends on them. None without vectors.
     pub(crate) fn on(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
+        match arch.dispatch(LaneCount::<f64>(std::marker::PhantomData)) {
+            Some(1) => Ok(None),
+            _ => LaneRows::of_any(arch, n),
+        }
+    }
+
+    /// The same also on a machine without vectors, one row at a time.
+    pub(crate) fn of_any(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
         let Some(lanes) = arch.dispatch(LaneCount::<T>(std::marker::PhantomData)) else { return Ok(None) };
         Ok(RowPlan::shared(n)?.map(|plan| LaneRows { plan, arch, lanes }))
     }
@@ -80,7 +88,7 @@ impl<T: Real> LaneRows<T> {
     }
 }
 
-/// Lanes of this machine's vectors; the same answer for no vectors in either precision.
+/// Lanes of this machine's vectors; none where they are longer than a block.
 struct LaneCount<T>(std::marker::PhantomData<T>);
 
 impl<T: Real> WithSimd for LaneCount<T> {
@@ -88,7 +96,7 @@ impl<T: Real> WithSimd for LaneCount<T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        (S::F64_LANES > 1 && S::F32_LANES <= BLOCK).then(lane_count::<T, S>)
+        (S::F32_LANES <= BLOCK).then(lane_count::<T, S>)
     }
 }
 

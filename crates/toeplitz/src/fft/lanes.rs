@@ -146,6 +146,16 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
         Parts { re: T::sub(self.simd, a.re, b.im), im: T::add(self.simd, a.im, b.re) }
     }
 
+    /// a b, lane by lane.
+    #[inline(always)]
+    pub fn mul(self, a: C<T, S>, b: C<T, S>) -> C<T, S> {
+        let product = |x, y| T::mul(self.simd, x, y);
+        Parts {
+            re: T::sub(self.simd, product(a.re, b.re), product(a.im, b.im)),
+            im: T::add(self.simd, product(a.re, b.im), product(a.im, b.re)),
+        }
+    }
+
     /// Times real numbers, lane by lane.
     #[inline(always)]
     pub fn scale(self, a: C<T, S>, by: T::Vector<S>) -> C<T, S> {

@@ -2,8 +2,8 @@
 
 pub(crate) mod any_length;
 pub(crate) mod butterflies;
-pub(crate) mod even_columns;
 pub(crate) mod even_plan;
+pub(crate) mod lane_columns;
 pub(crate) mod lane_passes;
 pub(crate) mod lane_rows;
 pub(crate) mod lanes;

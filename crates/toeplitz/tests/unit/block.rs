@@ -37,19 +37,6 @@ fn some_columns_are_each_in_one_block() {
 }
 
 #[test]
-fn all_columns_are_each_in_one_mirrored_block() {
-    for width in [1, 2, 3, 16, 17, 31, 32, 33, 64, 65, 100] {
-        let (mut matrix, threads) = (zeros(width), Threads::new(2).unwrap());
-        for_each_mirrored_block(&mut matrix, width, &threads, &mut [(), ()], |block, ()| {
-            assert_eq!(block.first(), block.here.first());
-            count(&mut block.here);
-            count(&mut block.there);
-        });
-        assert!(matrix.iter().all(|value| value.re == 1.0), "{width}");
-    }
-}
-
-#[test]
 fn what_is_asked_for_need_not_be_there() {
     let mut matrix = zeros(32);
     prefetch(std::ptr::null::<f64>(), 100);

@@ -1,7 +1,7 @@
 //! The spectrum of even coefficients by rows and columns in lanes, by that of rows and columns one by one.
 
 use super::*;
-use crate::fft::even_columns::EvenColumns;
+use crate::fft::lane_columns::LaneColumns;
 use crate::set_up::Transforms;
 
 const PERIODS: [(usize, usize); 9] =
@@ -33,7 +33,7 @@ fn by_lanes<T: Real>(
     threads: &Threads,
 ) -> Option<Vec<T>> {
     let (transforms, columns) =
-        (LaneTransforms::on(arch, period, threads).unwrap()?, EvenColumns::<T>::new(period.1).unwrap()?);
+        (LaneTransforms::on(arch, period, threads).unwrap()?, LaneColumns::<T>::new(period.1).unwrap()?);
     let order = EvenOrder { by_lanes: Some(&columns), columns: period.0 / 2 + 1, py: period.1 };
     let mut spectrum = Vec::new();
     transforms.of_even(&even(reach), &mut SetUp::default(), order, &mut spectrum).unwrap();
@@ -51,7 +51,7 @@ fn a_spectrum_by_lanes_is_that_of_single_columns() {
             let (mut single, half) = (Vec::new(), py / 2 + 1);
             let transforms = Transforms::new((px, py), &Threads::One).unwrap();
             transforms.of_even(&even(reach), &mut SetUp::default(), &mut single).unwrap();
-            let (nb, columns) = (px / 2 + 1, EvenColumns::<f64>::new(py).unwrap().unwrap());
+            let (nb, columns) = (px / 2 + 1, LaneColumns::<f64>::new(py).unwrap().unwrap());
             let mut expected = vec![f64::NAN; spectrum.len()];
             for (b, block) in expected.chunks_exact_mut(BLOCK * columns.kept_rows()).enumerate() {
                 let first = b * BLOCK;

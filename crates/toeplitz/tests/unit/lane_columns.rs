@@ -7,7 +7,7 @@ use crate::fft::stages::before_a_line;
 /// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
 /// largest value.
 fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) -> f64 {
-    let even = EvenColumns::<T>::new(length).unwrap().expect("a plan");
+    let even = LaneColumns::<T>::new(length).unwrap().expect("a plan");
     let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
     let s = |column: usize, bin: usize| T::of(((column * 31 + bin * 17) % 97) as f64 / 97.0 + 0.1);
     let matrix: Vec<Complex<T>> = (0..my * width).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
@@ -88,7 +88,7 @@ fn some_lengths_have_no_plan() {
 /// A block of columns, multiplied.
 #[cfg(target_arch = "x86_64")]
 fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
-    let even = EvenColumns::<T>::on(arch, length).unwrap().expect("a plan");
+    let even = LaneColumns::<T>::on(arch, length).unwrap().expect("a plan");
     let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
     let (mut spectrum, my) = (vec![T::nan(); BLOCK * even.kept_rows()], length / 2);
     even.write(&mut spectrum, BLOCK, |column, bin| value(column * 31 + bin * 17));

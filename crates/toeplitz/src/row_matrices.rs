@@ -1,59 +1,86 @@
-//! Products of a scene with [one table per loaded row](crate::influence::RowTables): A is Toeplitz in x only.
+//! The y direction of a product where A is Toeplitz in x only: rows of the grid have coefficients of their own.
 //!
 //! ```text
 //! u^(iy, kx) = sum over jy of S_kx(jy, iy) p^(jy, kx),     ^: the transform in x
 //! ```
 //!
-//! For each of the `px/2 + 1` bins kx a matrix of my by my: real where the tables are even in x, or else a real and an imaginary one.
+//! For each of the `px/2 + 1` bins kx a matrix of my by my: real where the coefficients are even in x, or else a real and an imaginary one.
 //! That is `my^2 (mx + 1)` numbers, twice as many if not even, and as many multiplications of a complex number: a product reads all of
 //! them (of the loaded rows), which takes longer than the transforms.
 
 use std::ops::Range;
 
-use toeplitz::block::for_each_block;
-use toeplitz::fft::row_transform::RowTransform;
-use toeplitz::fft::{ColumnTransform, Complex, Real};
-use toeplitz::{Memory, Room, Rows};
-
-use crate::error::{Error, Result};
-use crate::influence::RowTables;
-use crate::memory::{blank, computed, keep, zeros};
-use crate::threads::Threads;
+use crate::block::for_each_block;
+use crate::fft::any_length::ColumnTransform;
+use crate::fft::row_transform::RowTransform;
+use crate::real::{Complex, Real};
+use crate::rows::Rows;
+use crate::workspace::{Memory, Room};
+use par::memory::{blank, computed, keep, zeros};
+use par::threads::Threads;
+use par::{OutOfMemory, Result};
 
 /// What memory is for.
 const MATRICES: &str = "the row tables' transforms";
 
+/// Coefficients of the elements of a loaded row jy on those of a row iy.
+pub struct OfRows<F> {
+    /// Whether they are even in x.
+    pub are_even: bool,
+    /// `fill(jy, iy, values)` gives, of even ones, those at offsets `(0..)`; of others those of a period: at offsets >= 0, 0 where there are none, and
+    /// negative ones at its end.
+    pub fill: F,
+    /// What they are multiplied by.
+    pub factor: f64,
+}
+
 /// The matrices, with the normalisation `1/px` folded in.
-pub(super) struct PerRow<T: Real> {
-    /// Transforms in x.
-    pub rows: Rows<T>,
+pub(crate) struct RowMatrices<T: Real> {
+    /// Rows of the grid.
+    my: usize,
     /// 1: real, 2: and imaginary.
     planes: usize,
     /// `[bin][plane][jy][iy]`.
     values: Vec<T>,
 }
 
-impl<T: Real> PerRow<T> {
-    /// Of tables that are even in x: two of their rows are transformed at a time, one as the real and one as the imaginary part.
-    fn even(tables: &RowTables, (least, factor): (f64, f64), px: usize, threads: &Threads) -> Result<PerRow<T>> {
-        let (mx, my, transform) = (tables.mx, tables.my, ColumnTransform::<f64>::new(px)?);
+impl<T: Real> RowMatrices<T> {
+    /// Of coefficients on a grid, with a period in x.
+    pub fn new<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
+        grid: (usize, usize),
+        of: &OfRows<F>,
+        px: usize,
+        threads: &Threads,
+    ) -> Result<RowMatrices<T>> {
+        if of.are_even {
+            RowMatrices::even(grid, of, px, threads)
+        } else {
+            RowMatrices::uneven(grid.1, of, px, threads)
+        }
+    }
+
+    /// Two of their rows are transformed at a time, one as the real and one as the imaginary part.
+    fn even<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
+        (mx, my): (usize, usize),
+        of: &OfRows<F>,
+        px: usize,
+        threads: &Threads,
+    ) -> Result<RowMatrices<T>> {
+        let transform = ColumnTransform::<f64>::new(px)?;
         let mut values = matrices(my, 1, px / 2 + 1)?;
         let nan = Complex::new(f64::NAN, f64::NAN);
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
         // Rows may be long: their scratch is as large as an array of the grid then.
-        let scratch = |_| zeros(transform.scratch_length(), MATRICES);
-        let mut pieces = (0..threads.count()).map(scratch).collect::<par::Result<Vec<_>>>()?;
-        let scale = factor / px as f64;
+        let piece = |_| Ok((zeros(2 * mx, MATRICES)?, zeros(transform.scratch_length(), MATRICES)?));
+        let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
+        let scale = of.factor / px as f64;
         for jy in 0..my {
-            threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, scratch| {
+            threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, (rows, scratch)| {
                 let iy = 2 * pair;
-                let rows = tables.row(jy, iy).iter().zip(tables.row(jy, (iy + 1).min(my - 1)));
-                period.iter_mut().zip(rows).for_each(|(value, (re, im))| *value = Complex::new(*re, *im));
-                match jy.checked_sub(iy) {
-                    Some(0) => period[0].re += least,
-                    Some(1) => period[0].im += least,
-                    _ => {}
-                }
+                let (one, other) = rows.split_at_mut(mx);
+                (of.fill)(jy, iy, one);
+                (of.fill)(jy, (iy + 1).min(my - 1), other);
+                period.iter_mut().zip(one).zip(other).for_each(|((value, re), im)| *value = Complex::new(*re, *im));
                 let (given, rest) = period.split_at_mut(mx);
                 // Of the shortest period, 2 mx - 2, the outermost offsets are one.
                 let mirrored = (mx - 1).min(rest.len());
@@ -75,27 +102,25 @@ impl<T: Real> PerRow<T> {
             });
         }
         keep([&mut pairs]);
-        Ok(PerRow { rows: Rows::new((mx, my), px, threads)?, planes: 1, values })
+        Ok(RowMatrices { my, planes: 1, values })
     }
 
-    /// Of tables, with a period in x; `least` is added to what a pressure does to its own element, and all is taken times `factor`.
-    pub fn new(tables: &RowTables, (least, factor): (f64, f64), px: usize, threads: &Threads) -> Result<PerRow<T>> {
-        if tables.is_even_in_x() {
-            return PerRow::even(tables, (least, factor), px, threads);
-        }
+    fn uneven<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
+        my: usize,
+        of: &OfRows<F>,
+        px: usize,
+        threads: &Threads,
+    ) -> Result<RowMatrices<T>> {
         let rows = RowTransform::<f64>::new(px)?;
-        let (my, nb, planes) = (tables.my, rows.bins(), 2);
+        let (nb, planes) = (rows.bins(), 2);
         let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let piece = |_| Ok((zeros(px, MATRICES)?, rows.scratch()?));
         let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
-        let scale = factor / px as f64;
+        let scale = of.factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
-                tables.fill_period(jy, iy, row);
-                if iy == jy {
-                    row[0] += least;
-                }
+                (of.fill)(jy, iy, row);
                 rows.forward(row, bins, scratch);
             });
             let of_row = &of_row[..];
@@ -109,35 +134,33 @@ impl<T: Real> PerRow<T> {
                 }
             });
         }
-        Ok(PerRow { rows: Rows::new((tables.mx, my), px, threads)?, planes, values })
+        Ok(RowMatrices { my, planes, values })
     }
 
     /// The same in another precision, times a factor.
-    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<PerRow<S>> {
+    pub fn in_precision<S: Real>(&self, factor: f64) -> Result<RowMatrices<S>> {
         let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
-        let Rows { mx, my, transform, threads } = &self.rows;
-        Ok(PerRow { rows: Rows::new((*mx, *my), transform.length(), threads)?, planes: self.planes, values })
+        Ok(RowMatrices { my: self.my, planes: self.planes, values })
     }
 
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
     }
 
-    /// What its products need.
-    pub fn room(&self) -> Room {
-        let my = self.rows.my;
-        let room = self.rows.room(my, 0);
-        Room { row: room.row.max(2 * my), ..room }
+    /// What products need.
+    pub fn room(&self, rows: &Rows<T>) -> Room {
+        let room = rows.room(self.my, 0);
+        Room { row: room.row.max(2 * self.my), ..room }
     }
 
-    /// `A p`, transformed in x.
-    pub fn forward(&self, p: &[T], memory: &mut Memory<T>) {
-        let loaded = self.rows.forward(p, memory);
+    /// Multiplies rows that were transformed in x, of which `loaded` hold values.
+    pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, memory: &mut Memory<T>) {
         let Memory { bins, pieces, .. } = memory;
-        let (nb, length) = (self.rows.transform.bins(), self.rows.my);
-        for_each_block(&mut bins[..length * nb], nb, &self.rows.threads, pieces, |block, piece| {
+        let (nb, length) = (rows.transform.bins(), self.my);
+        for_each_block(&mut bins[..length * nb], nb, &rows.threads, pieces, |block, piece| {
             #[cfg(feature = "test-panics")]
-            toeplitz::panics::at_a_block();
+            crate::panics::at_a_block();
             let columns = &mut piece.columns[..block.columns() * length];
             block.gather(loaded.clone(), length, columns);
             for (c, column) in columns.chunks_exact_mut(length).enumerate() {
@@ -149,7 +172,7 @@ impl<T: Real> PerRow<T> {
 
     /// Multiplies one column, that of x bin `bin`, which holds pressures in rows `loaded` only.
     fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
-        let my = self.rows.my;
+        let my = self.my;
         let (re, im) = sums[..2 * my].split_at_mut(my);
         re.fill(T::zero());
         im.fill(T::zero());
@@ -165,7 +188,7 @@ impl<T: Real> PerRow<T> {
     }
 }
 
-impl<T: Real> Drop for PerRow<T> {
+impl<T: Real> Drop for RowMatrices<T> {
     fn drop(&mut self) {
         keep([&mut self.values]);
     }
@@ -174,9 +197,8 @@ impl<T: Real> Drop for PerRow<T> {
 /// Memory for the matrices, all of which is written before it is read.
 fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
     let size = (my * my).checked_mul(planes * bins);
-    let size =
-        size.ok_or_else(|| Error::OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
-    Ok(blank(size, T::nan(), MATRICES)?)
+    let size = size.ok_or_else(|| OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
+    blank(size, T::nan(), MATRICES)
 }
 
 /// `u = u + M p`, row after row of M, four at a time.

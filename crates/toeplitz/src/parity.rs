@@ -1,37 +1,54 @@
-//! Transforms of two real rows at a time, and of the tables of kernels.
+//! Products of loads by kernels of any parity: sums over some loads, each with a kernel of its own, which change often.
 //!
-//! Two real rows a, b make one complex row `a + i b`, so that rows are transformed at half the price. A kernel that is even in both
-//! directions has a real, even spectrum S; each direction in which it is odd makes that a factor i, and S odd in this direction.
+//! ```text
+//! u = F^-1 sum over loads of i^(number of odd directions) S . F load
+//! ```
+//!
+//! A kernel that is even in both directions has a real, even symbol S; each direction in which it is odd makes that a factor i, and S odd in this
+//! direction. Loads are padded with zeros to a period and transformed once; of each kernel one quadrant is tabulated, or half of S is known. Two real
+//! rows a, b make one complex row `a + i b`, so that rows are transformed at half the price. All is of any length, and of one thread.
 
-use crate::error::Result;
-use crate::memory::zeros;
-use crate::operator::fft::{ColumnTransform, Complex};
+use crate::fft::any_length::ColumnTransform;
+use crate::real::Complex;
+use par::memory::zeros;
+use par::Result;
 
 /// Columns that are transformed at a time: as many values side by side as two cache lines hold.
-pub const BLOCK: usize = 8;
+const BLOCK: usize = 8;
 
 /// What memory is for.
-const STRESS: &str = "the stresses of a depth";
+const KERNELS: &str = "the transforms of kernels";
 
-/// Transforms of one period.
-pub struct Transforms {
+/// Products of one period.
+pub struct ParityProduct {
     rows: ColumnTransform<f64>,
     columns: ColumnTransform<f64>,
 }
 
 /// Memory for them.
-pub struct Memory {
+pub struct ParityMemory {
     /// Of one kernel: transforms in x, `[ky][bin in x]`.
     in_x: Vec<f64>,
     row: Vec<Complex<f64>>,
-    pub columns: Vec<Complex<f64>>,
+    columns: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
 }
 
-impl Transforms {
+/// A load and its kernel.
+#[derive(Clone, Copy)]
+pub struct Term<'a> {
+    /// The transform of the load, `[bin in x >= 0][bin in y]`.
+    pub load: &'a [Complex<f64>],
+    /// S, `[bin in x >= 0][bin in y >= 0]`.
+    pub symbol: &'a [f64],
+    /// Whether the kernel is odd in x, and in y.
+    pub is_odd: (bool, bool),
+}
+
+impl ParityProduct {
     /// Plans for `px` by `py` values.
-    pub fn new(px: usize, py: usize) -> Result<Transforms> {
-        Ok(Transforms { rows: ColumnTransform::new(px)?, columns: ColumnTransform::new(py)? })
+    pub fn new(px: usize, py: usize) -> Result<ParityProduct> {
+        Ok(ParityProduct { rows: ColumnTransform::new(px)?, columns: ColumnTransform::new(py)? })
     }
 
     /// Values of a period in x and in y.
@@ -45,14 +62,14 @@ impl Transforms {
     }
 
     /// Memory for tables of `rows` rows.
-    pub fn memory(&self, rows: usize) -> Result<Memory> {
+    pub fn memory(&self, rows: usize) -> Result<ParityMemory> {
         let (px, py) = self.lengths();
         let mut scratch = self.rows.scratch()?;
         self.columns.fit(&mut scratch)?;
-        Ok(Memory {
-            in_x: zeros(rows * self.bins().0.next_multiple_of(2), STRESS)?,
-            row: zeros(px, STRESS)?,
-            columns: zeros(BLOCK * py, STRESS)?,
+        Ok(ParityMemory {
+            in_x: zeros(rows * self.bins().0.next_multiple_of(2), KERNELS)?,
+            row: zeros(px, KERNELS)?,
+            columns: zeros(BLOCK * py, KERNELS)?,
             scratch,
         })
     }
@@ -61,7 +78,7 @@ impl Transforms {
     pub fn of_load(&self, load: &[f64], mx: usize, scale: f64, factor: f64) -> Result<Vec<Complex<f64>>> {
         let ((px, py), nb) = (self.lengths(), self.bins().0);
         let mut spectrum = zeros(nb * py, "the transform of a load")?;
-        let Memory { mut row, mut scratch, .. } = self.memory(0)?;
+        let ParityMemory { mut row, mut scratch, .. } = self.memory(0)?;
         for (two, load) in load.chunks(2 * mx).enumerate() {
             let (one, other) = load.split_at(mx);
             row.fill(Complex::default());
@@ -88,13 +105,13 @@ impl Transforms {
         table: &[f64],
         mx: usize,
         (odd_x, odd_y): (bool, bool),
-        memory: &mut Memory,
+        memory: &mut ParityMemory,
         spectrum: &mut [f64],
     ) {
         let ((px, py), (nb, half)) = (self.lengths(), self.bins());
         let width = nb.next_multiple_of(2);
         let my = table.len() / mx;
-        let Memory { in_x, row, columns, scratch } = memory;
+        let ParityMemory { in_x, row, columns, scratch } = memory;
         for (two, in_x) in table.chunks(2 * mx).zip(in_x.chunks_mut(2 * width)) {
             let (one, other) = two.split_at(mx);
             row[gap(mx, px)].fill(Complex::default());
@@ -139,23 +156,50 @@ impl Transforms {
         }
     }
 
-    /// Back in y, in place: whole columns.
-    pub fn columns_back(&self, columns: usize, memory: &mut Memory) {
-        self.columns.inverse(&mut memory.columns[..columns * self.columns.length()], &mut memory.scratch);
+    /// The sum over loads, back in y: `[iy][bin in x]`, of the first bins in x and in y, which alone are not 0.
+    pub fn in_x<'a>(
+        &self,
+        terms: impl Iterator<Item = Term<'a>> + Clone,
+        (in_x, in_y): (usize, usize),
+        memory: &mut ParityMemory,
+        out: &mut [Complex<f64>],
+    ) {
+        let (py, (nb, half)) = (self.columns.length(), self.bins());
+        let ParityMemory { columns, scratch, .. } = memory;
+        for first in (0..in_x).step_by(BLOCK) {
+            let count = BLOCK.min(in_x - first);
+            let columns = &mut columns[..count * py];
+            columns.chunks_exact_mut(py).for_each(|column| column[gap(in_y, py)].fill(Complex::default()));
+            for (k, term) in terms.clone().enumerate() {
+                for (bin, column) in (first..).zip(columns.chunks_exact_mut(py)) {
+                    let (load, s) = (&term.load[bin * py..][..py], &term.symbol[bin * half..][..in_y]);
+                    match k {
+                        0 => put_product(column, load, s, term.is_odd, |sum, value| *sum = value),
+                        _ => put_product(column, load, s, term.is_odd, |sum, value| *sum += value),
+                    }
+                }
+            }
+            self.columns.inverse(columns, scratch);
+            for (iy, row) in out.chunks_exact_mut(nb).enumerate() {
+                for (value, column) in row[first..first + count].iter_mut().zip(columns.chunks_exact(py)) {
+                    *value = column[iy];
+                }
+            }
+        }
     }
 
     /// Back in x: rows of `out`, `mx` values each, times a factor, of their bins `[row][bin in x >= 0]`, of which `left` are not 0.
-    pub fn rows_back(
+    pub fn back(
         &self,
         bins: &[Complex<f64>],
         left: usize,
         factor: f64,
-        memory: &mut Memory,
+        memory: &mut ParityMemory,
         out: &mut [f64],
         mx: usize,
     ) {
         let (px, nb) = (self.rows.length(), self.bins().0);
-        let Memory { row, scratch, .. } = memory;
+        let ParityMemory { row, scratch, .. } = memory;
         for (two, out) in bins.chunks(2 * nb).zip(out.chunks_mut(2 * mx)) {
             let (one, other) = two.split_at(nb);
             row[gap(left, px)].fill(Complex::default());
@@ -201,7 +245,42 @@ fn both(value: Complex<f64>, odd: bool) -> (f64, f64) {
     }
 }
 
+/// Puts `i^(number of odd directions) S . load` of one column, where S is given at bins in y >= 0.
+fn put_product(
+    column: &mut [Complex<f64>],
+    load: &[Complex<f64>],
+    s: &[f64],
+    (odd_x, odd_y): (bool, bool),
+    put: impl Fn(&mut Complex<f64>, Complex<f64>),
+) {
+    let sign = if odd_y { -1.0 } else { 1.0 };
+    match (odd_x, odd_y) {
+        (false, false) => put_turned(column, load, s, sign, put, |value| value),
+        (true, true) => put_turned(column, load, s, sign, put, |value| -value),
+        _ => put_turned(column, load, s, sign, put, |value| Complex::new(-value.im, value.re)),
+    }
+}
+
+#[inline]
+fn put_turned(
+    column: &mut [Complex<f64>],
+    load: &[Complex<f64>],
+    s: &[f64],
+    sign: f64,
+    put: impl Fn(&mut Complex<f64>, Complex<f64>),
+    turn: impl Fn(Complex<f64>) -> Complex<f64>,
+) {
+    let half = column.len() / 2 + 1;
+    let ((lower, upper), (load_lower, load_upper)) = (column.split_at_mut(half), load.split_at(half));
+    for ((value, load), s) in lower.iter_mut().zip(load_lower).zip(s) {
+        put(value, turn(load * s));
+    }
+    for ((value, load), s) in upper.iter_mut().rev().zip(load_upper.iter().rev()).zip(&s[1..]) {
+        put(value, turn(load * (sign * s)));
+    }
+}
+
 /// What is left of a period where the first values and their mirror images stand.
-pub fn gap(values: usize, period: usize) -> std::ops::Range<usize> {
+fn gap(values: usize, period: usize) -> std::ops::Range<usize> {
     values..values.max(period + 1 - values)
 }

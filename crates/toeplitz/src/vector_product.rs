@@ -1,0 +1,245 @@
+//! Products of two components, `u = A q`, by a symmetric matrix of coefficients of each offset.
+//!
+//! ```text
+//! (ux, uy)_I = sum_J [xx xy; xy yy](I - J) (qx, qy)_J
+//! ```
+//!
+//! Rows and columns of both components go through stages of our own, in lanes, on each machine. Without xy a component displaces in its own
+//! direction only: one that is zero takes no time, and its displacements are exactly 0.
+
+use std::ops::Range;
+
+use crate::block::{blocks_of, Block, BLOCK};
+use crate::coefficients::EvenMatrix;
+use crate::fft::lane_columns::{Blocks, LaneColumns};
+use crate::fft::lane_rows::LaneRows;
+use crate::fft::stages::{before_a_line, from_a_line};
+use crate::lengths::length_for_stages;
+use crate::real::{Complex, Real};
+use crate::set_up::SetUp;
+use crate::set_up_lanes::LaneTransforms;
+use crate::vector_symbol::{factors, Place, VectorSymbol};
+use crate::workspace::{Memory, Piece, Room};
+use par::threads::Threads;
+use par::Result;
+
+/// The shortest periods that have stages.
+const SHORTEST: (usize, usize) = (12, 6);
+
+/// Products of two components on a grid of `mx * my` elements.
+pub struct VectorProduct<T: Real> {
+    mx: usize,
+    my: usize,
+    rows: LaneRows<T>,
+    columns: LaneColumns<T>,
+    symbol: VectorSymbol<T>,
+    px: usize,
+    threads: Threads,
+}
+
+/// The shortest fast period of at least these lengths.
+pub fn vector_period((least_x, least_y): (usize, usize)) -> (usize, usize) {
+    (length_for_stages(least_x.max(SHORTEST.0)), length_for_stages(least_y.max(SHORTEST.1)))
+}
+
+impl<T: Real> VectorProduct<T> {
+    /// Of coefficients that are even or odd, with a [period](vector_period).
+    pub fn even<F, G>(
+        grid: (usize, usize),
+        period: (usize, usize),
+        coefficients: &EvenMatrix<F, G>,
+        threads: &Threads,
+    ) -> Result<VectorProduct<T>>
+    where
+        F: Fn(usize, i64, &mut [f64]) + Sync + Send,
+        G: Fn([f64; 3]) -> [f64; 3] + Sync + Send,
+    {
+        let symbol = transforms(period, threads)?.of_even_matrix(coefficients, &mut SetUp::default())?;
+        VectorProduct::of(grid, period, symbol, threads)
+    }
+
+    /// The same taken `n` elements further on in x. The period keeps apart offsets of so many elements more.
+    pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
+        self.at(Place::FurtherOn(n))
+    }
+
+    /// The same less what it is `n` elements further on in x, likewise.
+    pub fn less_further_on(self, n: i64) -> Result<VectorProduct<T>> {
+        self.at(Place::LessFurtherOn(n))
+    }
+
+    fn at(mut self, place: Place) -> Result<VectorProduct<T>> {
+        self.symbol.factors = factors(place, self.px, self.rows.blocks(), &self.threads)?;
+        Ok(self)
+    }
+
+    /// Of any coefficients: `fill(kx, ky, [xx, yy, xy])` gives those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ...; xy is read where they are
+    /// coupled.
+    pub fn uneven(
+        grid: (usize, usize),
+        is_coupled: bool,
+        fill: impl Fn(i64, i64, [&mut [f64]; 3]) + Sync + Send,
+        threads: &Threads,
+    ) -> Result<VectorProduct<T>> {
+        let period = vector_period((2 * grid.0 - 1, 2 * grid.1 - 1));
+        let transforms = transforms(period, threads)?;
+        let symbol = transforms.of_general_matrix(grid, is_coupled, fill, &mut SetUp::default())?;
+        VectorProduct::of(grid, period, symbol, threads)
+    }
+
+    fn of(
+        (mx, my): (usize, usize),
+        (px, py): (usize, usize),
+        symbol: VectorSymbol<T>,
+        threads: &Threads,
+    ) -> Result<VectorProduct<T>> {
+        let rows = LaneRows::of_any(pulp::Arch::new(), px)?;
+        let rows = rows.unwrap_or_else(|| unreachable!("no stages have the period {px}"));
+        let columns = LaneColumns::new(py)?.unwrap_or_else(|| unreachable!("no stages have the period {py}"));
+        Ok(VectorProduct { mx, my, rows, columns, symbol, px, threads: threads.clone() })
+    }
+
+    /// The same in another precision.
+    pub fn in_precision<S: Real>(&self) -> Result<VectorProduct<S>> {
+        let period = (self.px, self.columns.length());
+        VectorProduct::of((self.mx, self.my), period, self.symbol.in_precision(&self.threads)?, &self.threads)
+    }
+
+    /// Elements in x and y.
+    pub fn grid(&self) -> (usize, usize) {
+        (self.mx, self.my)
+    }
+
+    /// Bytes of the symbol.
+    pub fn bytes(&self) -> usize {
+        self.symbol.bytes()
+    }
+
+    /// Whether a component displaces in its own direction only.
+    pub fn is_uncoupled(&self) -> bool {
+        self.symbol.is_uncoupled()
+    }
+
+    /// Rows of the grid that are transformed together: what [`apply`](Self::apply) writes comes in so many.
+    pub fn rows_at_a_time(&self) -> usize {
+        self.rows.at_a_time()
+    }
+
+    /// Memory for its products.
+    pub fn memory(&self) -> Result<Memory<T>> {
+        let room = Room {
+            bins: 2 * self.bins_of_component() + before_a_line::<T>(),
+            row: 2 * self.rows.at_a_time() * self.mx,
+            columns: 2 * self.rows.at_a_time() * self.columns.length() + before_a_line::<T>(),
+            scratch: self.rows.scratch_length(),
+            pieces: self.threads.count(),
+        };
+        Memory::new(room, &self.threads)
+    }
+
+    /// Rows of a block of bins: a group of rows that are transformed together may begin at the last row of the grid.
+    fn height(&self) -> usize {
+        self.my + self.rows.at_a_time() - 1
+    }
+
+    fn bins_of_component(&self) -> usize {
+        self.rows.blocks() * self.height() * BLOCK
+    }
+
+    /// `u = A q`. q is zero outside the rows `loaded` of either component; `load(component, first row, rows)` gives some of these rows.
+    /// `write(piece, first row, [ux, uy])` takes some rows of u; `pieces` are what it writes to, one for each
+    /// [`rows_at_a_time`](Self::rows_at_a_time).
+    pub fn apply<P: Send>(
+        &self,
+        loaded: [Range<usize>; 2],
+        load: impl Fn(usize, usize, &mut [T]) + Sync + Send,
+        (pieces, write): (
+            impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
+            impl Fn(P, usize, [&[T]; 2]) + Sync + Send,
+        ),
+        memory: &mut Memory<T>,
+    ) {
+        memory.wake(2 * self.bins_of_component() + before_a_line::<T>(), &self.threads);
+        let Memory { bins, pieces: scratch, .. } = memory;
+        let (x, y) = from_a_line(bins)[..2 * self.bins_of_component()].split_at_mut(self.bins_of_component());
+        let mut bins = [x, y];
+        let alone = self.is_uncoupled();
+        let is_zero = [0, 1].map(|component| alone && loaded[component].is_empty());
+        for component in (0..2).filter(|component| !is_zero[*component]) {
+            let (rows, first) = (loaded[component].clone(), loaded[component].start);
+            let groups = self.some_rows(bins[component], rows.clone()).enumerate();
+            self.threads.share(groups, scratch, |(i, mut bins), piece| {
+                let first = first + i * self.rows.at_a_time();
+                let count = self.rows.at_a_time().min(rows.end - first);
+                let values = &mut piece.row[..count * self.mx];
+                load(component, first, values);
+                self.rows.forward(values, self.mx, &mut bins, &mut piece.scratch);
+            });
+        }
+        match alone {
+            false => self.multiply(&mut bins, &loaded, scratch),
+            true => (0..2)
+                .filter(|component| !is_zero[*component])
+                .for_each(|component| self.multiply_one(component, bins[component], &loaded[component], scratch)),
+        }
+        let [x, y] = bins.map(|bins| self.some_rows(bins, 0..self.my));
+        self.threads.share(x.zip(y).zip(pieces).enumerate(), scratch, |(i, ((x, y), to)), piece| {
+            let first = i * self.rows.at_a_time();
+            let count = self.rows.at_a_time().min(self.my - first);
+            let (ux, uy) = piece.row[..2 * count * self.mx].split_at_mut(count * self.mx);
+            for ((bins, u), is_zero) in [(x, &mut *ux), (y, &mut *uy)].into_iter().zip(is_zero) {
+                match is_zero {
+                    true => u.fill(T::zero()),
+                    false => self.rows.inverse(&bins, u, self.mx, &mut piece.scratch),
+                }
+            }
+            write(to, first, [ux, uy]);
+        });
+    }
+
+    /// Those rows of a component, as many at a time as are transformed together: the last of them may lie beyond.
+    fn some_rows<'a>(
+        &self,
+        bins: &'a mut [Complex<T>],
+        rows: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+        let together = self.rows.at_a_time();
+        let end = rows.start + rows.len().next_multiple_of(together);
+        blocks_of(bins, self.height() * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
+    }
+
+    /// Transforms both components in y, multiplies them by the symbol and transforms them back.
+    fn multiply(&self, bins: &mut [&mut [Complex<T>]; 2], loaded: &[Range<usize>; 2], scratch: &mut [Piece<T>]) {
+        let length = self.height() * BLOCK;
+        let [x, y] = bins.each_mut().map(|bins| bins.chunks_exact_mut(length));
+        self.threads.share(x.zip(y).enumerate(), scratch, |(b, (x, y)), piece| {
+            #[cfg(feature = "test-panics")]
+            crate::panics::at_a_block();
+            let next = [x.as_ptr(), y.as_ptr()].map(|block| piece.next_block(block, b, length, self.rows.blocks()));
+            piece.block = b;
+            let blocks = [x, y].map(|block| &mut block[..self.my * BLOCK]);
+            let blocks = Blocks { blocks, columns: self.rows.bins() - b * BLOCK, next, loaded: loaded.clone() };
+            self.symbol.multiply(&self.columns, b, blocks, &mut piece.columns);
+        });
+    }
+
+    /// The same of one component alone.
+    fn multiply_one(&self, component: usize, bins: &mut [Complex<T>], loaded: &Range<usize>, scratch: &mut [Piece<T>]) {
+        let length = self.height() * BLOCK;
+        self.threads.share(bins.chunks_exact_mut(length).enumerate(), scratch, |(b, block), piece| {
+            #[cfg(feature = "test-panics")]
+            crate::panics::at_a_block();
+            let next = [piece.next_block(block.as_ptr(), b, length, self.rows.blocks())];
+            piece.block = b;
+            let blocks = [&mut block[..self.my * BLOCK]];
+            let columns = self.rows.bins() - b * BLOCK;
+            let blocks = Blocks { blocks, columns, next, loaded: [loaded.clone()] };
+            self.symbol.multiply_one(&self.columns, (b, component), blocks, &mut piece.columns);
+        });
+    }
+}
+
+fn transforms(period: (usize, usize), threads: &Threads) -> Result<LaneTransforms<'_>> {
+    let transforms = LaneTransforms::of_any(pulp::Arch::new(), period, threads)?;
+    Ok(transforms.unwrap_or_else(|| unreachable!("no stages have the periods {period:?}")))
+}

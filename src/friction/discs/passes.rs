@@ -1,0 +1,218 @@
+//! The passes of an iteration over a block, in vectors of this machine.
+
+use pulp::{Simd, WithSimd};
+
+use super::super::disc::{Disc, Units};
+use super::super::lanes::{pass, Arithmetic};
+use super::fields::Fields;
+
+/// Predicts what slips: squares of what is left of the slip, and of u. z is what the preconditioner is given.
+pub struct Predict<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+    pub units: Units,
+}
+
+impl WithSimd for Predict<'_, '_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+        let disc = Disc::new(simd, &self.units);
+        let a = disc.a;
+        let Fields { bound, excess, slip: [wx, wy], q: [qx, qy], u: [ux, uy], .. } = self.fields;
+        let Fields { curvature, normal: [nx, ny], projected: [rx, ry], z: [zx, zy], .. } = self.fields;
+        pass(
+            a,
+            [bound, excess, wx, wy, qx, qy, ux, uy],
+            [curvature, nx, ny, rx, ry, zx, zy],
+            #[inline(always)]
+            |[g, excess, wx, wy, qx, qy, ux, uy], _| {
+                let u = [ux, uy];
+                let seen = disc.look([qx, qy], a.add_pair([wx, wy], u), g);
+                let [nx, ny] = seen.normal;
+                let [rx, ry] = seen.projected;
+                let [zx, zy] = a.scale(disc.mixing(a.add(seen.curvature, excess)), seen.projected);
+                ([seen.curvature, nx, ny, rx, ry, zx, zy], [seen.rest, a.square(u)])
+            },
+        )
+    }
+}
+
+/// z, the preconditioned residual, of what the preconditioner made of it; the sum of `z.(A + D) t` of the last direction.
+pub struct Precondition<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+    pub units: Units,
+}
+
+impl WithSimd for Precondition<'_, '_> {
+    type Output = [f64; 1];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 1] {
+        let disc = Disc::new(simd, &self.units);
+        let a = disc.a;
+        let Fields { curvature, excess, normal: [nx, ny], projected: [rx, ry], .. } = self.fields;
+        let Fields { product: [px, py], direction: [tx, ty], z: [zx, zy], .. } = self.fields;
+        pass(
+            a,
+            [curvature, excess, nx, ny, rx, ry, px, py, tx, ty],
+            [zx, zy],
+            #[inline(always)]
+            |[bend, excess, nx, ny, rx, ry, px, py, tx, ty], z| {
+                let stiff = a.add(bend, excess);
+                let mixing = disc.mixing(stiff);
+                let within = disc.project([nx, ny], a.scale(mixing, z));
+                let z = a.plus(within, disc.own(mixing, stiff), [rx, ry]);
+                (z, [a.dot(z, a.plus([px, py], bend, [tx, ty]))])
+            },
+        )
+    }
+}
+
+/// The direction t, and its chord at the length f. z is the chord with the deferred corrections.
+pub struct Direct<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+    pub units: Units,
+    pub beta: f64,
+    pub f: f64,
+}
+
+impl WithSimd for Direct<'_, '_> {
+    type Output = [f64; 0];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 0] {
+        let disc = Disc::new(simd, &self.units);
+        let a = disc.a;
+        let [beta, f, inverse] = [self.beta, self.f, 1.0 / self.f].map(|value| a.splat(value));
+        let Fields { bound, q: [qx, qy], normal: [nx, ny], deferred: [lx, ly], .. } = self.fields;
+        let Fields { direction: [tx, ty], chord: [cx, cy], z: [zx, zy], .. } = self.fields;
+        pass(
+            a,
+            [bound, qx, qy, nx, ny, lx, ly],
+            [tx, ty, cx, cy, zx, zy],
+            #[inline(always)]
+            |[g, qx, qy, nx, ny, lx, ly], [tx, ty, _, _, zx, zy]| {
+                let (q, n) = ([qx, qy], [nx, ny]);
+                let t = disc.project(n, a.plus([zx, zy], beta, [tx, ty]));
+                let moved = disc.moved((disc.slips(n), n), g, q, a.scale(f, t));
+                let chord = a.scale(inverse, a.sub_pair(moved, q));
+                let [zx, zy] = a.plus(chord, inverse, [lx, ly]);
+                ([t[0], t[1], chord[0], chord[1], zx, zy], [])
+            },
+        )
+    }
+}
+
+/// The sums of `t.(A + D) t` and of `t` times the projected residual, of the chord where C sticks.
+pub struct Energy<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+    pub units: Units,
+}
+
+impl WithSimd for Energy<'_, '_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+        let disc = Disc::new(simd, &self.units);
+        let a = disc.a;
+        let Fields { curvature, normal: [nx, ny], projected: [rx, ry], .. } = self.fields;
+        let Fields { direction: [tx, ty], chord: [cx, cy], product: [px, py], .. } = self.fields;
+        pass(
+            a,
+            [curvature, nx, ny, rx, ry, tx, ty, cx, cy, px, py],
+            [],
+            #[inline(always)]
+            |[bend, nx, ny, rx, ry, tx, ty, cx, cy, px, py], []| {
+                let along = a.select_pair(disc.slips([nx, ny]), [tx, ty], [cx, cy]);
+                let energy = a.add(a.dot(along, [px, py]), a.mul(bend, a.square(along)));
+                ([], [energy, a.dot([rx, ry], along)])
+            },
+        )
+    }
+}
+
+/// Goes so far along the chord at the length f and predicts what slips there: squares of what is left of the slip, of u, of the deferred
+/// corrections and of the ways that elements went. z is what the preconditioner is given.
+pub struct Go<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+    pub units: Units,
+    pub length: f64,
+    pub f: f64,
+}
+
+impl WithSimd for Go<'_, '_> {
+    type Output = [f64; 4];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 4] {
+        let disc = Disc::new(simd, &self.units);
+        let a = disc.a;
+        let [length, left] = [self.length, 1.0 - self.length / self.f].map(|value| a.splat(value));
+        let Fields { bound, excess, slip: [wx, wy], chord: [cx, cy], product: [px, py], .. } = self.fields;
+        let Fields { q: [qx, qy], u: [ux, uy], normal: [nx, ny], direction: [tx, ty], .. } = self.fields;
+        let Fields { curvature, projected: [rx, ry], deferred: [lx, ly], z: [zx, zy], .. } = self.fields;
+        pass(
+            a,
+            [bound, excess, wx, wy, cx, cy, px, py],
+            [qx, qy, ux, uy, nx, ny, tx, ty, lx, ly, curvature, rx, ry, zx, zy],
+            #[inline(always)]
+            |[g, excess, wx, wy, cx, cy, px, py], [qx, qy, ux, uy, nx, ny, tx, ty, lx, ly, ..]| {
+                let (q, n, chord) = ([qx, qy], [nx, ny], [cx, cy]);
+                let slips = disc.slips(n);
+                let t = a.select_pair(slips, [tx, ty], chord);
+                let new = disc.moved((slips, n), g, q, a.scale(length, t));
+                let straight = a.plus(q, length, chord);
+                let late = a.plus(a.sub_pair(new, straight), left, [lx, ly]);
+                let way = a.sub_pair(new, q);
+                let u = a.plus([ux, uy], length, [px, py]);
+                let seen = disc.look(new, a.add_pair([wx, wy], u), g);
+                let z = a.scale(disc.mixing(a.add(seen.curvature, excess)), seen.projected);
+                let ([nx, ny], [rx, ry]) = (seen.normal, seen.projected);
+                (
+                    [
+                        new[0],
+                        new[1],
+                        u[0],
+                        u[1],
+                        nx,
+                        ny,
+                        t[0],
+                        t[1],
+                        late[0],
+                        late[1],
+                        seen.curvature,
+                        rx,
+                        ry,
+                        z[0],
+                        z[1],
+                    ],
+                    [seen.rest, a.square(u), a.square(late), a.square(way)],
+                )
+            },
+        )
+    }
+}
+
+/// Adds z to u.
+pub struct AddProduct<'a, 'b> {
+    pub fields: &'a mut Fields<'b>,
+}
+
+impl WithSimd for AddProduct<'_, '_> {
+    type Output = [f64; 0];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 0] {
+        let a = Arithmetic(simd);
+        let Fields { z: [zx, zy], u: [ux, uy], .. } = self.fields;
+        pass(
+            a,
+            [zx, zy],
+            [ux, uy],
+            #[inline(always)]
+            |z, u| (a.add_pair(u, z), []),
+        )
+    }
+}

@@ -1,0 +1,127 @@
+//! Passes over fields by component, in vectors of the machine.
+//!
+//! A pass goes over fields of one length, a multiple of [`LANES`], and sums in so many lanes whatever the length of vectors is: no bit of a
+//! sum depends on it.
+
+use std::array::from_fn;
+
+use pulp::Simd;
+
+/// Lanes of a sum: those of the longest vector.
+pub const LANES: usize = 8;
+
+/// Vectors of both components.
+pub type Pair<S> = [<S as Simd>::f64s; 2];
+
+/// Arithmetic of vectors; nothing is contracted.
+#[derive(Clone, Copy)]
+pub struct Arithmetic<S: Simd>(pub S);
+
+impl<S: Simd> Arithmetic<S> {
+    /// One number in all lanes.
+    #[inline(always)]
+    pub fn splat(self, a: f64) -> S::f64s {
+        self.0.splat_f64s(a)
+    }
+
+    #[inline(always)]
+    pub fn add(self, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.add_f64s(a, b)
+    }
+
+    #[inline(always)]
+    pub fn sub(self, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.sub_f64s(a, b)
+    }
+
+    #[inline(always)]
+    pub fn mul(self, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.mul_f64s(a, b)
+    }
+
+    #[inline(always)]
+    pub fn div(self, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.div_f64s(a, b)
+    }
+
+    #[inline(always)]
+    pub fn sqrt(self, a: S::f64s) -> S::f64s {
+        self.0.sqrt_f64s(a)
+    }
+
+    /// a where the mask is set, b elsewhere.
+    #[inline(always)]
+    pub fn select(self, mask: S::m64s, a: S::f64s, b: S::f64s) -> S::f64s {
+        self.0.select_f64s(mask, a, b)
+    }
+
+    /// The same of pairs.
+    #[inline(always)]
+    pub fn select_pair(self, mask: S::m64s, a: Pair<S>, b: Pair<S>) -> Pair<S> {
+        from_fn(|k| self.select(mask, a[k], b[k]))
+    }
+
+    /// `a v`.
+    #[inline(always)]
+    pub fn scale(self, a: S::f64s, v: Pair<S>) -> Pair<S> {
+        v.map(|v| self.mul(a, v))
+    }
+
+    /// `v + w`.
+    #[inline(always)]
+    pub fn add_pair(self, v: Pair<S>, w: Pair<S>) -> Pair<S> {
+        from_fn(|k| self.add(v[k], w[k]))
+    }
+
+    /// `v - w`.
+    #[inline(always)]
+    pub fn sub_pair(self, v: Pair<S>, w: Pair<S>) -> Pair<S> {
+        from_fn(|k| self.sub(v[k], w[k]))
+    }
+
+    /// `v + a w`.
+    #[inline(always)]
+    pub fn plus(self, v: Pair<S>, a: S::f64s, w: Pair<S>) -> Pair<S> {
+        self.add_pair(v, self.scale(a, w))
+    }
+
+    /// `v . w`.
+    #[inline(always)]
+    pub fn dot(self, v: Pair<S>, w: Pair<S>) -> S::f64s {
+        self.add(self.mul(v[0], w[0]), self.mul(v[1], w[1]))
+    }
+
+    /// `|v|^2`.
+    #[inline(always)]
+    pub fn square(self, v: Pair<S>) -> S::f64s {
+        self.dot(v, v)
+    }
+}
+
+/// One pass over some fields: what each vector of `read` and `write` becomes, and its terms of K sums.
+#[inline(always)]
+pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
+    a: Arithmetic<S>,
+    read: [&[f64]; A],
+    write: [&mut [f64]; B],
+    each: impl Fn([S::f64s; A], [S::f64s; B]) -> ([S::f64s; B], [S::f64s; K]),
+) -> [f64; K] {
+    let per_lanes = LANES / S::F64_LANES;
+    let length = read.first().map_or_else(|| write[0].len(), |field| field.len()) / S::F64_LANES;
+    let read = read.map(|field| &S::as_simd_f64s(field).0[..length]);
+    let mut write = write.map(|field| &mut S::as_mut_simd_f64s(field).0[..length]);
+    let mut sums = [[a.splat(0.0); LANES]; K];
+    for first in (0..length).step_by(per_lanes) {
+        for lane in 0..per_lanes {
+            let i = first + lane;
+            let (values, terms) = each(from_fn(|k| read[k][i]), from_fn(|k| write[k][i]));
+            for (field, value) in write.iter_mut().zip(values) {
+                field[i] = value;
+            }
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                sum[lane] = a.add(sum[lane], term);
+            }
+        }
+    }
+    sums.map(|lanes| pulp::bytemuck::cast_slice::<_, f64>(&lanes[..per_lanes]).iter().sum())
+}
