@@ -1,6 +1,7 @@
 """From heights to a gap: each step against what is known of it, and what a mistake costs."""
 
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -106,6 +107,13 @@ class Faults(unittest.TestCase):
         steps = np.where(np.arange(64) < 32, 0.0, 5.0) + np.zeros((64, 1))
         self.assertEqual(surface.faults(surface.heights(steps, 1, 1)).fill_values, ())
         self.assertEqual(surface.faults(surface.heights(np.full((5, 5), np.nan), 1, 1)).spikes.sum(), 0)
+
+    def test_large_maps_are_worked_on_in_blocks(self):
+        made = surface.heights(np.tile(rough(), (10, 10)) + 0.01 * np.arange(640), 1, 1)
+        with mock.patch("contact_normal.surface._heights._BLOCK", 1 << 30):
+            whole, plane = neighbours_median(made.z, "x"), surface.form(made)
+        np.testing.assert_array_equal(neighbours_median(made.z, "x"), whole)
+        np.testing.assert_allclose(surface.form(made).coefficients, plane.coefficients, rtol=1e-9)
 
     def test_the_median_of_neighbours(self):
         z = rough(16)[:6, :7]
