@@ -265,6 +265,10 @@ class Balance(unittest.TestCase):
         self.assertLess(np.abs(found.centre).max(), 1e-5 * n * d)
         upright = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius)
         np.testing.assert_allclose(found.gap.h, upright, atol=1e-5 * (n * d) ** 2 / radius)
+        # Of one direction alone, too.
+        for one in ((tilt[0], 0.0), (0.0, tilt[1])):
+            found = surface.balance(surface.Gap(upright + one[0] * x[None, :] + one[1] * x[:, None], d, d), 2e-2, tolerance=1e-5, e_star=1.0)
+            np.testing.assert_allclose(found.tilt, one, atol=1e-5 * n * d / radius)
         # And a force beside the middle tilts it.
         beside = surface.balance(surface.Gap(h, d, d), 2e-2, at=(0.1, 0.05), tolerance=1e-5, e_star=1.0)
         np.testing.assert_allclose(beside.tilt, (tilt[0] + 0.1 / radius, tilt[1] + 0.05 / radius), atol=1e-5 * n * d / radius)

@@ -54,7 +54,7 @@ class ContactPoint:
     _on_rail: float
     _on_wheel: float
     clearance: float
-    """Vertical distance of both surfaces here, in mm: 0 if they touch, negative if the position lets them overlap."""
+    """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
 
     @property
     def place(self) -> tuple[float, float, float]:
@@ -70,7 +70,7 @@ class ContactPoint:
 
     @property
     def angle(self) -> float:
-        """The contact angle, in rad: how much the surface of the rail rises towards the field side. At the flange it is large and positive."""
+        """The contact angle in rad, by which the surface of the rail rises towards the field side. At the flange it is large and positive."""
         _, _, dy, dz = self._pair.rail.at(self._on_rail)
         return float(np.arctan2(-dz, dy))
 
@@ -121,10 +121,10 @@ class ContactPoint:
         return np.asarray(n - rail[:, None])
 
     def gap(self, dx: float, dy: float, depth: float) -> Gap:
-        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact of this approach can need.
+        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact with an approach of `depth` can need.
 
-        Elements outside of which the distance is nowhere less than its least plus `depth` cannot touch: pressures of an elastic half-space move no
-        surface inwards. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
+        Pressures >= 0 displace by u >= 0, so h - approach + u = 0 needs h <= approach: an element whose distance exceeds the least one by more than
+        `depth` cannot touch. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
         """
         dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
         for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):

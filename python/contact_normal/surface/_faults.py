@@ -50,7 +50,7 @@ class Faults:
 
     @property
     def removed(self) -> Heights:
-        """The heights without fill values and spikes: these elements become holes."""
+        """The heights with holes in the place of fill values and spikes."""
         return self.heights.without(self.fills | self.spikes)
 
     def __str__(self) -> str:

@@ -73,7 +73,7 @@ class Heights:
 
     @property
     def area(self) -> float:
-        """Area of the grid: elements times the size of one."""
+        """Area of the grid, which is the number of elements times the size of one."""
         return float(self.z.size * self.dx * self.dy)
 
     def force(self, mean_pressure: float) -> float:

@@ -50,7 +50,7 @@ class Form:
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Radii of curvature in x and y at the middle; positive: a ball; inf: flat."""
+        """Radii of curvature in x and y at the middle, positive for a ball, inf for a plane."""
         square = (*self.coefficients, *[0.0] * 6)[3:6]
         rx, ry = (np.inf if c == 0.0 else -0.5 / c for c in (square[0], square[2]))
         return float(rx), float(ry)
