@@ -165,12 +165,16 @@ class ContactPoint:
         **scene
             Elastic constants, effects and options of `contact_normal.solve`.
         """
+        may_shrink = True
         while True:
             gap = self.gap(dx, dy, depth)
             result = gap.solve(force=force, **scene)
             approach = result.approach - float(gap.h.min())
-            if approach <= depth <= _LOOSE * approach or not approach > 0.0:
-                break
+            if not approach > depth:
+                # Once is enough: a smaller grid may lack a second patch that carried a part of the force.
+                if not may_shrink or not depth > _LOOSE * approach > 0.0:
+                    break
+                may_shrink = False
             # A grid that is too small finds a larger approach than there is.
             depth = _RESERVE * approach
         if friction is not None:
