@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -53,6 +54,8 @@ class ContactPoint:
     _x: float
     _on_rail: float
     _on_wheel: float
+    # Clearance, y and z of the other places where the wheel is close to the rail.
+    _others: tuple[tuple[float, float, float], ...]
     clearance: float
     """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
 
@@ -160,6 +163,7 @@ class ContactPoint:
             Element sizes, in mm.
         depth : float
             First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
+            A warning tells if the wheel would also touch at another place, which is not in the grid.
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
@@ -177,10 +181,20 @@ class ContactPoint:
                 may_shrink = False
             # A grid that is too small finds a larger approach than there is.
             depth = _RESERVE * approach
+        self._warn_of_others(gap, approach)
         if friction is not None:
             centre = (-gap.middle[0], -gap.middle[1])
             result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)
         return gap, result
+
+    def _warn_of_others(self, gap: Gap, approach: float) -> None:
+        """Warns if the wheel would touch at another place, too, that is not in the grid."""
+        (_, ey, _), (y0, z0) = self._axes(), (float(value) for value in self._pair.rail.at(self._on_rail)[:2])
+        for clearance, y, z in self._others:
+            along = (y - y0) * ey[1] + (z - z0) * ey[2]
+            if clearance - self.clearance < approach and not gap.y[0] <= along <= gap.y[-1]:
+                warnings.warn(f"the wheel also touches the rail {along:.1f} mm beside this patch, where it is {clearance - self.clearance:.3g} mm "
+                              f"farther off and the approach is {approach:.3g} mm: a part of the force is carried there", stacklevel=3)
 
     def creepages(
         self, speed: float, *, pitch_rate: float | None = None, yaw_rate: float = 0.0, roll_rate: float = 0.0,
