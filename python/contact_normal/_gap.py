@@ -59,7 +59,7 @@ class Gap:
 
     @property
     def area(self) -> float:
-        """Area of the grid: elements times the size of one. A mean pressure is a force over this area."""
+        """Area of the grid, which is the number of elements times the size of one. A mean pressure is a force over this area."""
         return float(self.h.size * self.dx * self.dy)
 
     def solve(self, **scene: Any) -> Result:

@@ -1,6 +1,7 @@
 """From two profiles to a gap: profiles of lines and arcs, whose contact is known in closed form."""
 
 import unittest
+import warnings
 
 import numpy as np
 
@@ -139,6 +140,14 @@ class Contact(unittest.TestCase):
         self.assertAlmostEqual(both[1].clearance, 0.04, delta=1e-4)
         self.assertAlmostEqual(both[1].place[1] - both[0].place[1], 36.0, delta=0.2)
         self.assertEqual(len(profiles.contact_points(profiles.Track(double), flat)), 1)
+        # A load that reaches the other head is told of it, by an approach of 0.047 mm; a light one is not.
+        with self.assertWarnsRegex(UserWarning, r"also touches the rail 36\.\d mm beside this patch, where it is 0\.04\d* mm farther off"):
+            both[0].press(20e3, 0.4, 0.4, **STEEL)
+        with self.assertWarnsRegex(UserWarning, r"also touches the rail -3\d\.\d mm beside this patch"):
+            both[1].press(1e3, 0.4, 0.4, **STEEL)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            both[0].press(5e3, 0.4, 0.4, **STEEL)
 
     def test_a_wheel_beside_its_rail_is_refused(self):
         with self.assertRaisesRegex(ValueError, "the right wheel is nowhere above its rail"):

@@ -1,6 +1,7 @@
 """From heights to a gap: each step against what is known of it, and what a mistake costs."""
 
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -106,6 +107,13 @@ class Faults(unittest.TestCase):
         steps = np.where(np.arange(64) < 32, 0.0, 5.0) + np.zeros((64, 1))
         self.assertEqual(surface.faults(surface.heights(steps, 1, 1)).fill_values, ())
         self.assertEqual(surface.faults(surface.heights(np.full((5, 5), np.nan), 1, 1)).spikes.sum(), 0)
+
+    def test_large_maps_are_worked_on_in_blocks(self):
+        made = surface.heights(np.tile(rough(), (10, 10)) + 0.01 * np.arange(640), 1, 1)
+        with mock.patch("contact_normal.surface._heights._BLOCK", 1 << 30):
+            whole, plane = neighbours_median(made.z, "x"), surface.form(made)
+        np.testing.assert_array_equal(neighbours_median(made.z, "x"), whole)
+        np.testing.assert_allclose(surface.form(made).coefficients, plane.coefficients, rtol=1e-9)
 
     def test_the_median_of_neighbours(self):
         z = rough(16)[:6, :7]
@@ -257,6 +265,10 @@ class Balance(unittest.TestCase):
         self.assertLess(np.abs(found.centre).max(), 1e-5 * n * d)
         upright = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius)
         np.testing.assert_allclose(found.gap.h, upright, atol=1e-5 * (n * d) ** 2 / radius)
+        # Of one direction alone, too.
+        for one in ((tilt[0], 0.0), (0.0, tilt[1])):
+            found = surface.balance(surface.Gap(upright + one[0] * x[None, :] + one[1] * x[:, None], d, d), 2e-2, tolerance=1e-5, e_star=1.0)
+            np.testing.assert_allclose(found.tilt, one, atol=1e-5 * n * d / radius)
         # And a force beside the middle tilts it.
         beside = surface.balance(surface.Gap(h, d, d), 2e-2, at=(0.1, 0.05), tolerance=1e-5, e_star=1.0)
         np.testing.assert_allclose(beside.tilt, (tilt[0] + 0.1 / radius, tilt[1] + 0.05 / radius), atol=1e-5 * n * d / radius)

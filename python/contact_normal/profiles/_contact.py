@@ -102,12 +102,14 @@ def contact_points(
         lowered = minima[0][0]
         pair = dataclasses.replace(pair, position=dataclasses.replace(pair.position, z=lowered))
         minima = [(clearance - lowered, t) for clearance, t in minima]
+    x, y, z = _lowest(pair, np.array([t for _, t in minima]))
+    on_rail = pair.rail.where(y, near=pair.rail.t[np.argmin(pair.rail.z)])
+    places = [(clearance, float(y[k]), float(z[k])) for k, (clearance, _) in enumerate(minima)]
     points = []
-    for clearance, t in minima:
+    for k, (clearance, t) in enumerate(minima):
         if clearance - minima[0][0] <= within:
-            x, y, _ = (float(value[0]) for value in _lowest(pair, np.array([t])))
-            on_rail = float(pair.rail.where(y, near=pair.rail.t[np.argmin(pair.rail.z)]))
-            points.append(ContactPoint(pair, x, on_rail, t, clearance))
+            others = tuple(places[:k] + places[k + 1 :])
+            points.append(ContactPoint(pair, float(x[k]), float(on_rail[k]), t, others, clearance))
     return points
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -53,8 +54,10 @@ class ContactPoint:
     _x: float
     _on_rail: float
     _on_wheel: float
+    # Clearance, y and z of the other places where the wheel is close to the rail.
+    _others: tuple[tuple[float, float, float], ...]
     clearance: float
-    """Vertical distance of both surfaces here, in mm: 0 if they touch, negative if the position lets them overlap."""
+    """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
 
     @property
     def place(self) -> tuple[float, float, float]:
@@ -70,7 +73,7 @@ class ContactPoint:
 
     @property
     def angle(self) -> float:
-        """The contact angle, in rad: how much the surface of the rail rises towards the field side. At the flange it is large and positive."""
+        """The contact angle in rad, by which the surface of the rail rises towards the field side. At the flange it is large and positive."""
         _, _, dy, dz = self._pair.rail.at(self._on_rail)
         return float(np.arctan2(-dz, dy))
 
@@ -121,10 +124,10 @@ class ContactPoint:
         return np.asarray(n - rail[:, None])
 
     def gap(self, dx: float, dy: float, depth: float) -> Gap:
-        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact of this approach can need.
+        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact with an approach of `depth` can need.
 
-        Elements outside of which the distance is nowhere less than its least plus `depth` cannot touch: pressures of an elastic half-space move no
-        surface inwards. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
+        Pressures >= 0 displace by u >= 0, so h - approach + u = 0 needs h <= approach: an element whose distance exceeds the least one by more than
+        `depth` cannot touch. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
         """
         dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
         for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):
@@ -160,23 +163,38 @@ class ContactPoint:
             Element sizes, in mm.
         depth : float
             First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
+            A warning tells if the wheel would also touch at another place, which is not in the grid.
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
             Elastic constants, effects and options of `contact_normal.solve`.
         """
+        may_shrink = True
         while True:
             gap = self.gap(dx, dy, depth)
             result = gap.solve(force=force, **scene)
             approach = result.approach - float(gap.h.min())
-            if approach <= depth <= _LOOSE * approach or not approach > 0.0:
-                break
+            if not approach > depth:
+                # Once is enough: a smaller grid may lack a second patch that carried a part of the force.
+                if not may_shrink or not depth > _LOOSE * approach > 0.0:
+                    break
+                may_shrink = False
             # A grid that is too small finds a larger approach than there is.
             depth = _RESERVE * approach
+        self._warn_of_others(gap, approach)
         if friction is not None:
             centre = (-gap.middle[0], -gap.middle[1])
             result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)
         return gap, result
+
+    def _warn_of_others(self, gap: Gap, approach: float) -> None:
+        """Warns if the wheel would touch at another place, too, that is not in the grid."""
+        (_, ey, _), (y0, z0) = self._axes(), (float(value) for value in self._pair.rail.at(self._on_rail)[:2])
+        for clearance, y, z in self._others:
+            along = (y - y0) * ey[1] + (z - z0) * ey[2]
+            if clearance - self.clearance < approach and not gap.y[0] <= along <= gap.y[-1]:
+                warnings.warn(f"the wheel also touches the rail {along:.1f} mm beside this patch, where it is {clearance - self.clearance:.3g} mm "
+                              f"farther off and the approach is {approach:.3g} mm: a part of the force is carried there", stacklevel=3)
 
     def creepages(
         self, speed: float, *, pitch_rate: float | None = None, yaw_rate: float = 0.0, roll_rate: float = 0.0,

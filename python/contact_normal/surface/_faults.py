@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number
-from ._heights import Heights
+from ._heights import Heights, blocks
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -50,7 +50,7 @@ class Faults:
 
     @property
     def removed(self) -> Heights:
-        """The heights without fill values and spikes: these elements become holes."""
+        """The heights with holes in the place of fill values and spikes."""
         return self.heights.without(self.fills | self.spikes)
 
     def __str__(self) -> str:
@@ -91,22 +91,25 @@ def neighbours_median(z: Doubles, period: str | None) -> Doubles:
         padded[1:-1, 0], padded[1:-1, -1] = z[:, -1], z[:, 0]
     if period in ("y", "xy"):
         padded[0], padded[-1] = padded[-2], padded[1]
-    my, mx = z.shape
-    shifted = [padded[j : j + my, i : i + mx] for j in range(3) for i in range(3) if (j, i) != (1, 1)]
-    stacked = np.sort(np.stack(shifted), axis=0)  # NaN comes last
-    count = np.isfinite(stacked).sum(axis=0)
-    low, high = np.maximum((count - 1) // 2, 0), np.minimum(count // 2, 7)
-    pick = [np.take_along_axis(stacked, k[None], axis=0)[0] for k in (low, high)]
-    return np.asarray(np.where(count > 0, 0.5 * (pick[0] + pick[1]), np.nan))
+    median = np.empty(z.shape)
+    for rows in blocks(z.shape):
+        around = padded[rows.start : rows.stop + 2]
+        shifted = [around[j : j + rows.stop - rows.start, i : i + z.shape[1]] for j in range(3) for i in range(3) if (j, i) != (1, 1)]
+        stacked = np.sort(np.stack(shifted), axis=0)  # NaN comes last
+        count = np.isfinite(stacked).sum(axis=0)
+        low, high = np.maximum((count - 1) // 2, 0), np.minimum(count // 2, 7)
+        pick = [np.take_along_axis(stacked, k[None], axis=0)[0] for k in (low, high)]
+        median[rows] = np.where(count > 0, 0.5 * (pick[0] + pick[1]), np.nan)
+    return median
 
 
 def faults(heights: Heights, spike: float = 10.0) -> Faults:
     """Finds values that stand for "not measured", and spikes.
 
-    A fill value is the smallest or the largest value, occurs at least twice, and is further from the next one than all between the extremes are from
-    each other.
-    A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences over the whole surface, and by
-    more than the step of quantised heights. On a surface with steps, their edges may count as spikes: look at them (`Faults.plot`).
+    A fill value is the smallest or the largest value, occurs at least twice, and is further from the next one than all between the extremes are
+    from each other. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences. Where more
+    than half of quantised heights equal their neighbours, the steps of the heights stand for the deviation. The edges of a surface with steps may
+    count as spikes: look at them (`Faults.plot`).
 
     Parameters
     ----------

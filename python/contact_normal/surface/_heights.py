@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,17 @@ if TYPE_CHECKING:
 
 # Spacings of coordinates that differ by more than this part are not those of one grid: files have five digits or more.
 _EQUAL = 1e-3
+
+
+# Elements that are worked on at a time: some megabytes.
+_BLOCK = 1 << 18
+
+
+def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
+    """Rows of an array, some at a time, so that large maps need no memory of many times their own."""
+    rows = max(1, _BLOCK // max(shape[1], 1))
+    for first in range(0, shape[0], rows):
+        yield slice(first, min(first + rows, shape[0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +73,7 @@ class Heights:
 
     @property
     def area(self) -> float:
-        """Area of the grid: elements times the size of one."""
+        """Area of the grid, which is the number of elements times the size of one."""
         return float(self.z.size * self.dx * self.dy)
 
     def force(self, mean_pressure: float) -> float:

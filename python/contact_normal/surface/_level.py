@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._heights import Heights
+from ._heights import Heights, blocks
 
 if TYPE_CHECKING:
     from .._arguments import Doubles
+
+# Normal equations are singular if their eigenvalues differ by more than round-off lets them: 2^-52 times a million terms.
+_SINGULAR = 1e-10
 
 # Powers of x and y of each form.
 FORMS = {
@@ -47,7 +50,7 @@ class Form:
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Radii of curvature in x and y at the middle; positive: a ball; inf: flat."""
+        """Radii of curvature in x and y at the middle, positive for a ball, inf for a plane."""
         square = (*self.coefficients, *[0.0] * 6)[3:6]
         rx, ry = (np.inf if c == 0.0 else -0.5 / c for c in (square[0], square[2]))
         return float(rx), float(ry)
@@ -71,17 +74,22 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     """
     if kind not in FORMS:
         raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(FORMS)}")
-    known = ~heights.holes
-    # Scaled to [-1, 1], so that the columns are of one size.
+    powers = FORMS[kind]
+    # Scaled to [-1, 1]: there the normal equations of these monomials are well conditioned.
     scales = 0.5 * heights.dx * heights.z.shape[1], 0.5 * heights.dy * heights.z.shape[0]
-    x, y = (np.broadcast_to(values, heights.z.shape)[known] for values in (heights.x[None, :] / scales[0], heights.y[:, None] / scales[1]))
-    columns = np.stack([x**i * y**j for i, j in FORMS[kind]], axis=1)
-    found, _, rank, _ = np.linalg.lstsq(columns, heights.z[known], rcond=None)
-    if rank < columns.shape[1]:
-        raise ValueError(f"a {kind} has {columns.shape[1]} unknowns; {known.sum()} heights of the {heights.z.shape} elements do not determine them")
-    left = heights.z[known] - columns @ found
-    sizes = [scales[0] ** i * scales[1] ** j for i, j in FORMS[kind]]
-    return Form(kind, tuple(float(c / size) for c, size in zip(found, sizes)), float(np.sqrt(np.mean(left**2))))
+    count, matrix, right = 0, np.zeros((len(powers), len(powers))), np.zeros(len(powers))
+    for rows in blocks(heights.z.shape):
+        z = heights.z[rows]
+        known = np.isfinite(z)
+        x, y = (np.broadcast_to(places, z.shape)[known] for places in (heights.x[None, :] / scales[0], heights.y[rows, None] / scales[1]))
+        columns = np.stack([x**i * y**j for i, j in powers])
+        count, matrix, right = count + x.size, matrix + columns @ columns.T, right + columns @ z[known]
+    sizes = np.linalg.eigvalsh(matrix)
+    if not sizes[0] > _SINGULAR * sizes[-1]:
+        raise ValueError(f"a {kind} has {len(powers)} unknowns; {count} heights of the {heights.z.shape} elements do not determine them")
+    scaled = np.linalg.solve(matrix, right)
+    found = Form(kind, tuple(float(c / (scales[0] ** i * scales[1] ** j)) for c, (i, j) in zip(scaled, powers)), 0.0)
+    return dataclasses.replace(found, rms=float(np.sqrt(np.nanmean((heights.z - found.values(heights)) ** 2))))
 
 
 def level(heights: Heights, kind: str = "plane") -> Heights:

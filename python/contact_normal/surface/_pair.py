@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -65,7 +66,8 @@ def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
     return 1.0 / sum_of if sum_of > 0.0 else float("inf")
 
 
-class Balanced(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Balanced:
     """What `balance` found.
 
     Attributes
