@@ -21,7 +21,7 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: pictures all demo test campaign soak bench bench-table bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
+.PHONY: pictures all demo test campaign soak bench bench-table bench-peers analysis accuracy plain-cost tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -135,6 +135,11 @@ ACCURACY ?=
 accuracy: tools
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY)
 	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv
+
+# An effect that is not named is free: instructions and bytes of a plain solve beside the recorded ones. RECORD="what came in" records them.
+RECORD ?=
+plain-cost: tools all
+	"$(find_python)" benches/plain_solve/check.py $(LIBDIR_BUILT)/libcontact_normal.so include $(if $(RECORD),--record "$(RECORD)")
 
 # The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
 wheel: all build/tools/bin/python
