@@ -116,7 +116,7 @@ pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
     let (per_lanes, zero) = (LANES / S::F64_LANES, a.splat(0.0));
     let length = read.first().map_or_else(|| write[0].len(), |field| field.len()) / S::F64_LANES;
     let read = read.map(|field| &S::as_simd_f64s(field).0[..length]);
-    let mut write = write.map(|field| &mut S::as_mut_simd_f64s(field).0[..length]);
+    let write = write.map(|field| &mut S::as_mut_simd_f64s(field).0[..length]);
     let mut sums = [[zero; LANES]; K];
     for first in (0..length).step_by(per_lanes) {
         for lane in 0..per_lanes {
