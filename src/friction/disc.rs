@@ -66,7 +66,7 @@ impl<S: Simd> Disc<S> {
         let slips = a.0.greater_than_f64s(square_tau, a.mul(g, g));
         let (length, reach) = (a.sqrt(square_q), a.sqrt(square_tau));
         // Near the circle, and turned by less than the angle.
-        let off = a.0.abs_f64s(a.sub(length, g));
+        let off = a.abs(a.sub(length, g));
         let is_near = a.0.less_than_or_equal_f64s(off, a.mul(a.splat(NEAR_THE_CIRCLE), g));
         let least = a.mul(a.splat(ALIGNED), a.mul(length, reach));
         let is_near = a.0.and_m64s(is_near, a.0.greater_than_or_equal_f64s(a.dot(q, tau), least));
@@ -114,7 +114,7 @@ impl<S: Simd> Disc<S> {
     #[inline(always)]
     pub fn slips(&self, [x, y]: Pair<S>) -> S::m64s {
         let a = self.a;
-        a.0.greater_than_f64s(a.add(a.0.abs_f64s(x), a.0.abs_f64s(y)), self.zero)
+        a.0.greater_than_f64s(a.add(a.abs(x), a.abs(y)), self.zero)
     }
 
     /// Where elements go from q by `a t`: along their circles where they slip, else straight on and back into the disc.

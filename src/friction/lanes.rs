@@ -2,8 +2,9 @@
 //!
 //! A pass goes over fields of one length, a multiple of [`LANES`], and sums in so many lanes whatever the length of vectors is: no bit of a
 //! sum depends on it.
-
-use std::array::from_fn;
+//!
+//! Loops run over indices: what closures of arrays do is not always compiled for the vectors of this machine.
+#![allow(clippy::needless_range_loop)]
 
 use pulp::Simd;
 
@@ -49,6 +50,12 @@ impl<S: Simd> Arithmetic<S> {
         self.0.sqrt_f64s(a)
     }
 
+    /// |a|.
+    #[inline(always)]
+    pub fn abs(self, a: S::f64s) -> S::f64s {
+        self.0.max_f64s(a, self.sub(self.splat(0.0), a))
+    }
+
     /// a where the mask is set, b elsewhere.
     #[inline(always)]
     pub fn select(self, mask: S::m64s, a: S::f64s, b: S::f64s) -> S::f64s {
@@ -58,25 +65,25 @@ impl<S: Simd> Arithmetic<S> {
     /// The same of pairs.
     #[inline(always)]
     pub fn select_pair(self, mask: S::m64s, a: Pair<S>, b: Pair<S>) -> Pair<S> {
-        from_fn(|k| self.select(mask, a[k], b[k]))
+        [self.select(mask, a[0], b[0]), self.select(mask, a[1], b[1])]
     }
 
     /// `a v`.
     #[inline(always)]
     pub fn scale(self, a: S::f64s, v: Pair<S>) -> Pair<S> {
-        v.map(|v| self.mul(a, v))
+        [self.mul(a, v[0]), self.mul(a, v[1])]
     }
 
     /// `v + w`.
     #[inline(always)]
     pub fn add_pair(self, v: Pair<S>, w: Pair<S>) -> Pair<S> {
-        from_fn(|k| self.add(v[k], w[k]))
+        [self.add(v[0], w[0]), self.add(v[1], w[1])]
     }
 
     /// `v - w`.
     #[inline(always)]
     pub fn sub_pair(self, v: Pair<S>, w: Pair<S>) -> Pair<S> {
-        from_fn(|k| self.sub(v[k], w[k]))
+        [self.sub(v[0], w[0]), self.sub(v[1], w[1])]
     }
 
     /// `v + a w`.
@@ -106,20 +113,27 @@ pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
     write: [&mut [f64]; B],
     each: impl Fn([S::f64s; A], [S::f64s; B]) -> ([S::f64s; B], [S::f64s; K]),
 ) -> [f64; K] {
-    let per_lanes = LANES / S::F64_LANES;
+    let (per_lanes, zero) = (LANES / S::F64_LANES, a.splat(0.0));
     let length = read.first().map_or_else(|| write[0].len(), |field| field.len()) / S::F64_LANES;
     let read = read.map(|field| &S::as_simd_f64s(field).0[..length]);
-    let mut write = write.map(|field| &mut S::as_mut_simd_f64s(field).0[..length]);
-    let mut sums = [[a.splat(0.0); LANES]; K];
+    let write = write.map(|field| &mut S::as_mut_simd_f64s(field).0[..length]);
+    let mut sums = [[zero; LANES]; K];
     for first in (0..length).step_by(per_lanes) {
         for lane in 0..per_lanes {
             let i = first + lane;
-            let (values, terms) = each(from_fn(|k| read[k][i]), from_fn(|k| write[k][i]));
-            for (field, value) in write.iter_mut().zip(values) {
-                field[i] = value;
+            let (mut from, mut to) = ([zero; A], [zero; B]);
+            for k in 0..A {
+                from[k] = read[k][i];
             }
-            for (sum, term) in sums.iter_mut().zip(terms) {
-                sum[lane] = a.add(sum[lane], term);
+            for k in 0..B {
+                to[k] = write[k][i];
+            }
+            let (values, terms) = each(from, to);
+            for k in 0..B {
+                write[k][i] = values[k];
+            }
+            for k in 0..K {
+                sums[k][lane] = a.add(sums[k][lane], terms[k]);
             }
         }
     }

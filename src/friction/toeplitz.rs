@@ -95,8 +95,8 @@ impl<T: Real> Toeplitz<T> {
             quadrant.fill_row(component, ky, row);
             // An odd function has no value half-way around.
             if component == 2 {
-                let half_way = if 2 * ky as usize == period.1 { 0..row.len() } else { period.0 / 2..row.len() };
-                row[half_way].fill(0.0);
+                let first = if 2 * ky as usize == period.1 { 0 } else { (period.0 / 2).min(row.len()) };
+                row[first..].fill(0.0);
             }
         };
         let is_positive = AtomicBool::new(true);

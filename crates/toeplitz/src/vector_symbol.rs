@@ -135,7 +135,8 @@ struct RealMatrix<'a, T>([&'a [T]; 3]);
 impl<T: Real> Factor<T, 2> for RealMatrix<'_, T> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
-        let [xx, yy, xy] = self.0.map(|plane| even_value::<T, S>(plane, at));
+        let [xx, yy, xy] = self.0;
+        let (xx, yy, xy) = (even_value::<T, S>(xx, at), even_value::<T, S>(yy, at), even_value::<T, S>(xy, at));
         let (by_x, by_y) = (a.scale(x, xy), a.scale(y, xy));
         let (x, y) = (a.scale(x, xx), a.scale(y, yy));
         // A block that is kept as its mirror image has -xy.
@@ -157,7 +158,11 @@ impl<T: Real, F: Factor<T, K>, const K: usize> Factor<T, K> for Displaced<'_, T,
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K] {
         let by = complex_value::<T, S>(self.factors, 0, at.vector);
-        self.of.times(a, at, x).map(|value| a.mul(value, by))
+        let mut values = self.of.times(a, at, x);
+        for value in &mut values {
+            *value = a.mul(*value, by);
+        }
+        values
     }
 }
 
@@ -177,7 +182,9 @@ struct ComplexMatrix<'a, T>([&'a [T]; 3]);
 impl<T: Real> Factor<T, 2> for ComplexMatrix<'_, T> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
-        let [xx, yy, xy] = self.0.map(|plane| complex_value::<T, S>(plane, at.row + at.q, at.vector));
+        let ([xx, yy, xy], row) = (self.0, at.row + at.q);
+        let (xx, yy) = (complex_value::<T, S>(xx, row, at.vector), complex_value::<T, S>(yy, row, at.vector));
+        let xy = complex_value::<T, S>(xy, row, at.vector);
         [a.add(a.mul(x, xx), a.mul(y, xy)), a.add(a.mul(y, yy), a.mul(x, xy))]
     }
 }

@@ -84,7 +84,7 @@ impl WithSimd for Direct<'_, '_> {
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 0] {
         let disc = Disc::new(simd, &self.units);
         let a = disc.a;
-        let [beta, f, inverse] = [self.beta, self.f, 1.0 / self.f].map(|value| a.splat(value));
+        let (beta, f, inverse) = (a.splat(self.beta), a.splat(self.f), a.splat(1.0 / self.f));
         let Fields { bound, q: [qx, qy], normal: [nx, ny], deferred: [lx, ly], .. } = self.fields;
         let Fields { direction: [tx, ty], chord: [cx, cy], z: [zx, zy], .. } = self.fields;
         pass(
@@ -149,7 +149,7 @@ impl WithSimd for Go<'_, '_> {
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 4] {
         let disc = Disc::new(simd, &self.units);
         let a = disc.a;
-        let [length, left] = [self.length, 1.0 - self.length / self.f].map(|value| a.splat(value));
+        let (length, left) = (a.splat(self.length), a.splat(1.0 - self.length / self.f));
         let Fields { bound, excess, slip: [wx, wy], chord: [cx, cy], product: [px, py], .. } = self.fields;
         let Fields { q: [qx, qy], u: [ux, uy], normal: [nx, ny], direction: [tx, ty], .. } = self.fields;
         let Fields { curvature, projected: [rx, ry], deferred: [lx, ly], z: [zx, zy], .. } = self.fields;
