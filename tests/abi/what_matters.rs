@@ -26,6 +26,8 @@ fn quantities(call: &Call, n: i32, wanted: *const i32, coarser: i32) -> (i32, Ve
     let mut row = contact_normal_quantity_row::default();
     row.struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
     let mut rows = vec![Longer { row, unknown: -7 }; 8];
+    // What the first row says of what this library does not know must be 0.
+    rows[0].unknown = 0;
     let mut written = -1;
     // SAFETY: structs with the arrays that they declare.
     let status = unsafe {

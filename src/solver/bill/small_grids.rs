@@ -88,7 +88,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             return Ok(Outcome::Converged);
         }
         let elements = self.scene.grid.mx.max(self.scene.grid.my);
-        let first = -((elements / FIRST).max(1).ilog2() as i32);
+        // At least two grids: of one alone nothing is known of errors.
+        let first = -((elements / FIRST).max(2).ilog2() as i32);
         for doublings in first..=0 {
             let entered = Instant::now();
             if !self.on(doublings, &mut progress)? {
