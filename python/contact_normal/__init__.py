@@ -17,6 +17,7 @@ from ._friction_batch import FrictionBatch, friction_batch
 from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
 from ._prices import Price, cost_of_accuracy
+from ._pull_off import pull_off
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
@@ -48,6 +49,7 @@ __all__ = [
     "friction_batch",
     "hertz",
     "influence_half_space",
+    "pull_off",
     "set_log",
     "solve",
     "solve_tangential",

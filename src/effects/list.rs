@@ -9,10 +9,10 @@ use crate::scene::{Friction, Scene};
 use crate::threads::Threads;
 
 /// Number of effects.
-pub(super) const COUNT: usize = 8;
+pub(super) const COUNT: usize = 9;
 
 /// The list: the effects that a scene names, those with a kernel first, the others in the order in which they act on coefficients. A coating of no
-/// thickness, or of the body's own material, is none.
+/// thickness, or of the body's own material, is none, and an adhesion without any work.
 pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
     fn of<'s, E: Effect>(effect: &'s Option<E>) -> Option<&'s (dyn Effect + 's)> {
         effect.as_ref().map(|effect| effect as &dyn Effect)
@@ -26,6 +26,9 @@ pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] 
         of(&scene.layer),
         of(&scene.pressure_limit),
         of(&scene.friction),
+        of(&scene.adhesion).filter(|_| {
+            scene.adhesion.is_some_and(|adhesion| adhesion.is_one() || adhesion.check(&scene.grid).is_err())
+        }),
     ]
 }
 
@@ -135,7 +138,7 @@ impl Scene<'_> {
 
     /// Refuses a load that no pressures carry: of a contact area that is to be found, not of one that `is_fixed`.
     pub fn check_free_load(&self, is_fixed: bool) -> Result<()> {
-        self.load.check_sign(is_fixed)?;
+        self.load.check_sign(is_fixed || self.attraction().is_some())?;
         if is_fixed {
             return Ok(());
         }

@@ -10,9 +10,11 @@
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
 //! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
+//! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //!
 //! A new effect is a file with an `impl Effect`, a field of [`Scene`](crate::scene::Scene), and a line in the list (`list.rs`).
 
+mod adhesion;
 mod coating;
 mod effect;
 mod friction;
@@ -27,6 +29,7 @@ mod tables;
 mod tangential_influence;
 mod tangential_rows;
 
+pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};

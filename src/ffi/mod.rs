@@ -5,6 +5,7 @@
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in docs/conventions.md
 
 mod accuracy;
+mod adhesion;
 mod arguments;
 mod batch;
 mod by_name;
@@ -32,6 +33,7 @@ mod options;
 mod outputs;
 mod price_list;
 mod progress;
+mod pull_off;
 mod report;
 mod scene;
 mod set_by_name;
@@ -48,6 +50,7 @@ mod watcher;
 
 pub use self::log::*;
 pub use accuracy::*;
+pub use adhesion::*;
 pub use batch::*;
 pub use coating::*;
 pub use effects::*;
@@ -63,6 +66,7 @@ pub use linear::*;
 pub use options::*;
 pub use price_list::*;
 pub use progress::*;
+pub use pull_off::*;
 pub use report::*;
 pub use scene::*;
 pub use set_by_name::*;

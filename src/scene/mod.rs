@@ -6,8 +6,8 @@ mod plain;
 mod refine;
 
 pub use crate::effects::{
-    Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit, Previous,
-    TangentialInfluence,
+    Adhesion, Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit,
+    Previous, TangentialInfluence, Work,
 };
 pub use bodies::Bodies;
 pub use load::Load;
@@ -44,6 +44,8 @@ pub struct Scene<'a> {
     pub row_tables: Option<RowTables>,
     /// Effect: friction between the bodies.
     pub friction: Option<Friction<'a>>,
+    /// Effect: attraction between the bodies.
+    pub adhesion: Option<Adhesion<'a>>,
 }
 
 impl<'a> Scene<'a> {
@@ -62,7 +64,13 @@ impl<'a> Scene<'a> {
             patches: None,
             row_tables: None,
             friction: None,
+            adhesion: None,
         }
+    }
+
+    /// The adhesion, if anything attracts.
+    pub fn attraction(&self) -> Option<&Adhesion<'a>> {
+        self.adhesion.as_ref().filter(|adhesion| adhesion.is_one())
     }
 
     /// The same without its effects.

@@ -139,6 +139,10 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
                        and read error_tangential, the estimated error of a shift from rest and of steady rolling";
         return Err(Error::Unsupported(message.into()));
     }
+    if scene.adhesion.is_some() {
+        let message = "adhesion is given; the error of a grid that has to resolve its range is not estimated: solve on grids of your own";
+        return Err(Error::Unsupported(message.into()));
+    }
     let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
     if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Error::Unsupported(format!(

@@ -24,9 +24,11 @@ fn the_cxx_header_keeps_its_promises() {
             assert_eq!(run_under_valgrind(&program, &[], &folder), expected, "{source}, {standard}");
         }
     }
-    let program = compile(compiler("g++", "c++17"), "cxx_examples/hertz.cpp", &folder);
-    let expected = std::fs::read_to_string(root().join("cxx_examples/hertz.expected")).expect("hertz.expected");
-    assert_eq!(run_linked(&program, &[], &folder), expected);
+    for name in ["hertz", "adhesion"] {
+        let program = compile(compiler("g++", "c++17"), &format!("cxx_examples/{name}.cpp"), &folder);
+        let expected = std::fs::read_to_string(root().join(format!("cxx_examples/{name}.expected"))).expect("expected");
+        assert_eq!(run_linked(&program, &[], &folder), expected, "{name}");
+    }
 }
 
 /// The names of the header's parts.

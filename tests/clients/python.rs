@@ -145,6 +145,11 @@ fn the_friction_example_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_adhesion_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("adhesion");
+}
+
+#[test]
 fn the_rolling_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("rolling");
 }
