@@ -9,7 +9,7 @@ import contact_normal as cn
 # Units of Johnson, Kendall and Roberts: R = 1, w = 1/pi, K = 4/3 E* = 1: forces in pi w R, approaches in (pi^2 w^2 R/K^2)^(1/3).
 WORK, E_STAR, TABOR = 1 / np.pi, 0.75, 3.0
 RANGE = (WORK / E_STAR) ** (2 / 3) / TABOR
-M, HALF_WIDTH = 128, 2.2
+M, HALF_WIDTH = 128, 2.0
 
 
 def jkr():

@@ -101,7 +101,6 @@ fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
     let mut fields = std::mem::take(&mut level.fields);
     let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
     linearise(level, worst > CLOSE, &mut stiffness, &mut right);
-    level.take_contact();
     let [sum, count] =
         fields::sum(&threads, n, |i| [level.now.p.field[i][0], f64::from(u8::from(level.now.contact[i]))]);
     let border = [wanted.map_or(0.0, |wanted| wanted - sum)];
@@ -162,7 +161,6 @@ pub fn stiffness_of_contact(level: &mut Level, monitor: &mut Monitor<'_>) -> Res
     let mut fields = std::mem::take(&mut level.fields);
     let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
     linearise(level, false, &mut stiffness, &mut right);
-    level.take_contact();
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
     system.fill_column(-1.0, &mut right);
     let norm = fields::dot(&threads, &right, &right).sqrt();

@@ -50,6 +50,7 @@ pub fn solve(
             break;
         }
         descended = true;
+        log::debug!("adhesion: Newton's method {end:?} with {measured:?}; descent goes on");
         level.now.copy_from(&good)?;
         let steps = Steps { most: BETWEEN, from_none: false, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;

@@ -19,6 +19,9 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
+/// Where Newton's method could not follow a state, the bodies have snapped if so large a part of their contact is another one.
+const SNAPPED: f64 = 0.25;
+
 /// Grids and memory for many solves on one grid.
 pub struct Solver {
     levels: Vec<Level>,
@@ -99,8 +102,10 @@ impl Solver {
         level.refresh()?;
         level.count_products(monitor);
         if !pulls(goal) {
+            let before = state.contact.iter().filter(|&&inside| inside).count();
             let ended = robust::solve(level, goal, (true, make), monitor)?;
-            self.jumped = ended.descended;
+            let change = before.abs_diff(ended.measured.count) as f64;
+            self.jumped = ended.descended && change > SNAPPED * before.max(ended.measured.count) as f64;
             return Ok(ended.end);
         }
         let (end, _) = newton(level, goal, true, monitor)?;

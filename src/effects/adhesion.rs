@@ -2,7 +2,8 @@
 //!
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
-use super::effect::{check_values, Effect};
+use super::effect::{check_values, Effect, Value};
+use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
@@ -37,7 +38,7 @@ pub struct Adhesion<'a> {
 
 impl Adhesion<'_> {
     /// Whether anything attracts: a work of 0 everywhere is no adhesion.
-    pub fn is_one(&self) -> bool {
+    pub fn attracts(&self) -> bool {
         match self.work {
             Work::Uniform(work) => work != 0.0,
             Work::PerElement(works) => works.iter().any(|work| *work != 0.0),
@@ -48,6 +49,27 @@ impl Adhesion<'_> {
 impl Effect for Adhesion<'_> {
     fn name(&self) -> &'static str {
         "adhesion"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["row_tables", "patches", "pressure_limit", "friction"],
+            without_multigrid: Some("adhesion"),
+            with_given_area: false,
+            one_grid: Some(
+                "the error of a grid that has to resolve its range is not estimated: solve on grids of your own",
+            ),
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
+    }
+
+    // A scene has to know of what is wrong, too.
+    fn is_one(&self, scene: &Plain<'_>) -> bool {
+        self.attracts() || self.check(&scene.grid).is_err()
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -80,7 +102,7 @@ impl Effect for Adhesion<'_> {
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;
-        let repeats = others.iter().flatten().any(|other| other.repeats() == (true, true));
+        let repeats = others.iter().flatten().any(|other| other.properties().repeats == (true, true));
         if repeats && scene.grid.len() == 1 {
             let message = "adhesion is given on a grid of one element with two periods, which displaces nothing; this version does not solve that";
             return Err(Error::Unsupported(message.into()));
@@ -95,11 +117,14 @@ impl Effect for Adhesion<'_> {
         Ok(())
     }
 
-    fn excludes(&self) -> &'static [&'static str] {
-        &["row_tables", "patches", "pressure_limit", "friction"]
+    // It may be another one for each solve.
+    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
     }
 
-    fn without_multigrid(&self) -> Option<&'static str> {
-        Some(self.name())
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
     }
 }

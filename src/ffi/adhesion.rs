@@ -114,7 +114,8 @@ pub struct contact_normal_report_adhesion {
     pub border_share: f64,
     /// dF/dapproach if `adhesion->stiffness` is 1, else 0.
     pub stiffness: f64,
-    /// 1: the state before (initial_guess PREVIOUS or GIVEN) could not be followed: the bodies have snapped; else 0.
+    /// 1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
+    /// are more, or fewer, by a quarter at least; else 0.
     pub jumped: i32,
     /// Always 0.
     pub reserved_integer: i32,

@@ -12,7 +12,8 @@ use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
-use crate::scene::{Previous, Scene};
+use crate::effects;
+use crate::scene::Scene;
 use crate::solver::{ActiveSet, InitialGuess, Method, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
@@ -110,7 +111,7 @@ impl Request<'_> {
 impl Request<'_> {
     /// Whether it begins where the handle ended last.
     pub fn goes_on(&self) -> bool {
-        let continues = self.scene.friction.is_some_and(|friction| friction.previous == Previous::Kept);
+        let continues = effects::continuing(&self.scene).next().is_some();
         continues || self.options.options.initial_guess == InitialGuess::Previous
     }
 }

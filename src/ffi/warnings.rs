@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 
 use crate::adhesion::{CONTAINED, UNSTABLE};
 use crate::contact::State;
-use crate::scene::{Period, Scene};
+use crate::effects;
+use crate::scene::Scene;
 use crate::solver::{ActiveSet, Options, Report};
 
 /// `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
@@ -81,7 +82,7 @@ fn of_adhesion(report: &Report) -> i32 {
 /// Whether an element in contact lies on a row or column that has no neighbour beyond. Of a grid of one row or column, a line contact,
 /// that direction does not count.
 fn is_at_border(scene: &Scene<'_>, state: &State) -> bool {
-    let Period { x, y } = scene.period.unwrap_or(Period { x: false, y: false });
+    let (x, y) = effects::repeats(scene);
     let [columns, rows, _] = state.edge_counts();
     (!y && scene.grid.my > 1 && rows > 0) || (!x && scene.grid.mx > 1 && columns > 0)
 }

@@ -6,7 +6,7 @@ use super::take_over::{is_without_contact, take_distance};
 use super::{check, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
 use crate::adhesion::{self, Frozen, Request, Surfaces};
 use crate::contact::{self, lowest, Freshness, NonNegative, Problem, State, Survey};
-use crate::effects::{Adhesion, Work};
+use crate::effects::{self, Adhesion, Work};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::methods::{Start, Task};
@@ -93,7 +93,6 @@ impl Solver {
             return Err(Error::Unsupported(message.into()));
         }
         let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
-        self.friction.iter_mut().for_each(|before| before.forget());
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
@@ -102,6 +101,9 @@ impl Solver {
         let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
         let (stop, found) = outcome?;
+        // There is no step before any more.
+        self.friction.iter_mut().for_each(|before| before.forget());
+        effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), ..Report::of(&monitor, options.tolerance) };
         report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
         report.error.untrusted = found.untrusted();
@@ -176,7 +178,6 @@ fn check_options(options: &Options) -> Result<()> {
             ("method is another one", "it must be AUTO or PROJECTED_CG")
         }
         Options { criterion: Criterion::Update, .. } => ("criterion is UPDATE", "it must be RESIDUAL"),
-        options if options.is_fixed() => ("active_set is FIXED", "it must be FREE"),
         _ => return Ok(()),
     };
     Err(Error::Unsupported(format!("adhesion is given, and {name}: {rule} in this version")))

@@ -5,12 +5,12 @@
 
 mod adhesion;
 mod batch;
+mod beside;
 mod best;
 mod by_approach;
 mod check;
 mod compressible;
 mod compression;
-mod coupled;
 mod estimates;
 mod friction_batch;
 mod friction_table;
@@ -25,11 +25,14 @@ mod options;
 mod own_tables;
 mod refinement;
 mod report;
+mod step;
 mod take_over;
 mod tangential;
 mod tangential_calls;
 mod tangential_estimates;
+mod tangential_turn;
 mod turns;
+mod unlike_bodies;
 mod unlike_sensitivities;
 
 use std::sync::Arc;
@@ -50,7 +53,7 @@ pub use report::{Halving, Limit, Report};
 pub use tangential_calls::solve_tangential;
 
 use crate::contact::{self, Curvature, State};
-use crate::effects::{self, KeptInfluence, Named};
+use crate::effects::{self, KeptInfluence, Layout, Named};
 use crate::error::Result;
 use crate::friction;
 use crate::grid::Grid;
@@ -58,6 +61,7 @@ use crate::influence::Coefficients;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
+use beside::Beside;
 use compressible::Compressible;
 use estimates::Parts;
 use methods::Methods;
@@ -94,6 +98,8 @@ pub struct Solver {
     /// One limit per element of the scene being solved; empty if there is none.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
+    /// What else is solved beside the normal problem, and kept from step to step.
+    beside: Beside,
     /// Of scenes with friction.
     friction: Option<Box<Tangent>>,
     /// Of scenes with adhesion.
@@ -114,11 +120,10 @@ pub struct Solver {
 struct SetUp {
     /// What later scenes may not change.
     named: Named,
-    has_own_influence: bool,
+    /// The effect with coefficients of the caller's own, and their layout.
+    own_coefficients: Option<(&'static str, Layout)>,
     /// Whether the last table could not be set: then there is none.
     lacks_table: bool,
-    /// Whether the coefficients are the caller's.
-    given: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
@@ -164,9 +169,8 @@ impl Solver {
         let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
             named: Named::new(scene),
-            has_own_influence: scene.influence.is_some(),
+            own_coefficients: effects::own_coefficients(scene),
             lacks_table: false,
-            given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
             compressible,
@@ -182,7 +186,7 @@ impl Solver {
 
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
-        problem.given = set_up.given;
+        problem.given = set_up.own_coefficients.is_some();
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
             state: State::new(grid, (Load::Approach(0.0), 0.0), threads)?,
@@ -191,6 +195,7 @@ impl Solver {
             has_result: false,
             limits: Vec::new(),
             ledger: Vec::new(),
+            beside: Beside::default(),
             friction: None,
             adhesion: None,
             is_adhesive: false,
@@ -224,15 +229,15 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
-        if let Some(h) = scene.patches.map_or(Ok(None), |patches| patches.surface(scene.undeformed_distance))? {
-            let scene = &Scene { undeformed_distance: &h, patches: None, ..scene.clone() };
+        if let Some(h) = effects::surface(scene)? {
+            let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
             let lowest = scene.check_distance_and_load(&self.problem.threads)?;
             return self.solve_surface((scene, lowest), options, guess, progress);
         }
         self.solve_surface((scene, lowest), options, guess, progress)
     }
 
-    /// The same for a scene that is checked, and whose patches are among the coefficients.
+    /// The same for a scene that is checked, with the undeformed distance that its effects make.
     fn solve_surface(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -253,7 +258,7 @@ impl Solver {
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
             let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
-            let (stop, found) = self.solve_friction(scene, options, stop, &mut monitor)?;
+            let (stop, found) = self.solve_beside(scene, options, stop, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);

@@ -132,22 +132,9 @@ impl Refinement {
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
     options.check()?;
     scene.grid.check()?;
-    if scene.friction.is_some() {
+    if let Some((name, why)) = effects::one_grid(scene) {
         effects::check_effects(scene)?;
-        let message =
-            "friction is given; no coarser grid bounds the error of a transient step: solve on grids of your own, \
-                       and read error_tangential, the estimated error of a shift from rest and of steady rolling";
-        return Err(Error::Unsupported(message.into()));
-    }
-    if scene.adhesion.is_some() {
-        let message = "adhesion is given; the error of a grid that has to resolve its range is not estimated: solve on grids of your own";
-        return Err(Error::Unsupported(message.into()));
-    }
-    let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
-    if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
-        return Err(Error::Unsupported(format!(
-            "{name} is given; own coefficients are those of one grid, and an accuracy needs several"
-        )));
+        return Err(Error::Unsupported(format!("{name} is given; {why}")));
     }
     if options.is_fixed() {
         return Err(Error::Unsupported("active_set is FIXED; the contact area of finer grids is not known".into()));

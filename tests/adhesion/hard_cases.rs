@@ -65,9 +65,10 @@ fn one_element_has_its_closed_form() {
     // e = h - approach - a0 w/rho exp(-e/rho): apart, with a0 of Love.
     let grid = Grid::new(1, 1, 1.0, 1.0).expect("a grid");
     let (work, range, gap) = (0.02, 1.0, 0.5);
+    let h = [gap];
     let scene = Scene {
         adhesion: Some(adhesion(Law::Exponential, work, range)),
-        ..Scene::new(grid, &[gap], bodies(MODULUS), Load::Approach(0.0))
+        ..Scene::new(grid, &h, bodies(MODULUS), Load::Approach(0.0))
     };
     let (solver, outcome, _) = solver::solve(&scene, &Options::default()).expect("a solve");
     assert_eq!(outcome, Outcome::Converged);

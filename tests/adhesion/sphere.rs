@@ -85,11 +85,12 @@ fn a_work_per_element_that_is_the_same_gives_the_same_bits() {
     assert_eq!(solver.state().p, other.state().p);
 }
 
+// Powers of four: the direct solve of a small grid takes roots of coefficients, which others round differently.
 #[test]
-fn powers_of_two_in_the_units_give_the_same_bits() {
+fn powers_of_four_in_the_units_give_the_same_bits() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
     let (one, _) = sphere.solve(Load::Force(-0.5));
-    let (length, pressure) = (4.0, 0.125);
+    let (length, pressure) = (4.0, 0.25);
     let grid = contact_normal::grid::Grid { dx: length * sphere.grid.dx, dy: length * sphere.grid.dy, ..sphere.grid };
     let h: Vec<f64> = sphere.h.iter().map(|h| length * h).collect();
     let scaled = adhesion(Law::Exponential, length * pressure / PI, length * sphere.adhesion.range);
