@@ -22,6 +22,9 @@ macro_rules! with_effects {
             friction: $crate::effects::Friction<'a>,
             /// Effect: attraction between the bodies.
             adhesion: $crate::effects::Adhesion<'a>,
+            /// Effect, in tests only: a foundation with memory.
+            #[cfg(test)]
+            foundation: $crate::effects::Foundation,
         }
     };
 }

@@ -25,7 +25,7 @@
 //!
 //! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
 //! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
-//! in turns with the normal problem, or remembers the steps before, is [`Coupled`].
+//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example.
 
 mod adhesion;
 mod coating;
@@ -60,3 +60,9 @@ pub use together::{
     beside, check_bodies, check_effects, continuing, coupled, effects, excluded_method, keep, limits, one_grid,
     own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
 };
+
+#[cfg(test)]
+#[path = "../../tests/unit/foundation.rs"]
+mod foundation;
+#[cfg(test)]
+pub use foundation::Foundation;
