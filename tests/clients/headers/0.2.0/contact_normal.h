@@ -1500,7 +1500,8 @@ typedef struct contact_normal_report_adhesion {
    */
   double stiffness;
   /*
-   1: the state before (initial_guess PREVIOUS or GIVEN) could not be followed: the bodies have snapped; else 0.
+   1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
+   are more, or fewer, by a quarter at least; else 0.
    */
   int32_t jumped;
   /*
