@@ -20,6 +20,7 @@ from ._library import VERSION, ContactNormalError
 from ._plot_lines import plot_contact_area
 from ._prices import Price, Prices, cost_of_accuracy
 from ._quantities import Quantities, Quantity, quantities
+from ._pull_off import pull_off
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
@@ -57,6 +58,7 @@ __all__ = [
     "hertz",
     "influence_half_space",
     "plot_contact_area",
+    "pull_off",
     "quantities",
     "set_log",
     "solve",

@@ -51,6 +51,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "kept": (c_int32, [POINTER(c_int64), POINTER(c_int32)]),
     "init": (None, [c_int32, c_void_p, c_int64]),
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "pull_off": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solve_tangential": (
         c_int32,
         [c_void_p, POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],

@@ -49,6 +49,8 @@ class Result(Solved):
         With friction: the slip of body 1 over body 2 in the step, in x and y; else zeros.
     stick_slip : ndarray of int, (my, mx)
         With friction: 0 exterior, 1 stick, 2 slip.
+    contact_pressure, attraction : ndarray of float, (my, mx)
+        With adhesion: q >= 0 and sigma >= 0, whose difference is p; without adhesion p and zeros.
     x : ndarray of float, (mx,)
         Centres of the elements, from the middle of the grid.
     y : ndarray of float, (my,)

@@ -43,6 +43,7 @@ def solve(
     row_tables: Any = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    adhesion: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     units: tuple[str, str] | None = None,
@@ -91,6 +92,11 @@ def solve(
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
         "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).
         docs/friction.md has the signs.
+    adhesion : mapping, optional
+        Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE",
+        "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
+        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach. `force` may then be
+        negative. docs/adhesion.md says which law and which range.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.
@@ -125,11 +131,11 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables, "coating": coating, "friction": friction}
+               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
     struct = options(given)
-    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
+    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
         library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),

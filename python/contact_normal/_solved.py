@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._constants import WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_SPIKE
+from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
 from ._grid import centres
 from ._library import library
 from ._structs import names
@@ -25,12 +25,14 @@ if TYPE_CHECKING:
     from ._stress import SubsurfaceStress
 
 # The groups of a report.
-_GROUPS = ("normal", "tangential", "accuracy", "statistics")
+_GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion")
 _WARNINGS = {
     "BORDER": WARNING_BORDER,
     "ONE_ELEMENT": WARNING_ONE_ELEMENT,
     "SPIKE": WARNING_SPIKE,
     "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
+    "RANGE": WARNING_RANGE,
+    "ATTRACTION": WARNING_ATTRACTION,
 }
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
@@ -47,7 +49,7 @@ def reported(report: Any) -> dict[str, Any]:
     for group in _GROUPS:
         members = getattr(report, group)
         for name in names(type(members)):
-            if name != "reserved":
+            if not name.startswith("reserved"):
                 value = getattr(members, name)
                 found[report_key(group, name)] = value if isinstance(value, (int, float)) else tuple(value)
     return found
@@ -61,6 +63,7 @@ class Solved(WithUnits):
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
         self._traction, self._slip, self._stick_slip = outputs.traction, outputs.slip, outputs.stick_slip
+        self._contact_pressure, self._attraction = outputs.contact_pressure, outputs.attraction
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
@@ -91,6 +94,16 @@ class Solved(WithUnits):
     def stick_slip(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip; zeros without friction."""
         return self._stick_slip if self._stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+
+    @cached_property
+    def contact_pressure(self) -> Doubles:
+        """q: with adhesion p + sigma in contact, 0 outside; without adhesion p."""
+        return self._contact_pressure if self._contact_pressure is not None else self.pressure
+
+    @cached_property
+    def attraction(self) -> Doubles:
+        """sigma(e) of adhesion; zeros without."""
+        return self._attraction if self._attraction is not None else np.zeros(self.pressure.shape)
 
     @cached_property
     def report(self) -> dict[str, Any]:

@@ -112,6 +112,22 @@ class Friction(ctypes.Structure):
     ]
 
 
+class Adhesion(ctypes.Structure):
+    """contact_normal_adhesion."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("law", c_int32),
+        ("start", c_int32),
+        ("work_of_adhesion", c_double),
+        ("works_of_adhesion", POINTER(c_double)),
+        ("range", c_double),
+        ("smear", c_double),
+        ("stiffness", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -136,6 +152,7 @@ class Scene(ctypes.Structure):
         ("row_tables", POINTER(RowTables)),
         ("coating", POINTER(Coating) * 2),
         ("friction", POINTER(Friction)),
+        ("adhesion", POINTER(Adhesion)),
     ]
 
 
@@ -208,6 +225,8 @@ class Fields(ctypes.Structure):
         ("traction", POINTER(c_double) * 2),
         ("slip", POINTER(c_double) * 2),
         ("stick_slip", POINTER(c_int32)),
+        ("contact_pressure", POINTER(c_double)),
+        ("attraction", POINTER(c_double)),
     ]
 
 
@@ -314,6 +333,25 @@ class ReportStatistics(ctypes.Structure):
     ]
 
 
+class ReportAdhesion(ctypes.Structure):
+    """contact_normal_report_adhesion."""
+
+    _fields_ = [
+        ("repulsive_force", c_double),
+        ("adhesive_force", c_double),
+        ("elastic_energy", c_double),
+        ("adhesive_energy", c_double),
+        ("law_residual", c_double),
+        ("range", c_double),
+        ("resolution", c_double),
+        ("border_share", c_double),
+        ("stiffness", c_double),
+        ("jumped", c_int32),
+        ("reserved_integer", c_int32),
+        ("reserved", c_double * 6),
+    ]
+
+
 class Report(ctypes.Structure):
     """contact_normal_report."""
 
@@ -328,6 +366,7 @@ class Report(ctypes.Structure):
         ("tangential", ReportTangential),
         ("accuracy", ReportAccuracy),
         ("statistics", ReportStatistics),
+        ("adhesion", ReportAdhesion),
     ]
 
 
@@ -535,4 +574,5 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "solver_info": (21, SolverInfo),
     "quantity_row": (22, QuantityRow),
     "effects_row": (23, EffectsRow),
+    "adhesion": (24, Adhesion),
 }

@@ -20,6 +20,8 @@ macro_rules! with_effects {
             pressure_limit: $crate::effects::PressureLimit<'a>,
             /// Effect: friction between the bodies.
             friction: $crate::effects::Friction<'a>,
+            /// Effect: attraction between the bodies.
+            adhesion: $crate::effects::Adhesion<'a>,
             /// Effect, in tests only: a foundation with memory.
             #[cfg(test)]
             foundation: $crate::effects::Foundation,

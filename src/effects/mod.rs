@@ -10,6 +10,7 @@
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
 //! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
+//! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //!
 //! | effect | on a given contact area | to an accuracy | stresses below the surface | beside the normal problem |
 //! |---|---|---|---|---|
@@ -20,11 +21,13 @@
 //! | layer | yes | yes | yes | |
 //! | pressure_limit | no | yes | yes | |
 //! | friction | yes | no | yes | the tangential problem, which may continue; of unlike bodies in turns |
+//! | adhesion | no | no | yes | |
 //!
 //! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
 //! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
 //! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example.
 
+mod adhesion;
 mod coating;
 mod coupled;
 mod effect;
@@ -42,6 +45,7 @@ mod tangential_influence;
 mod tangential_rows;
 mod together;
 
+pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
 pub use coupled::{Coupled, History};
 pub use effect::{Effect, Value};

@@ -216,7 +216,7 @@ impl Scene<'_> {
 
     /// Refuses a load that no pressures carry: of a contact area that is to be found, not of one that `is_fixed`.
     pub fn check_free_load(&self, is_fixed: bool) -> Result<()> {
-        self.load.check_sign(is_fixed)?;
+        self.load.check_sign(is_fixed || self.attraction().is_some())?;
         if is_fixed {
             return Ok(());
         }

@@ -3,6 +3,7 @@
 use libc::c_void;
 
 use super::accuracy::contact_normal_accuracy;
+use super::adhesion::contact_normal_adhesion;
 use super::coating::contact_normal_coating;
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
@@ -71,6 +72,8 @@ pub const CONTACT_NORMAL_KIND_SOLVER_INFO: i32 = 21;
 pub const CONTACT_NORMAL_KIND_QUANTITY_ROW: i32 = 22;
 /// `kind`: `contact_normal_effects_row`, of the first row of an array. Since 0.2.
 pub const CONTACT_NORMAL_KIND_EFFECTS_ROW: i32 = 23;
+/// `kind`: `contact_normal_adhesion`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_ADHESION: i32 = 24;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -130,6 +133,7 @@ kinds! {
     CONTACT_NORMAL_KIND_SOLVER_INFO => contact_normal_solver_info,
     CONTACT_NORMAL_KIND_QUANTITY_ROW => contact_normal_quantity_row,
     CONTACT_NORMAL_KIND_EFFECTS_ROW => contact_normal_effects_row,
+    CONTACT_NORMAL_KIND_ADHESION => contact_normal_adhesion,
 }
 
 #[cfg(test)]

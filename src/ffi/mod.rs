@@ -5,6 +5,7 @@
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in docs/conventions.md
 
 mod accuracy;
+mod adhesion;
 mod arguments;
 mod batch;
 mod by_name;
@@ -33,6 +34,7 @@ mod options;
 mod outputs;
 mod price_list;
 mod progress;
+mod pull_off;
 mod quantities;
 mod report;
 mod scene;
@@ -50,6 +52,7 @@ mod watcher;
 
 pub use self::log::*;
 pub use accuracy::*;
+pub use adhesion::*;
 pub use batch::*;
 pub use coating::*;
 pub use effects::*;
@@ -66,6 +69,7 @@ pub use linear::*;
 pub use options::*;
 pub use price_list::*;
 pub use progress::*;
+pub use pull_off::*;
 pub use quantities::*;
 pub use report::*;
 pub use scene::*;

@@ -144,6 +144,8 @@ impl Outputs {
             regions.output("slip", fields.slip[k], n)?;
         }
         regions.output("stick_slip", fields.stick_slip, n)?;
+        regions.output("contact_pressure", fields.contact_pressure, n)?;
+        regions.output("attraction", fields.attraction, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
             if let Some(rows) = &self.ledger {
@@ -176,6 +178,24 @@ impl Outputs {
             }
         }
         self.write_friction(solver.friction(), n);
+        self.write_adhesion(solver);
+    }
+
+    /// Writes the two parts of the pressures: without adhesion all of them are contact pressures.
+    fn write_adhesion(&self, solver: &Solver) {
+        let (fields, split) = (&self.fields, solver.adhesion());
+        let parts = |i: usize| split.as_ref().map_or((solver.state().p[i], 0.0), |split| split(i));
+        // SAFETY (both): not null: room for one value per element, as above.
+        unsafe {
+            for i in 0..solver.state().p.len() {
+                if !fields.contact_pressure.is_null() {
+                    fields.contact_pressure.add(i).write(parts(i).0);
+                }
+                if !fields.attraction.is_null() {
+                    fields.attraction.add(i).write(parts(i).1);
+                }
+            }
+        }
     }
 
     /// Writes what friction has found; zeros where there is none.

@@ -1,5 +1,6 @@
 //! `contact_normal_report`: what a solve found, how wrong it is, and what it cost.
 
+use super::adhesion::contact_normal_report_adhesion;
 use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};
 use super::structs::{versioned, Versioned};
 use crate::friction;
@@ -164,6 +165,8 @@ pub struct contact_normal_report {
     pub accuracy: contact_normal_report_accuracy,
     /// What it cost.
     pub statistics: contact_normal_report_statistics,
+    /// What was found of adhesion.
+    pub adhesion: contact_normal_report_adhesion,
 }
 
 versioned! {
@@ -192,6 +195,9 @@ impl contact_normal_report {
         let statistics = &mut to.statistics;
         copy!(report.count => statistics: cycles, active_set_steps, active_set_changes, matrix_products, work_units);
         copy!(report => statistics: setup_seconds, solve_seconds, bytes);
+        if let Some(found) = &report.adhesion {
+            to.adhesion.set(found);
+        }
         if let Some(found) = &report.friction {
             (statistics.tangential_products, statistics.tangential_seconds) = (found.products, found.seconds);
             to.accuracy.error_tangential = found.error;

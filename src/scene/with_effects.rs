@@ -2,6 +2,7 @@
 
 use super::{Bodies, Load, Plain};
 use crate::effects::list::with_effects;
+use crate::effects::Adhesion;
 use crate::grid::Grid;
 
 /// The scene of the [list](crate::effects) of effects: each is a field.
@@ -33,6 +34,11 @@ macro_rules! define_scene {
 with_effects!(define_scene);
 
 impl<'a> Scene<'a> {
+    /// The adhesion, if anything attracts.
+    pub fn attraction(&self) -> Option<&Adhesion<'a>> {
+        self.adhesion.as_ref().filter(|adhesion| adhesion.attracts())
+    }
+
     /// The same without its effects.
     pub fn plain(&self) -> Plain<'a> {
         let Scene { grid, undeformed_distance, bodies, load, .. } = *self;

@@ -23,6 +23,7 @@ impl Solver {
         let all = compressible.coefficients.clone();
         let coefficients = if wanted { all.without_constant().unwrap_or(all) } else { all };
         self.methods.forget_operator();
+        self.adhesion = None;
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
         self.methods.renew(&self.problem)?;

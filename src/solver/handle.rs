@@ -48,6 +48,7 @@ impl Solver {
         // What was made of the table before is dropped first: then the operator is this solver's alone.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
+        self.adhesion = None;
         self.workers.clear();
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
@@ -91,7 +92,8 @@ impl Solver {
         let limits = self.limits.len() * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
-        let beside = self.beside.bytes() + friction + tables;
+        let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes());
+        let beside = self.beside.bytes() + friction + adhesion + tables;
         self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + beside
     }
 }

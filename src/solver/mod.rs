@@ -3,6 +3,7 @@
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
+mod adhesion;
 mod batch;
 mod beside;
 mod best;
@@ -103,6 +104,10 @@ pub struct Solver {
     beside: Beside,
     /// Of scenes with friction.
     friction: Option<Box<Tangent>>,
+    /// Of scenes with adhesion.
+    adhesion: Option<Box<crate::adhesion::Solver>>,
+    /// Whether the last result is one of a scene with adhesion.
+    is_adhesive: bool,
     /// Tangential coefficients of the caller's own.
     own_tables: Option<Arc<KeptInfluence>>,
     /// For tables of tangential problems: of one thread each, made when first needed.
@@ -194,6 +199,8 @@ impl Solver {
             ledger: Vec::new(),
             beside: Beside::default(),
             friction: None,
+            adhesion: None,
+            is_adhesive: false,
             own_tables: None,
             crew: Vec::new(),
             workers: Vec::new(),
@@ -241,6 +248,10 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
+        if let Some(adhesion) = scene.attraction() {
+            return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
+        }
+        self.is_adhesive = false;
         self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;

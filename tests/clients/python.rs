@@ -177,6 +177,11 @@ fn from_profiles_to_a_gap() {
 }
 
 #[test]
+fn the_adhesion_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("adhesion");
+}
+
+#[test]
 fn the_rolling_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("rolling");
 }

@@ -217,6 +217,11 @@
 #define CONTACT_NORMAL_KIND_EFFECTS_ROW 23
 
 /*
+ `kind`: `contact_normal_adhesion`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_ADHESION 24
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -270,6 +275,41 @@
  `fields->stick_slip`: it slips.
  */
 #define CONTACT_NORMAL_STICK_SLIP_SLIP 2
+
+/*
+ `law`: sigma = w/rho exp(-e/rho).
+ */
+#define CONTACT_NORMAL_LAW_EXPONENTIAL 0
+
+/*
+ `law`: sigma = w/rho up to the range, 0 beyond, the edge smeared over `smear` of the range on both sides.
+ */
+#define CONTACT_NORMAL_LAW_DUGDALE 1
+
+/*
+ `law`: sigma = w/rho (1 - e/(3 rho))^2 up to three ranges.
+ */
+#define CONTACT_NORMAL_LAW_CUBIC 2
+
+/*
+ `law`: sigma = w/rho (1 + e/(2 rho))^-3.
+ */
+#define CONTACT_NORMAL_LAW_VAN_DER_WAALS 3
+
+/*
+ `start`: on coarser grids with longer ranges, from the contact without attraction.
+ */
+#define CONTACT_NORMAL_START_AUTO 0
+
+/*
+ `start`: from a larger approach: what is in contact stays so.
+ */
+#define CONTACT_NORMAL_START_FROM_CONTACT 1
+
+/*
+ `start`: from bodies apart: nothing snaps in before it must.
+ */
+#define CONTACT_NORMAL_START_FROM_APART 2
 
 /*
  `method`: the fastest way known that is safe.
@@ -391,6 +431,16 @@
  `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
  */
 #define CONTACT_NORMAL_WARNING_ERROR_UNKNOWN 8
+
+/*
+ `warnings`: an element alone is unstable under the attraction: the elements are too coarse for its range (`adhesion.resolution` above 1).
+ */
+#define CONTACT_NORMAL_WARNING_RANGE 16
+
+/*
+ `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
+ */
+#define CONTACT_NORMAL_WARNING_ATTRACTION 32
 
 /*
  `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
@@ -933,6 +983,51 @@ typedef struct contact_normal_friction {
 } contact_normal_friction;
 
 /*
+ Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
+ are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
+ belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. A force has one stable
+ state, with dF/dapproach > 0; below the pull-off force there is none (INFEASIBLE). See docs/adhesion.md.
+ */
+typedef struct contact_normal_adhesion {
+  /*
+   Set by `contact_normal_adhesion_init`.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_LAW_...; default EXPONENTIAL.
+   */
+  int32_t law;
+  /*
+   CONTACT_NORMAL_START_...; default AUTO. Read where the approach is given and initial_guess is NONE.
+   */
+  int32_t start;
+  /*
+   w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
+   */
+  double work_of_adhesion;
+  /*
+   That of each element, `[my][mx]`, or NULL (default).
+   */
+  const double *works_of_adhesion;
+  /*
+   rho, a length; default 0: the shortest that the elements carry. `report->adhesion.range` says which was used.
+   */
+  double range;
+  /*
+   DUGDALE: the part of the range over which its edge is smeared, in (0, 1]; default 0.3.
+   */
+  double smear;
+  /*
+   1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
+   */
+  int32_t stiffness;
+  /*
+   Must be 0.
+   */
+  int32_t reserved;
+} contact_normal_adhesion;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -982,7 +1077,7 @@ typedef struct contact_normal_scene {
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
+   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED or with adhesion also negative. Default NaN: not set.
    */
   double force;
   /*
@@ -1017,6 +1112,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): friction between the bodies.
    */
   const struct contact_normal_friction *friction;
+  /*
+   Effect, or NULL (default): attraction between the bodies.
+   */
+  const struct contact_normal_adhesion *adhesion;
 } contact_normal_scene;
 
 /*
@@ -1191,7 +1290,7 @@ typedef struct contact_normal_fields {
    */
   int64_t struct_size;
   /*
-   p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area.
+   p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area, but with adhesion: that acts there.
    */
   double *pressure;
   /*
@@ -1219,6 +1318,14 @@ typedef struct contact_normal_fields {
    With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
    */
   int32_t *stick_slip;
+  /*
+   With adhesion: q = p + sigma in contact, 0 outside; without adhesion p.
+   */
+  double *contact_pressure;
+  /*
+   With adhesion: sigma(e) >= 0; 0 without adhesion.
+   */
+  double *attraction;
 } contact_normal_fields;
 
 /*
@@ -1532,6 +1639,62 @@ typedef struct contact_normal_report_statistics {
 } contact_normal_report_statistics;
 
 /*
+ What was found of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
+ */
+typedef struct contact_normal_report_adhesion {
+  /*
+   The sum of contact pressures q dx dy.
+   */
+  double repulsive_force;
+  /*
+   The sum of -sigma dx dy: <= 0. Both together are `normal.force`.
+   */
+  double adhesive_force;
+  /*
+   The sum of 1/2 p u dx dy.
+   */
+  double elastic_energy;
+  /*
+   Less the work that the attraction has done: <= 0. The change of both energies by the approach is the force.
+   */
+  double adhesive_energy;
+  /*
+   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too.
+   */
+  double law_residual;
+  /*
+   rho as it was used, a length.
+   */
+  double range;
+  /*
+   kappa: the largest stiffness of the attraction, times what an element displaces itself by. Above 1/2 the elements are too coarse for
+   the range, and the bits of `accuracy.untrusted` are set; above 1 an element snaps alone.
+   */
+  double resolution;
+  /*
+   The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
+   */
+  double border_share;
+  /*
+   dF/dapproach if `adhesion->stiffness` is 1, else 0.
+   */
+  double stiffness;
+  /*
+   1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
+   are more, or fewer, by a quarter at least; else 0.
+   */
+  int32_t jumped;
+  /*
+   Always 0.
+   */
+  int32_t reserved_integer;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[6];
+} contact_normal_report_adhesion;
+
+/*
  What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
  where the library does not know what a newer header has there; later groups come at the end of the report.
  */
@@ -1576,6 +1739,10 @@ typedef struct contact_normal_report {
    What it cost.
    */
   struct contact_normal_report_statistics statistics;
+  /*
+   What was found of adhesion.
+   */
+  struct contact_normal_report_adhesion adhesion;
 } contact_normal_report;
 
 /*
@@ -2126,6 +2293,16 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
+ Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until the force rises again. The result is the
+ state there, its force the least that an equilibrium has (`report->normal.force`). A load to begin with that is safe is a force of 0.
+ `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ */
+contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
+                                              const struct contact_normal_options *options,
+                                              struct contact_normal_fields *fields,
+                                              struct contact_normal_report *report);
+
+/*
  Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
  precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
  set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
@@ -2423,8 +2600,8 @@ contact_normal_status contact_normal_keep(int64_t bytes);
 contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
- 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+ 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
@@ -2639,6 +2816,14 @@ static inline void contact_normal_quantity_row_init(contact_normal_quantity_row 
 static inline void contact_normal_effects_row_init(contact_normal_effects_row *effects_row)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_EFFECTS_ROW, effects_row, (int64_t)sizeof(contact_normal_effects_row));
+}
+
+/*
+ Fills a contact_normal_adhesion with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_adhesion_init(contact_normal_adhesion *adhesion)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ADHESION, adhesion, (int64_t)sizeof(contact_normal_adhesion));
 }
 
 #endif  /* CONTACT_NORMAL_H */

@@ -1,36 +1,41 @@
-//! Flexible GMRES (Saad 1993), for a field and a border of two numbers, right-preconditioned.
+//! Flexible GMRES (Saad 1993), for a field of K numbers per element and a border of K numbers, right-preconditioned.
+//! K is 2 if nothing else is said: tractions and creepages.
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
 
-use super::plane::{dot, Vector};
-use super::vectors::{self, Fields};
+use super::fields::{self as passes, dot_one as dot, plus, Fields};
 use crate::error::Result;
 use crate::threads::Threads;
 
-/// A field of tractions or slips, 0 outside C, and a border: creepages or forces.
-#[derive(Default)]
-pub struct Bordered {
-    pub field: Vec<Vector>,
-    pub border: Vector,
+/// A field, and a border: of friction tractions or slips, and creepages or forces; of adhesion pressures, and the approach or the force.
+pub struct Bordered<const K: usize = 2> {
+    pub field: Vec<[f64; K]>,
+    pub border: [f64; K],
+}
+
+impl<const K: usize> Default for Bordered<K> {
+    fn default() -> Bordered<K> {
+        Bordered { field: Vec::new(), border: [0.0; K] }
+    }
 }
 
 /// One direction: the preconditioned vector, and the product of its field with A.
 #[derive(Default)]
-pub struct Direction {
-    pub z: Bordered,
-    pub product: Vec<Vector>,
+pub struct Direction<const K: usize = 2> {
+    pub z: Bordered<K>,
+    pub product: Vec<[f64; K]>,
 }
 
 /// What is solved: `H x = r`.
-pub trait System {
+pub trait System<const K: usize = 2> {
     /// A preconditioned vector, its product with A, and `H` of it.
-    fn direction(&mut self, v: &Bordered, fields: &mut Fields) -> Result<(Direction, Bordered)>;
+    fn direction(&mut self, v: &Bordered<K>, fields: &mut Fields<K>) -> Result<(Direction<K>, Bordered<K>)>;
 }
 
 /// What was found: `x = sum_j y_j z_j`.
 #[derive(Default)]
-pub struct Combination {
-    pub directions: Vec<Direction>,
+pub struct Combination<const K: usize = 2> {
+    pub directions: Vec<Direction<K>>,
     pub y: Vec<f64>,
     /// The norm of what is left of r, relative to that of r.
     pub left: f64,
@@ -57,14 +62,14 @@ pub struct Until {
 const ROUND_OFF: f64 = 1e-10;
 
 /// Solves `H x = r`; `weight`: of borders in the inner product.
-pub fn solve(
-    system: &mut dyn System,
-    mut r: Bordered,
+pub fn solve<const K: usize>(
+    system: &mut dyn System<K>,
+    mut r: Bordered<K>,
     (Until { target, most }, weight): (Until, f64),
     threads: &Threads,
-    fields: &mut Fields,
-) -> Result<Combination> {
-    let square = |v: &Bordered| vectors::dot(threads, &v.field, &v.field) + weight * dot(v.border, v.border);
+    fields: &mut Fields<K>,
+) -> Result<Combination<K>> {
+    let square = |v: &Bordered<K>| passes::dot(threads, &v.field, &v.field) + weight * dot(&v.border, &v.border);
     let first = square(&r).sqrt();
     let (mut norm, target) = (first, target.max(ROUND_OFF * first));
     let mut found = Combination { left: 1.0, ..Combination::default() };
@@ -95,45 +100,50 @@ pub fn solve(
 }
 
 /// Takes from w what lies along the basis, as modified Gram and Schmidt do; returns the coefficients, and the norm of what is left.
-fn orthogonalise(threads: &Threads, w: &mut Bordered, basis: &[Bordered], weight: f64) -> (Vec<f64>, f64) {
+fn orthogonalise<const K: usize>(
+    threads: &Threads,
+    w: &mut Bordered<K>,
+    basis: &[Bordered<K>],
+    weight: f64,
+) -> (Vec<f64>, f64) {
     let mut column = Vec::with_capacity(basis.len() + 1);
-    let mut along = vectors::dot(threads, &w.field, &basis[0].field);
+    let mut along = passes::dot(threads, &w.field, &basis[0].field);
     for (j, v) in basis.iter().enumerate() {
-        let h = along + weight * dot(w.border, v.border);
-        w.border = [w.border[0] - h * v.border[0], w.border[1] - h * v.border[1]];
+        let h = along + weight * dot(&w.border, &v.border);
+        w.border = plus(w.border, -h, v.border);
         along = match basis.get(j + 1) {
-            Some(next) => vectors::add_and_dot(threads, &mut w.field, -h, &v.field, &next.field),
-            None => vectors::add_and_square(threads, &mut w.field, -h, &v.field),
+            Some(next) => passes::add_and_dot(threads, &mut w.field, -h, &v.field, &next.field),
+            None => passes::add_and_square(threads, &mut w.field, -h, &v.field),
         };
         column.push(h);
     }
-    (column, (along + weight * dot(w.border, w.border)).sqrt())
+    (column, (along + weight * dot(&w.border, &w.border)).sqrt())
 }
 
-fn scale(threads: &Threads, v: &mut Bordered, a: f64) {
-    vectors::scale(threads, &mut v.field, a);
+fn scale<const K: usize>(threads: &Threads, v: &mut Bordered<K>, a: f64) {
+    passes::scale(threads, &mut v.field, a);
     v.border = v.border.map(|value| a * value);
 }
 
-impl Direction {
+impl<const K: usize> Direction<K> {
     /// Gives its fields back.
-    pub fn give(self, fields: &mut Fields) {
+    pub fn give(self, fields: &mut Fields<K>) {
         fields.give(self.z.field);
         fields.give(self.product);
     }
 }
 
-impl Combination {
+impl<const K: usize> Combination<K> {
     /// Adds x to `to`, and the product of its field to `product`; gives the directions back.
-    pub fn add_to(self, to: &mut Bordered, product: &mut [Vector], threads: &Threads, fields: &mut Fields) {
+    pub fn add_to(self, to: &mut Bordered<K>, product: &mut [[f64; K]], threads: &Threads, fields: &mut Fields<K>) {
         let Combination { directions, y, .. } = self;
-        let of = |field: fn(&Direction) -> &[Vector]| -> Vec<(f64, &[Vector])> {
+        let of = |field: fn(&Direction<K>) -> &[[f64; K]]| -> Vec<(f64, &[[f64; K]])> {
             y.iter().zip(&directions).map(|(y, direction)| (*y, field(direction))).collect()
         };
-        vectors::add_all(threads, &mut to.field, &of(|direction| &direction.z.field));
-        vectors::add_all(threads, product, &of(|direction| &direction.product));
+        passes::add_all(threads, &mut to.field, &of(|direction| &direction.z.field));
+        passes::add_all(threads, product, &of(|direction| &direction.product));
         for (y, direction) in y.iter().zip(&directions) {
-            to.border = [to.border[0] + y * direction.z.border[0], to.border[1] + y * direction.z.border[1]];
+            to.border = plus(to.border, *y, direction.z.border);
         }
         directions.into_iter().for_each(|direction| direction.give(fields));
     }

@@ -1,7 +1,6 @@
-//! Passes over fields of two components, by several threads: sums are taken in blocks of fixed length and order, so that they have the
+//! Passes over fields of K numbers per element, by several threads: sums are taken in blocks of fixed length and order, so that they have the
 //! same bits for any number of threads.
 
-use super::plane::{plus, Vector};
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::sums::Sums;
@@ -10,33 +9,33 @@ use crate::threads::Threads;
 /// Elements of a block: both fields of it stay in the nearest cache.
 pub const BLOCK: usize = 1024;
 
-/// Fields of one length that are used again.
+/// Fields of one length that are used again; of vectors of the plane if nothing else is said.
 #[derive(Default)]
-pub struct Fields {
-    free: Vec<Vec<Vector>>,
+pub struct Fields<const K: usize = 2> {
+    free: Vec<Vec<[f64; K]>>,
 }
 
-impl Fields {
+impl<const K: usize> Fields<K> {
     /// A field of n elements, which holds anything.
-    pub fn take(&mut self, n: usize) -> Result<Vec<Vector>> {
+    pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
         let mut field = self.free.pop().unwrap_or_default();
-        unwritten(&mut field, n, [f64::NAN; 2], "the iteration of Newton's method", &Threads::One)?;
+        unwritten(&mut field, n, [f64::NAN; K], "the iteration of Newton's method", &Threads::One)?;
         Ok(field)
     }
 
     /// Takes a field back.
-    pub fn give(&mut self, field: Vec<Vector>) {
+    pub fn give(&mut self, field: Vec<[f64; K]>) {
         self.free.push(field);
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.free.iter().map(|field| field.capacity() * size_of::<Vector>()).sum()
+        self.free.iter().map(|field| field.capacity() * size_of::<[f64; K]>()).sum()
     }
 }
 
 /// `v . w`.
-pub fn dot(threads: &Threads, v: &[Vector], w: &[Vector]) -> f64 {
+pub fn dot<const K: usize>(threads: &Threads, v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_plain_row(&mut sums, 1, |k, sum| {
         let block = k * BLOCK..((k + 1) * BLOCK).min(v.len());
@@ -46,22 +45,28 @@ pub fn dot(threads: &Threads, v: &[Vector], w: &[Vector]) -> f64 {
 }
 
 /// `to += a v`, and then `to . w`.
-pub fn add_and_dot(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector], w: &[Vector]) -> f64 {
+pub fn add_and_dot<const K: usize>(
+    threads: &Threads,
+    to: &mut [[f64; K]],
+    a: f64,
+    v: &[[f64; K]],
+    w: &[[f64; K]],
+) -> f64 {
     add_and_sum(threads, to, a, v, |start, to| dot_of_block(to, &w[start..start + to.len()]))
 }
 
 /// `to += a v`, and then `to . to`.
-pub fn add_and_square(threads: &Threads, to: &mut [Vector], a: f64, v: &[Vector]) -> f64 {
+pub fn add_and_square<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64, v: &[[f64; K]]) -> f64 {
     add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
 }
 
 /// `to += a v`, and then the sum of what `of` makes of each block of it, which starts at an element.
-fn add_and_sum(
+fn add_and_sum<const K: usize>(
     threads: &Threads,
-    to: &mut [Vector],
+    to: &mut [[f64; K]],
     a: f64,
-    v: &[Vector],
-    of: impl Fn(usize, &[Vector]) -> f64 + Sync + Send,
+    v: &[[f64; K]],
+    of: impl Fn(usize, &[[f64; K]]) -> f64 + Sync + Send,
 ) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
@@ -73,7 +78,7 @@ fn add_and_sum(
 }
 
 /// `to += sum of a_j v_j`, in one pass.
-pub fn add_all(threads: &Threads, to: &mut [Vector], terms: &[(f64, &[Vector])]) {
+pub fn add_all<const K: usize>(threads: &Threads, to: &mut [[f64; K]], terms: &[(f64, &[[f64; K]])]) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         for (a, v) in terms {
             let v = &v[k * BLOCK..k * BLOCK + to.len()];
@@ -83,21 +88,25 @@ pub fn add_all(threads: &Threads, to: &mut [Vector], terms: &[(f64, &[Vector])])
 }
 
 /// `to *= a`.
-pub fn scale(threads: &Threads, to: &mut [Vector], a: f64) {
+pub fn scale<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64) {
     threads.for_each_plain_row(to, BLOCK, |_, to| {
         to.iter_mut().for_each(|to| *to = to.map(|value| a * value));
     });
 }
 
 /// `to = f(i, to)` for each element i.
-pub fn map(threads: &Threads, to: &mut [Vector], f: impl Fn(usize, Vector) -> Vector + Sync + Send) {
+pub fn map<const K: usize>(
+    threads: &Threads,
+    to: &mut [[f64; K]],
+    f: impl Fn(usize, [f64; K]) -> [f64; K] + Sync + Send,
+) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i, *to));
     });
 }
 
 /// `to = f(i)` for each element i.
-pub fn fill(threads: &Threads, to: &mut [Vector], f: impl Fn(usize) -> Vector + Sync + Send) {
+pub fn fill<const K: usize>(threads: &Threads, to: &mut [[f64; K]], f: impl Fn(usize) -> [f64; K] + Sync + Send) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
     });
@@ -140,9 +149,21 @@ pub fn over<B: Send, const K: usize>(
 
 /// Four sums side by side: one would wait for each addition.
 #[inline(always)]
-fn dot_of_block(v: &[Vector], w: &[Vector]) -> f64 {
+fn dot_of_block<const K: usize>(v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
     let mut sums = Sums::new();
     sums.add::<f64, 2, 0>([v.as_flattened(), w.as_flattened()], [], |[v, w], []| [v * w]);
     let [sum] = sums.values();
     sum
+}
+
+/// `v . w` of one element.
+#[inline]
+pub fn dot_one<const K: usize>(v: &[f64; K], w: &[f64; K]) -> f64 {
+    (1..K).fold(v[0] * w[0], |sum, k| sum + v[k] * w[k])
+}
+
+/// `v + a w` of one element.
+#[inline]
+pub fn plus<const K: usize>(v: [f64; K], a: f64, w: [f64; K]) -> [f64; K] {
+    std::array::from_fn(|k| v[k] + a * w[k])
 }
