@@ -62,7 +62,14 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
         let ratio = elements / sample.elements;
         sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * ratio.powf(GROWTH)
     };
-    samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min)
+    let seconds =
+        samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min);
+    // A grid coarser than all samples: the first of them, carried down. Infinite seconds would let the samples grow without end.
+    if seconds.is_finite() {
+        seconds
+    } else {
+        samples.first().map_or(f64::INFINITY, carried)
+    }
 }
 
 /// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
