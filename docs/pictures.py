@@ -23,10 +23,13 @@ class Example(NamedTuple):
     takes_folder: bool = False
 
 
+STEPS = ("array", "faults", "level", "gap", "pressures")
 EFFECTS = ("layer", "pressure_limit", "period", "patches", "row_tables", "coating")
 EXAMPLES = {
     "wheel_rail": Example(("wheel_rail",), (WHEEL_RAIL,)),
     "rough_surface": Example(("rough_surface",)),
+    "heights_to_gap": Example(tuple(f"heights_to_gap_{step}" for step in STEPS), takes_folder=True),
+    "profiles_to_gap": Example(tuple(f"profiles_to_gap_{name}" for name in ("place", "shift", "gap", "forces")), takes_folder=True),
     "friction": Example(("friction_shifts",)),
     "rolling": Example(("friction_rolling",)),
     "creep_force_table": Example(("creep_force_table",)),

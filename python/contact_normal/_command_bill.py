@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from ._bill import what_matters
-from ._command_scene import add_effects, add_scene, effects_of, scene_arguments, surface_of
+from ._command_scene import add_effects, add_scene, effects_of, gap_of, scene_arguments
 from ._field_files import PICTURES, save
 from ._quantities import QUANTITIES
 
@@ -27,7 +27,7 @@ def add(commands: Any) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Prints the rows, and what follows from them."""
-    surface = surface_of(given)
+    surface = gap_of(given)
     bill = what_matters(surface.h, surface.dx, surface.dy, target=given.target, quantities=given.quantities, pairs=given.pairs,
                         **effects_of(given), **scene_arguments(given))
     if not bill:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ._command_scene import add_scene, scene_arguments, surface_of
-from ._prices import QUANTITIES, Price, cost_of_accuracy
+from ._command_scene import add_scene, scene_arguments, gap_of
+from ._prices import Price, cost_of_accuracy
+from ._quantities import QUANTITIES
 
 
 def add(commands: Any) -> None:
@@ -22,7 +23,7 @@ def add(commands: Any) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """Prints one line for each target."""
-    surface = surface_of(given)
+    surface = gap_of(given)
     rows = cost_of_accuracy(surface.h, surface.dx, surface.dy, targets=given.targets, quantity=given.quantity, **scene_arguments(given))
     print(f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}")
     for row in rows:

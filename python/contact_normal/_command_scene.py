@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import sys
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from ._heights import read_heights
-
-if TYPE_CHECKING:
-    from ._arguments import Doubles
+from .surface import Gap, Heights, faults, gap, level, read
 
 ELASTIC = ("young_modulus", "shear_modulus", "poisson_ratio", "e_star")
 LOADS = ("force", "approach", "mean_pressure")
-
-
-class Surface(NamedTuple):
-    """The undeformed distance of a file, and its grid."""
-
-    h: Doubles
-    dx: float
-    dy: float
-    units: tuple[str, str] | None
 
 
 def add_scene(command: argparse.ArgumentParser) -> None:
@@ -32,6 +21,8 @@ def add_scene(command: argparse.ArgumentParser) -> None:
     surface.add_argument("file", help="heights: .npy, .npz, text, .nc; .x3p, .sur and more by SurfaceTopography")
     surface.add_argument("--gap", action="store_true",
                          help="the file holds the undeformed distance h; without this: heights z of body 1 towards a plane, h = max z - z")
+    surface.add_argument("--level", choices=("mean", "plane", "quadric"), help="removes a tilt or a form, fitted by least squares")
+    surface.add_argument("--faults", action="store_true", help="finds fill values and spikes, prints them, and makes them holes")
     surface.add_argument("--variable", metavar="NAME", help="which array of an .npz or .nc file")
     surface.add_argument("--dx", type=float, help="element size along a row; by default what the file says")
     surface.add_argument("--dy", type=float, help="element size across rows; by default what the file says, else dx")
@@ -66,21 +57,41 @@ def effects_of(given: argparse.Namespace) -> dict[str, Any]:
     return {"period": given.period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
 
 
-def surface_of(given: argparse.Namespace) -> Surface:
+def gap_of(given: argparse.Namespace) -> Gap:
     """The undeformed distance that the options name."""
-    found = read_heights(given.file, given.variable)
-    values = np.where(found.values == given.hole, np.nan, found.values)
-    hole = np.isnan(values)
-    if hole.all():
+    if given.gap and Gap.is_in(given.file):
+        found = Gap.read(given.file)
+        return dataclasses.replace(found, units=tuple(given.units) if given.units else None)
+    heights = _heights_of(given)
+    if given.faults:
+        found_faults = faults(heights)
+        print(found_faults, file=sys.stderr)
+        heights = found_faults.removed
+    if given.level:
+        heights = level(heights, given.level)
+    if heights.holes.all():
         raise ValueError(f"{given.file} has no element with a surface")
-    h = values if given.gap else np.max(values[~hole]) - values
-    dx = given.dx if given.dx is not None else found.dx
-    if dx is None:
-        raise ValueError(f"{given.file} does not say its element size; give it by --dx")
-    dy = given.dy if given.dy is not None else found.dy if found.dy is not None and given.dx is None else dx
-    if found.unit and given.units is None:
-        print(f"lengths in {found.unit}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
-    return Surface(np.where(hole, np.inf, h), dx, dy, tuple(given.units) if given.units else None)
+    if given.gap:
+        return Gap(np.where(heights.holes, np.inf, heights.z), heights.dx, heights.dy, units=heights.units)
+    return gap(heights)
+
+
+def _heights_of(given: argparse.Namespace) -> Heights:
+    """What the file holds, with what the options say of it."""
+    said: dict[str, Any] = {"fill": given.hole} if given.hole is not None else {}
+    if given.dx is not None:
+        said.update(dx=given.dx, dy=given.dx if given.dy is None else given.dy)
+    if given.units:
+        said["units"] = tuple(given.units)
+    try:
+        heights = read(given.file, given.variable, **said)
+    except (OSError, ImportError, TypeError, ValueError):
+        raise
+    except Exception as error:  # of the reader of another package
+        raise ValueError(f"{given.file}: {error}") from error
+    if heights.units and not given.units:
+        print(f"lengths in {heights.units[0]}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
+    return dataclasses.replace(heights, period=given.period if "period" in given else None)
 
 
 def scene_arguments(given: argparse.Namespace) -> dict[str, Any]:

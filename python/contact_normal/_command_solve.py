@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ._command_scene import add_effects, add_scene, effects_of, scene_arguments, surface_of
+from ._command_scene import add_effects, add_scene, effects_of, gap_of, scene_arguments
 from ._constants import OK
 from ._field_files import FIELDS, PICTURES, save, write_fields
 from ._library import library
@@ -36,7 +36,7 @@ def run(given: argparse.Namespace) -> int:
     for name, endings in (*((output, FIELDS) for output in given.output), *([(plot, PICTURES)] if plot else [])):
         if Path(name).suffix not in endings:
             raise ValueError(f"{name} must end in one of {', '.join(endings)}")
-    surface = surface_of(given)
+    surface = gap_of(given)
     progress = sys.stderr.isatty() if given.progress is None else given.progress
     result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,
                    **effects_of(given), **scene_arguments(given))

@@ -84,6 +84,12 @@ class Gap:
         lines = [_HEAD, f"# {comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
+    @staticmethod
+    def is_in(path: str | os.PathLike[str]) -> bool:
+        """Whether `write` wrote the file."""
+        with open(path, "rb") as file:
+            return file.readline().rstrip() == _HEAD.encode()
+
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Gap:
         """The gap of a file that `write` wrote. Middle, period and units are not in the file."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._plot import _edges, _name_axes, _new_axes
+from ._axes import edges, name_axes, new_axes
 from ._units import label
 
 if TYPE_CHECKING:
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 def _map(on: Gap | Heights, shown: Any, name: str, axes: Axes | None, **colours: Any) -> Axes:
     """A map of values on a grid, with a colour bar that says what they are."""
-    axes = axes or _new_axes((8.0, 6.0))
-    x, y = _edges(on.x, on.dx), _edges(on.y, on.dy)
+    axes = axes or new_axes((8.0, 6.0))
+    x, y = edges(on.x, on.dx), edges(on.y, on.dy)
     extent = (x[0], x[-1], y[0], y[-1])
     image = axes.imshow(np.ma.masked_invalid(shown), origin="lower", extent=extent, interpolation="nearest", **colours)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label(name, "length", on.units))
-    _name_axes(axes, on.units)
+    name_axes(axes, on.units)
     return axes
 
 
@@ -45,7 +45,7 @@ def plot_heights(heights: Heights, axes: Axes | None, marked: npt.ArrayLike | No
 
 def plot_profile(profile: Profile, axes: Axes | None) -> Axes:
     """See `Profile.plot`."""
-    axes = axes or _new_axes((8.0, 4.0))
+    axes = axes or new_axes((8.0, 4.0))
     axes.plot(profile.y, profile.z, linewidth=1.5, label=profile.name or profile.kind)
     axes.set(xlabel="y, to the field side [mm]", ylabel="z, downwards [mm]", aspect="equal")
     if not axes.yaxis_inverted():

@@ -17,6 +17,7 @@ import numpy as np
 
 import contact_normal as cn
 from contact_normal._command import main
+from contact_normal.surface import Gap
 
 # A steel ball of 50 mm on steel, off the middle, so that no transposed or mirrored grid passes; mm and N.
 MY, MX, DX, DY, RADIUS, FORCE = 40, 56, 0.06, 0.05, 50.0, 1000.0
@@ -88,11 +89,10 @@ class Commands(unittest.TestCase):
         for name, save in (
             ("a.txt", lambda path, z: np.savetxt(path, z, header="heights, mm")),
             ("a.csv", lambda path, z: np.savetxt(path, z, delimiter=",")),
-            ("a.npz", lambda path, z: np.savez(path, heights=z, dx=DX, dy=DY)),
+            ("a.npz", lambda path, z: np.savez(path, heights=z)),
         ):
             save(self.folder / name, HEIGHTS)
-            grid = BALL[4:] if name == "a.npz" else BALL
-            found = self.solved(self.folder / name, *grid)
+            found = self.solved(self.folder / name, *BALL)
             self.assertEqual((found["dx"], found["dy"], found["pressure"].shape), (DX, DY, (MY, MX)))
             h = self.undeformed(found)
             # Round-off of displacements of some .01 beside distances of .1: far below 1e-12.
@@ -100,6 +100,23 @@ class Commands(unittest.TestCase):
         np.save(self.npy, gap)
         h = self.undeformed(self.solved(self.npy, *BALL, "--gap"))
         np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
+        # What the package writes as a gap has its element sizes.
+        Gap(gap, DX, DY).write(self.folder / "gap.txt")
+        h = self.undeformed(self.solved(self.folder / "gap.txt", *BALL[4:], "--gap"))
+        np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
+
+    def test_tilt_and_spikes_are_removed(self):
+        plain = self.solved(self.npy, *BALL)
+        spoiled = HEIGHTS + 0.1 * X[None, :] - 0.2 * Y[:, None]
+        spoiled[3, 50] += 5.0
+        np.save(self.npy, spoiled)
+        self.assertLess(self.solved(self.npy, *BALL)["contact"].sum(), 9)  # the spike carries the ball
+        code, _, told = called("solve", self.npy, *BALL, "--faults", "--level", "plane", "-o", self.folder / "level.npz")
+        self.assertEqual((code, "spike" in told), (0, True), told)
+        level = np.load(self.folder / "level.npz")
+        # A ball whose axis lies off the middle has a plane of its own, so its top moves; it is as large as before.
+        self.assertFalse(level["contact"][3, 50])
+        self.assertAlmostEqual(level["pressure"].max() / plain["pressure"].max(), 1.0, delta=1e-2)
 
     def test_holes_have_no_surface(self):
         inside = np.zeros((MY, MX), dtype=bool)
@@ -134,8 +151,9 @@ class Commands(unittest.TestCase):
             (2, ("solve", self.npy, "--dx", "0.1", *STEEL), "one of the arguments --force --approach --mean-pressure is required"),
             (2, ("solve", self.npy, *BALL, "--approach", "1"), "not allowed with argument"),
             (2, ("turn",), "invalid choice: 'turn'"),
-            (3, ("solve", self.npy, "--dx", "-1", *BALL[2:]), "dx is -1; an element size must be positive and finite"),
-            (3, ("solve", self.npy, "--force", "1", *STEEL), "does not say its element size; give it by --dx"),
+            (3, ("solve", self.npy, "--dx", "-1", *BALL[2:]), "element sizes are -1.0 and 0.05; they must be positive and finite"),
+            (3, ("solve", self.npy, *BALL, "--tolerance", "2"), "(status -2: an invalid argument)"),
+            (3, ("solve", self.npy, "--force", "1", *STEEL), "give the size of an element in one way"),
             (3, ("solve", self.npy, *BALL, "-o", "p.xlsx"), "p.xlsx must end in one of .nc, .npz, .vtk, .vtu"),
             (3, ("solve", self.npy, *BALL, "--plot", "p.gif"), "p.gif must end in one of .png, .svg, .pdf"),
             (3, ("solve", self.npy, *BALL[:6], "--e-star", "1", "--poisson-ratio", "1", "2", "3"), "--poisson-ratio has 3 values"),
@@ -147,7 +165,7 @@ class Commands(unittest.TestCase):
             self.assertEqual(found, code, arguments)
             self.assertIn(words, told)
         np.save(self.npy, HEIGHTS[None])
-        self.assertEqual(called("solve", self.npy, *BALL)[::2], (3, f"contact-normal: {self.npy} holds an array of shape (1, 40, 56); it must be (my, mx)\n"))
+        self.assertEqual(called("solve", self.npy, *BALL)[::2], (3, "contact-normal: values has shape (1, 40, 56); heights have two indices\n"))
         with mock.patch("contact_normal._command_solve.solve", side_effect=KeyboardInterrupt):
             np.save(self.npy, HEIGHTS)
             self.assertEqual(called("solve", self.npy, *BALL)[::2], (130, "contact-normal: interrupted\n"))
@@ -166,7 +184,7 @@ class Commands(unittest.TestCase):
     def test_several_grids_in_a_file_are_named(self):
         np.savez(self.folder / "two.npz", a=HEIGHTS, b=2 * HEIGHTS)
         code, _, told = called("solve", self.folder / "two.npz", *BALL)
-        self.assertEqual((code, "has the grids a, b; name one of them by --variable" in told), (3, True))
+        self.assertEqual((code, "has a, b; give variable, one of them" in told), (3, True))
         h = self.undeformed(self.solved(self.folder / "two.npz", *BALL, "--variable", "b"))
         np.testing.assert_allclose(h - h.min(), 2 * (HEIGHTS.max() - HEIGHTS), atol=1e-12)
 
