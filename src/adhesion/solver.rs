@@ -76,7 +76,7 @@ impl Solver {
         }
         let end = match request.state {
             Some(state) => self.go_on(&state, goal, (request.start, make), monitor)?,
-            None => self.from_nothing(goal, (request.start, make), monitor)?,
+            None => self.begin_anew(goal, (request.start, make), monitor)?,
         };
         let end = match (end, request.pull_off) {
             (Descent::By(End::Solved), true) => self.pull_off(goal, make, monitor)?,
@@ -113,10 +113,10 @@ impl Solver {
             return Ok(Descent::By(end));
         }
         self.jumped = true;
-        self.from_nothing(goal, (start, make), monitor)
+        self.begin_anew(goal, (start, make), monitor)
     }
 
-    fn from_nothing(
+    fn begin_anew(
         &mut self,
         goal: Goal,
         (start, make): (Start, MakeFrozen<'_>),
@@ -132,7 +132,7 @@ impl Solver {
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
         if ended.end != Descent::By(End::Solved) {
-            return Ok(ended.end);
+            return self.beyond_all_attraction(goal).map_or(Ok(ended.end), Err);
         }
         match walk(&mut self.levels[0], (goal, make), monitor)? {
             Walk::Found => Ok(Descent::By(End::Solved)),
@@ -147,6 +147,20 @@ impl Solver {
                 )))
             }
         }
+    }
+
+    /// Why no state holds a pull of more than all attraction at a distance of 0.
+    fn beyond_all_attraction(&self, goal: Goal) -> Option<Error> {
+        let Level { surface, problem, .. } = &self.levels[0];
+        let area = problem.grid.element_area();
+        let of_element = |i: usize| if surface.h[i].is_finite() { surface.traction(i, 0.0) } else { 0.0 };
+        let most = (0..surface.h.len()).map(of_element).sum::<f64>();
+        let wanted = goal.wanted.filter(|wanted| -wanted > most)?;
+        Some(Error::Infeasible(format!(
+            "force is {:e}; all of the attraction, at a distance of 0 everywhere, holds a pull of {:e}",
+            wanted * area,
+            -most * area
+        )))
     }
 
     /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the

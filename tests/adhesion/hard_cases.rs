@@ -29,7 +29,11 @@ fn ranges_and_works_out_of_all_proportion_end() {
     for (work, range) in [(1.0 / PI, 1e-12), (1.0 / PI, 1e12), (1e-30, 0.5), (1e30, 0.5), (1e30, 0.0), (1e-30, 0.0)] {
         for load in [Load::Approach(0.3), Load::Approach(-0.5), Load::Force(1.0), Load::Force(-1e-3)] {
             let scene = Scene { adhesion: Some(adhesion(Law::Exponential, work, range)), ..sphere.scene(load) };
-            println!("{work:e} {range:e} {load:?}: {:?}", solve(&scene));
+            let ended = solve(&scene);
+            println!("{work:e} {range:e} {load:?}: {ended:?}");
+            if work < 1e-20 && range > 0.0 && load == Load::Force(-1e-3) {
+                assert!(ended.is_err_and(|message| message.contains("holds a pull of")));
+            }
         }
     }
 }

@@ -67,9 +67,6 @@ pub fn range_of(tabor: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub force: f64,
-    pub approach: f64,
-    /// That of a circle of the contact area.
-    pub radius: f64,
     pub work_units: f64,
     pub products: u64,
     pub adhesion: Report,
@@ -79,8 +76,6 @@ impl Found {
     pub fn of(report: &solver::Report) -> Found {
         Found {
             force: report.measures.force,
-            approach: report.measures.approach,
-            radius: (report.measures.contact_area / PI).sqrt(),
             work_units: report.count.work_units,
             products: report.count.matrix_products,
             adhesion: report.adhesion.expect("a scene with adhesion"),
