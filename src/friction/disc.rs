@@ -127,7 +127,3 @@ impl<S: Simd> Disc<S> {
         a.select_pair(onto, a.scale(a.div(g, a.sqrt(squared)), to), to)
     }
 }
-
-#[cfg(test)]
-#[path = "../../tests/unit/disc.rs"]
-mod tests;
