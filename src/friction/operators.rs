@@ -206,7 +206,8 @@ impl Operators {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         fn of<T: Real>(operator: &Option<(Toeplitz<T>, Memory<T>)>) -> usize {
-            operator.as_ref().map_or(0, |(operator, workspace)| operator.bytes() + workspace.bytes())
+            let held = |memory: &Memory<T>| memory.bytes() + memory.bytes_of_pieces();
+            operator.as_ref().map_or(0, |(operator, memory)| operator.bytes() + held(memory))
         }
         let excess = self.excess.as_ref().map_or(0, Excess::bytes);
         let rows = self.rows.as_ref().map_or(0, RowProduct::bytes);

@@ -104,7 +104,7 @@ impl RowProduct {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let fields = size_of_val(&self.q[..]) + size_of_val(&self.u[..]);
-        self.product.bytes() + self.memory.bytes() + fields
+        self.product.bytes() + self.memory.bytes() + self.memory.bytes_of_pieces() + fields
     }
 }
 

@@ -89,7 +89,9 @@ impl Displaced {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         match &self.product {
-            Product::Toeplitz(operator, workspace) => operator.bytes() + workspace.bytes(),
+            Product::Toeplitz(operator, workspace) => {
+                operator.bytes() + workspace.bytes() + workspace.bytes_of_pieces()
+            }
             Product::ByRow(product) => product.bytes(),
         }
     }

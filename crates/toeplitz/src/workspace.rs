@@ -87,6 +87,14 @@ impl<T: Real> Memory<T> {
     pub fn bytes(&self) -> usize {
         self.most * size_of::<Complex<T>>()
     }
+
+    /// Bytes that threads work with.
+    pub fn bytes_of_pieces(&self) -> usize {
+        let of = |Piece { row, columns, scratch, .. }: &Piece<T>| {
+            size_of_val(&row[..]) + size_of_val(&columns[..]) + size_of_val(&scratch[..])
+        };
+        self.pieces.iter().map(of).sum()
+    }
 }
 
 impl<T: Real> Piece<T> {
