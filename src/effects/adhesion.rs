@@ -56,9 +56,8 @@ impl Effect for Adhesion<'_> {
             excludes: &["row_tables", "patches", "pressure_limit", "friction"],
             without_multigrid: Some("adhesion"),
             with_given_area: false,
-            one_grid: Some(
-                "the error of a grid that has to resolve its range is not estimated: solve on grids of your own",
-            ),
+            one_grid: (self.range == 0.0)
+                .then_some("the range 0 is the shortest that the elements of one grid carry: name a range"),
             own_coefficients: None,
             repeats: (false, false),
             limits: None,

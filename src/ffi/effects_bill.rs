@@ -35,6 +35,8 @@ pub const CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE: i32 = 9;
 /// `omitted`: the coatings, in whose place there is a thin layer: their limit for waves that are long beside their thickness. Of coatings
 /// that are softer than the body below.
 pub const CONTACT_NORMAL_OMIT_COATING_AS_LAYER: i32 = 10;
+/// `omitted`: adhesion; nothing attracts.
+pub const CONTACT_NORMAL_OMIT_ADHESION: i32 = 11;
 
 /// `verdict`: the change is too near to the target, or its error is not known; more time decides.
 pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;

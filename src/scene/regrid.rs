@@ -1,6 +1,6 @@
 //! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
 
-use super::{refine, Coefficient, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
+use super::{refine, Adhesion, Coefficient, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene, Work};
 use crate::effects::check_other_grids;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
@@ -112,6 +112,7 @@ pub struct Regridded {
     undeformed_distance: Vec<f64>,
     layer: Option<Vec<f64>>,
     limits: Option<Vec<f64>>,
+    works: Option<Vec<f64>>,
     patches: Option<Vec<i32>>,
     coefficients: Option<Vec<f64>>,
     compliances: Option<Vec<f64>>,
@@ -146,6 +147,10 @@ impl Regridded {
             Some(PressureLimit::PerElement(values)) => Some(regrid.means(values)?),
             _ => None,
         };
+        let works = match scene.adhesion.map(|adhesion| adhesion.work) {
+            Some(Work::PerElement(values)) => Some(regrid.means(values)?),
+            _ => None,
+        };
         let mut undeformed_distance = match surface {
             Some(surface) => surface,
             None => distance(scene.undeformed_distance, &from, &to)?,
@@ -165,6 +170,7 @@ impl Regridded {
             undeformed_distance,
             layer: of_layer,
             limits,
+            works,
             patches,
             coefficients: of(friction.map(|friction| friction.coefficient))?,
             compliances: of(friction.map(|friction| friction.compliance))?,
@@ -191,6 +197,10 @@ impl Regridded {
             pressure_limit: scene
                 .pressure_limit
                 .map(|limit| self.limits.as_ref().map_or(limit, |values| PressureLimit::PerElement(values))),
+            adhesion: scene.adhesion.map(|adhesion| Adhesion {
+                work: self.works.as_ref().map_or(adhesion.work, |values| Work::PerElement(values)),
+                ..adhesion
+            }),
             patches: scene
                 .patches
                 .map(|patches| Patches { patch: self.patches.as_deref().unwrap_or_default(), ..patches }),

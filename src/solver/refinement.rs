@@ -71,7 +71,7 @@ pub fn solve_to_accuracy(
     let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity));
     let wanted = history.wanted();
     wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
-    let mut doublings = if wanted.is_empty() { 0 } else { first_of_history(&scene.grid) };
+    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid) } else { 0 };
     let (mut without_estimate, mut without_contact) = (0, 0);
     let (stop, why) = loop {
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());

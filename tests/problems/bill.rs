@@ -1,9 +1,11 @@
 //! The bill of effects: its changes against solves of the whole grid with and without each effect, its verdicts, and what is left out by it.
 
+use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Bodies, Coating, Coefficient, Friction, Layer, Load, Motion, Patches, Period, Prescribed, PressureLimit, Scene,
+    Adhesion, Bodies, Coating, Coefficient, Friction, Layer, Load, Motion, Patches, Period, Prescribed, PressureLimit,
+    Scene, Work,
 };
 use contact_normal::solver::{
     effects_bill, quantities, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
@@ -210,4 +212,34 @@ fn a_period_that_does_not_matter_is_negligible() {
     let (stop, rows) =
         effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
     assert_eq!((stop, rows[0].verdict), (Outcome::Converged, Verdict::Needed), "{rows:?}");
+}
+
+/// E* is 65000: a work of 1 carries a pull of 1.5 pi w R = 236 beside a load of 1100, a work of 1e-7 nothing that 1 % shows.
+#[test]
+fn adhesion_is_needed_where_it_is_strong() {
+    let h = ball();
+    let sticky = |work: f64, range: f64| Scene {
+        adhesion: Some(Adhesion {
+            law: Law::Exponential,
+            work: Work::Uniform(work),
+            range,
+            start: Start::Auto,
+            stiffness: false,
+        }),
+        ..plain(&h)
+    };
+    let strong = bill(&sticky(1.0, 0.005), 1e-2, &WANTED);
+    assert!(
+        strong.iter().any(|row| row.omission == Omission::Adhesion && row.verdict == Verdict::Needed),
+        "{strong:?}"
+    );
+    let change = strong[0].change.expect("a change") / strong[0].value.expect("a force");
+    assert!(change > 0.05, "without attraction the force of an approach is larger: {change}");
+    let weak = bill(&sticky(1e-7, 0.005), 1e-2, &WANTED);
+    assert!(weak.iter().all(|row| row.verdict == Verdict::Negligible), "{weak:?}");
+    // It makes a result of another kind, which stays.
+    let neglected = Neglected::of(&sticky(1e-7, 0.005), &Options::default(), 1e-2).expect("a scene");
+    assert!(neglected.omissions.is_empty());
+    let refused = effects_bill(&sticky(1.0, 0.0), &Options::default(), &BillOptions::new(0.1), &WANTED, None);
+    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("range 0")));
 }

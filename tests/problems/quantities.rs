@@ -7,7 +7,9 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Coating, Friction, Load, Motion, Period, Prescribed, Previous, Scene};
+use contact_normal::scene::{
+    Bodies, Coating, Friction, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
+};
 use contact_normal::solver::{
     cost_of_accuracy, quantities, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
 };
@@ -233,4 +235,31 @@ fn accuracies_and_prices_of_every_quantity_are_kept() {
         }
         assert!(list[0].grid.expect("a grid").mx <= list[1].grid.expect("a grid").mx);
     }
+}
+
+/// Half of the contact is at its limit: one grid alone has no estimates, several have.
+#[test]
+fn reached_limits_have_errors_from_several_grids() {
+    let limited = |grid: Grid, h: &'static [f64]| Scene {
+        pressure_limit: Some(PressureLimit::Uniform(0.7 * truth(Quantity::MaxPressure))),
+        ..scene(grid, h)
+    };
+    let on = |m: usize| -> (Grid, &'static [f64]) {
+        let (grid, h) = ball(m);
+        (grid, h.leak())
+    };
+    let (grid, h) = on(512);
+    let fine = rows(&limited(grid, h), &[Quantity::Force], 0)[0].value.expect("a force");
+    let (grid, h) = on(64);
+    let found = rows(&limited(grid, h), &[Quantity::Force, Quantity::ContactArea], 2);
+    assert_eq!((found[2].error, found[2].lack), (None, Some(Lack::OneGrid)), "two grids are too few");
+    let (value, error) = (found[4].value.expect("a force"), found[4].error.expect("an error"));
+    let off = (value - fine).abs();
+    assert!(off <= 3.0 * error && error <= 0.05 * value, "{value:e}: off by {off:e}, estimated {error:e}");
+    let (grid, h) = on(16);
+    let accuracy = Accuracy::new(1e-2);
+    let outcome = solve_to_accuracy(&limited(grid, h), &Options::default(), &accuracy, None, None).expect("a scene");
+    assert_eq!(outcome.stop, Outcome::Converged, "{}", outcome.reason);
+    let off = (outcome.report.measures.force / fine - 1.0).abs();
+    assert!(off <= 1e-2, "{off:e}: {}", outcome.reason);
 }

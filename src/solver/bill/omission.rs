@@ -26,11 +26,13 @@ pub enum Omission {
     FrictionCompliance,
     /// The coatings, in whose place a thin compliant layer is put: their limit for waves that are long beside their thickness.
     CoatingAsLayer,
+    /// The attraction between the bodies.
+    Adhesion,
 }
 
 impl Omission {
     /// All, in the order of their numbers in the C ABI, which begin at 1.
-    pub const ALL: [Omission; 10] = [
+    pub const ALL: [Omission; 11] = [
         Omission::Coating,
         Omission::Period,
         Omission::Patches,
@@ -41,6 +43,7 @@ impl Omission {
         Omission::Spin,
         Omission::FrictionCompliance,
         Omission::CoatingAsLayer,
+        Omission::Adhesion,
     ];
 
     /// Its number, from 1 on.
@@ -50,7 +53,7 @@ impl Omission {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        const NAMES: [&str; 10] = [
+        const NAMES: [&str; 11] = [
             "coating",
             "period",
             "patches",
@@ -61,6 +64,7 @@ impl Omission {
             "spin",
             "friction_compliance",
             "coating_as_layer",
+            "adhesion",
         ];
         NAMES[self as usize]
     }
@@ -89,6 +93,7 @@ impl Omission {
             Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
             Omission::Patches => scene.patches.is_some(),
             Omission::Layer => scene.layer.is_some(),
+            Omission::Adhesion => scene.attraction().is_some(),
             Omission::PressureLimit => scene.pressure_limit.is_some(),
             Omission::Friction => friction.is_some(),
             Omission::Coupling => friction.is_some() && !replace_bodies(scene) && unlike(&scene.bodies) != 0.0,
@@ -122,6 +127,7 @@ impl Omission {
             // What is in no patch has no surface all the same.
             Omission::Patches => left.patches = None,
             Omission::Layer => left.layer = None,
+            Omission::Adhesion => left.adhesion = None,
             Omission::PressureLimit => left.pressure_limit = None,
             Omission::Friction => left.friction = None,
             Omission::Coupling => left.bodies = alike(&scene.bodies),

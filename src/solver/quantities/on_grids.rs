@@ -136,12 +136,16 @@ fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &
     if let Some(value) = value {
         sequence.add(doublings, value, found.residual * value.abs());
     }
-    let of_sequence = value.and_then(|_| sequence.falling()).map(|falling| falling.now());
-    let error = if quantity.has_estimate() { value.and(found.estimates[k]).or(of_sequence) } else { of_sequence };
+    let falling = |sequence: &Sequence| match quantity.has_estimate() {
+        true => sequence.falling_instead(),
+        false => sequence.falling(),
+    };
+    let of_sequence = value.and_then(|_| falling(sequence)).map(|falling| falling.now());
+    let error = value.and(found.estimates[k]).or(of_sequence);
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),
         (Ok(_), Some(_)) => None,
-        (Ok(_), None) if sequence.len() < 2 => Some(Lack::OneGrid),
+        (Ok(_), None) if sequence.len() < 2 + usize::from(quantity.has_estimate()) => Some(Lack::OneGrid),
         (Ok(_), None) => Some(Lack::Singular),
     };
     QuantityRow { quantity, grid: found.grid, value, error, lack, seconds: found.seconds, work_units: found.work_units }

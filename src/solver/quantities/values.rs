@@ -37,7 +37,8 @@ impl Quantity {
             Some(Lack::NoFriction) => invalid(format!("{name} is asked for, but friction is not given")),
             Some(Lack::Prescribed) => invalid(format!("{name} is asked for, but the scene prescribes it")),
             Some(_) => Err(Error::Unsupported(format!(
-                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction"
+                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction, and \
+                 stiffness is that of bodies without adhesion"
             ))),
         }
     }
@@ -60,6 +61,8 @@ impl Quantity {
                 let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
                 (!solved).then_some(Lack::Effect)
             }
+            // That of a result whose attraction stands still would be another one.
+            Quantity::Stiffness => scene.attraction().map(|_| Lack::Effect),
             _ => None,
         }
     }

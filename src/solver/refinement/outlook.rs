@@ -49,17 +49,21 @@ impl Outlook {
     }
 }
 
-/// The values of quantities without an estimate from one grid, grid by grid.
+/// The values of quantities, grid by grid.
 #[derive(Clone, Debug)]
 pub struct History {
     sequences: Vec<(Quantity, Sequence)>,
 }
 
 impl History {
-    /// Of those among `wanted` that need it.
+    /// Of all that is wanted: where a limit is reached, or something attracts, one grid alone has no estimates.
     pub fn of(wanted: impl Iterator<Item = Quantity>) -> History {
-        let needed = wanted.filter(|quantity| !quantity.has_estimate());
-        History { sequences: needed.map(|quantity| (quantity, Sequence::default())).collect() }
+        History { sequences: wanted.map(|quantity| (quantity, Sequence::default())).collect() }
+    }
+
+    /// Whether grids below the scene's own tell of errors that it does not.
+    pub fn needs_coarser(&self) -> bool {
+        self.sequences.iter().any(|(quantity, _)| !quantity.has_estimate())
     }
 
     /// Which.
@@ -69,10 +73,17 @@ impl History {
 
     /// Adds the values of a grid, in the order of [`wanted`](Self::wanted), and tells the outlook what they say.
     pub fn add(&mut self, doublings: i32, values: &[Result<f64, Lack>], residual: f64, outlook: &mut Outlook) {
+        // Single peaks have none though the force has one: they are singular, or not resolved.
+        let has_estimates = outlook.falling(Quantity::Force).is_some();
         for ((quantity, sequence), value) in self.sequences.iter_mut().zip(values) {
             let Ok(value) = *value else { continue };
             sequence.add(doublings, value, residual * value.abs());
-            outlook.set(*quantity, sequence.falling().and_then(|falling| falling.over(value)));
+            let falling = match quantity.has_estimate() {
+                false => sequence.falling(),
+                true if has_estimates || outlook.falling(*quantity).is_some() => continue,
+                true => sequence.falling_instead(),
+            };
+            outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
         }
     }
 }

@@ -34,6 +34,7 @@ pub(super) struct Sample {
     /// The quantity, where its error does not follow from one grid.
     values: Vec<std::result::Result<f64, Lack>>,
     residual: f64,
+    outlook: Outlook,
     quantity: Quantity,
     pub(super) bytes: f64,
     /// Until the residual was first at most that: seconds since the start of the surface.
@@ -84,12 +85,13 @@ impl Sample {
             }
             progress.as_mut().is_some_and(|progress| progress(told))
         };
-        let wanted: &[Quantity] = if quantity.has_estimate() { &[] } else { &[quantity] };
-        let solved = match on_grid(scene, (options, wanted), doublings, surface, &mut Some(&mut watch), &|_| false)? {
-            Ok(solved) => solved,
-            Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
-            Err(_) => return Ok(Taken::Unsolved),
-        };
+        let wanted = &[quantity];
+        let solved =
+            match on_grid(scene, (options, &wanted[..]), doublings, surface, &mut Some(&mut watch), &|_| false)? {
+                Ok(solved) => solved,
+                Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
+                Err(_) => return Ok(Taken::Unsolved),
+            };
         let residual = solved.residual();
         let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
@@ -101,6 +103,7 @@ impl Sample {
             falling: outlook.falling(quantity),
             values,
             residual,
+            outlook,
             quantity,
             bytes: report.bytes as f64,
             reached,
@@ -111,9 +114,8 @@ impl Sample {
 
     /// With the error that the values of this and coarser grids have.
     pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
-        let mut outlook = Outlook::default();
-        history.add(self.doublings, &self.values, self.residual, &mut outlook);
-        self.falling = self.falling.or(outlook.falling(self.quantity));
+        history.add(self.doublings, &self.values, self.residual, &mut self.outlook);
+        self.falling = self.outlook.falling(self.quantity);
         self
     }
 
